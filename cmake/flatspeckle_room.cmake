@@ -1,5 +1,6 @@
 # flatspeckle_room(NAME SOURCES file... [LINK target...] [PRIVATE_LINK target...])
-# One room of the house: a static library with the alias flatspeckle::NAME, included as "NAME/header.h".
+# One module: a static library with the alias flatspeckle::NAME of the files in this folder, whose headers are
+# included by their path in the project. Modules include each other only as LINK says (tests/verify/test_rooms.py).
 function(flatspeckle_room name)
   cmake_parse_arguments(room "" "" "SOURCES;LINK;PRIVATE_LINK" ${ARGN})
   set(target flatspeckle_${name})
@@ -13,8 +14,37 @@ function(flatspeckle_room name)
   flatspeckle_flags(${target})
   flatspeckle_unity(${target})
   install(TARGETS ${target} EXPORT flatspeckle ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/flatspeckle/${name} FILES_MATCHING PATTERN "*.h")
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/flatspeckle/${folder} FILES_MATCHING PATTERN "*.h")
+endfunction()
+
+# flatspeckle_rooms(NAME room...): flatspeckle::NAME stands for several modules and what these link.
+function(flatspeckle_rooms name)
+  add_library(flatspeckle_${name} INTERFACE)
+  add_library(flatspeckle::${name} ALIAS flatspeckle_${name})
+  set_target_properties(flatspeckle_${name} PROPERTIES EXPORT_NAME ${name})
+  foreach(room ${ARGN})
+    target_link_libraries(flatspeckle_${name} INTERFACE flatspeckle::${room})
+  endforeach()
+  install(TARGETS flatspeckle_${name} EXPORT flatspeckle)
+endfunction()
+
+# No square root here is asked whether it failed: it need not set errno, and its loops become vectors.
+# gcc 12 warns of its own AVX-512 header.
+function(flatspeckle_roots_without_errno name)
+  target_compile_options(flatspeckle_${name} PRIVATE -fno-math-errno -fno-trapping-math
+                         $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+endfunction()
+
+# What another room, compiled with the same options, has precompiled.
+function(flatspeckle_share_headers name owner)
+  target_precompile_headers(flatspeckle_${name} REUSE_FROM flatspeckle_${owner})
+endfunction()
+
+# More files at a time where all include Eigen's matrices.
+function(flatspeckle_large_batches name)
+  set_target_properties(flatspeckle_${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 14)
 endfunction()
 
 # Warnings, instruction set and sanitizers; nothing of it reaches those who link the library.

@@ -7,6 +7,7 @@ flatspeckle=$(realpath "$1")
 results=$(realpath -m "$2")
 steps=("${@:3}")
 [[ ${#steps[@]} -gt 0 ]] || steps=(ten_disks both_methods slab)
+PATH=/usr/bin:$PATH  # Debian's python3, which knows h5py and matplotlib
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mkdir -p "$results/ten_disks"
 

@@ -1,6 +1,6 @@
 #include "apps/command/subcommands.h"
 
-#include "apps/experiments/experiment.h"
+#include "apps/command/experiment.h"
 
 namespace flatspeckle::apps {
 

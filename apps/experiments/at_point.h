@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "apps/experiments/experiment.h"
+#include "apps/command/experiment.h"
 #include "apps/sweep/sweep_points.h"
 #include "core/error.h"
 

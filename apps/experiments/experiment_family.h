@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "apps/command/experiment.h"
 #include "apps/command/subcommands.h"
-#include "apps/experiments/experiment.h"
 
 namespace flatspeckle::apps {
 

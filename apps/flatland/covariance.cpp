@@ -1,12 +1,12 @@
 #include <cstdio>
 
-#include "apps/experiments/experiment.h"
+#include "apps/command/experiment.h"
 #include "apps/results/extras.h"
 #include "apps/results/moments_table.h"
 #include "apps/results/tilt_search.h"
 #include "core/session/identity.h"
 #include "flatland/scene/scene_datasets.h"
-#include "mc/estimators/reflection_theory.h"
+#include "mc/paths/estimators/reflection_theory.h"
 #include "mc/slab/refinement.h"
 
 namespace flatspeckle::apps {

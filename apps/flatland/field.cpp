@@ -3,14 +3,14 @@
 #include <cstdio>
 #include <limits>
 
-#include "apps/experiments/experiment.h"
+#include "apps/command/experiment.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
 #include "core/numbers/blas.h"
 #include "core/numbers/memory.h"
 #include "flatland/scene/scene_datasets.h"
-#include "mc/speckle/field_datasets.h"
-#include "mc/speckle/speckle_field.h"
+#include "mc/paths/speckle/field_datasets.h"
+#include "mc/paths/speckle/speckle_field.h"
 
 namespace flatspeckle::apps {
 

@@ -1,8 +1,8 @@
-#include "mc/estimators/flux.h"
+#include "mc/paths/estimators/flux.h"
 
 #include <cstdio>
 
-#include "apps/experiments/experiment.h"
+#include "apps/command/experiment.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
 #include "core/session/identity.h"

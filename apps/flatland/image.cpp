@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "apps/experiments/experiment.h"
+#include "apps/command/experiment.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
 #include "core/numbers/memory.h"
@@ -16,7 +16,7 @@
 #include "mc/imaging/imaging_datasets.h"
 #include "mc/imaging/media_statistics.h"
 #include "mc/imaging/picture_datasets.h"
-#include "mc/recovery/recovery_keys.h"
+#include "mc/imaging/recovery/recovery_keys.h"
 
 namespace flatspeckle::apps {
 

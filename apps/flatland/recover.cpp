@@ -10,10 +10,10 @@
 #include "core/error.h"
 #include "core/keys/csv.h"
 #include "core/session/session.h"
-#include "mc/recovery/phase_retrieval.h"
-#include "mc/recovery/recovery_datasets.h"
-#include "mc/recovery/recovery_keys.h"
-#include "mc/unmixing/unmixing_datasets.h"
+#include "mc/imaging/recovery/phase_retrieval.h"
+#include "mc/imaging/recovery/recovery_datasets.h"
+#include "mc/imaging/recovery/recovery_keys.h"
+#include "mc/imaging/unmixing/unmixing_datasets.h"
 
 namespace flatspeckle::apps {
 

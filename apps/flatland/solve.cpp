@@ -4,7 +4,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "apps/experiments/experiment.h"
+#include "apps/command/experiment.h"
 #include "apps/results/field_map_output.h"
 #include "apps/results/wavelengths.h"
 #include "core/error.h"

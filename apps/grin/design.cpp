@@ -7,8 +7,8 @@
 #include "core/run/progress.h"
 #include "core/session/identity.h"
 #include "core/session/session.h"
-#include "grin/design/scene/design_datasets.h"
-#include "grin/design/scene/design_state_file.h"
+#include "grin/design/problem/design_datasets.h"
+#include "grin/design/problem/design_state_file.h"
 
 namespace flatspeckle::apps {
 

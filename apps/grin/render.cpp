@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "apps/experiments/experiment.h"
+#include "apps/command/experiment.h"
 #include "core/keys/number_text.h"
 #include "core/session/identity.h"
-#include "grin/render/energy_datasets.h"
-#include "grin/render/map_datasets.h"
-#include "grin/render/render_datasets.h"
-#include "grin/scene/render_values.h"
+#include "grin/render/pictures/energy_datasets.h"
+#include "grin/render/pictures/map_datasets.h"
+#include "grin/render/pictures/render_datasets.h"
+#include "grin/render/values/render_values.h"
 
 namespace flatspeckle::apps {
 

@@ -4,11 +4,11 @@
 #include <iomanip>
 #include <sstream>
 
-#include "apps/experiments/experiment.h"
+#include "apps/command/experiment.h"
 #include "core/result/result_group.h"
-#include "grin/geometry/vector_values.h"
-#include "grin/rays/light_speed.h"
-#include "grin/scene/trace_datasets.h"
+#include "grin/media/geometry/vector_values.h"
+#include "grin/rays/marching/light_speed.h"
+#include "grin/trace/trace_datasets.h"
 
 namespace flatspeckle::apps {
 

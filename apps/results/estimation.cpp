@@ -7,9 +7,9 @@
 
 #include "core/error.h"
 #include "core/numbers/blas.h"
-#include "mc/estimators/covariance_estimator.h"
+#include "mc/paths/estimators/covariance_estimator.h"
+#include "mc/slab/adding/space_scene.h"
 #include "mc/slab/slab_jobs.h"
-#include "mc/space/space_scene.h"
 #include "wave_solver/solutions/ensemble.h"
 
 namespace flatspeckle::apps {

@@ -9,7 +9,7 @@
 #include "core/session/run_settings.h"
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
-#include "mc/walk/plan.h"
+#include "mc/paths/walk/plan.h"
 
 namespace flatspeckle::apps {
 

@@ -3,9 +3,9 @@
 #include "apps/results/moments_table.h"
 #include "core/error.h"
 #include "flatland/scene/frequency_shift.h"
-#include "mc/changes/frequency_shifts.h"
+#include "mc/paths/dynamics/frequency_shifts.h"
+#include "mc/paths/layers/layer_gradient.h"
 #include "mc/slab/slab_jobs.h"
-#include "mc/varying/layer_gradient.h"
 #include "wave_solver/solutions/ensemble.h"
 
 namespace flatspeckle::apps {

@@ -4,8 +4,8 @@
 
 #include "core/numbers/statistics.h"
 #include "flatland/request/request.h"
-#include "mc/changes/brownian.h"
-#include "mc/estimators/gradient.h"
+#include "mc/paths/dynamics/brownian.h"
+#include "mc/paths/estimators/gradient.h"
 #include "mc/theory/moments_datasets.h"
 
 namespace flatspeckle::apps {

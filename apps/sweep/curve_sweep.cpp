@@ -11,7 +11,7 @@
 #include "core/result/result_group.h"
 #include "core/result/version.h"
 #include "core/session/identity.h"
-#include "mc/walk/plan.h"
+#include "mc/paths/walk/plan.h"
 
 namespace flatspeckle::apps {
 

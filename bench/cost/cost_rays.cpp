@@ -4,8 +4,8 @@
 
 #include "bench/cost/cost_measure.h"
 #include "bench/cost/cost_rooms.h"
-#include "grin/fields/luneburg.h"
-#include "grin/rays/ray_step.h"
+#include "grin/media/fields/luneburg.h"
+#include "grin/rays/marching/ray_step.h"
 
 namespace flatspeckle::bench {
 

@@ -8,7 +8,7 @@
 #include "bench/cost/cost_rooms.h"
 #include "bench/scenes/render_scenes.h"
 #include "core/run/stopwatch.h"
-#include "mc/estimators/covariance_estimator.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/slab/slab_covariance.h"
 
 namespace flatspeckle::bench {

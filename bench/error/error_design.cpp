@@ -6,7 +6,7 @@
 
 #include "core/run/stopwatch.h"
 #include "grin/design/goals/even_points.h"
-#include "grin/design/scene/designer.h"
+#include "grin/design/problem/designer.h"
 
 namespace flatspeckle::bench {
 

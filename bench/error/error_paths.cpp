@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "bench/oracles/textbook.h"
-#include "mc/estimators/covariance_estimator.h"
-#include "mc/speckle/speckle_field.h"
+#include "mc/paths/estimators/covariance_estimator.h"
+#include "mc/paths/speckle/speckle_field.h"
 
 namespace flatspeckle::bench {
 

@@ -7,7 +7,7 @@
 #include "bench/error/error_measure.h"
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
-#include "mc/walk/plan.h"
+#include "mc/paths/walk/plan.h"
 
 namespace flatspeckle::bench {
 

@@ -8,7 +8,7 @@
 #include "bench/oracles/peierls_slab.h"
 #include "bench/scenes/meshes.h"
 #include "bench/scenes/render_scenes.h"
-#include "grin/render/map_datasets.h"
+#include "grin/render/pictures/map_datasets.h"
 
 namespace flatspeckle::bench {
 

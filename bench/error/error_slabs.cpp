@@ -8,8 +8,8 @@
 #include "bench/error/error_paths.h"
 #include "bench/oracles/discrete_ordinates.h"
 #include "core/run/stopwatch.h"
+#include "mc/slab/adding/space_scene.h"
 #include "mc/slab/slab_covariance.h"
-#include "mc/space/space_scene.h"
 
 namespace flatspeckle::bench {
 

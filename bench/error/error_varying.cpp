@@ -5,7 +5,7 @@
 
 #include "bench/error/error_paths.h"
 #include "bench/error/error_slabs.h"
-#include "mc/changes/brownian.h"
+#include "mc/paths/dynamics/brownian.h"
 #include "mc/slab/slab_covariance.h"
 
 namespace flatspeckle::bench {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "grin/geometry/vec3.h"
+#include "grin/media/geometry/vec3.h"
 
 namespace flatspeckle::oracles {
 

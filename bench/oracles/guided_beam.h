@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "grin/scene/render_values.h"
+#include "grin/render/values/render_values.h"
 
 namespace flatspeckle::oracles {
 

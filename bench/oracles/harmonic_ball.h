@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "grin/index/radial_field.h"
+#include "grin/media/index/radial_field.h"
 
 namespace flatspeckle::oracles {
 

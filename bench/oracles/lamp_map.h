@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "grin/estimators/render_scene.h"
+#include "grin/render/methods/render_scene.h"
 
 namespace flatspeckle::oracles {
 

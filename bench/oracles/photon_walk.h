@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "grin/geometry/vec3.h"
+#include "grin/media/geometry/vec3.h"
 
 namespace flatspeckle::oracles {
 

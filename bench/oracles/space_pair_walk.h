@@ -3,7 +3,7 @@
 #include <complex>
 #include <cstdint>
 
-#include "grin/geometry/vec3.h"
+#include "grin/media/geometry/vec3.h"
 
 namespace flatspeckle::oracles {
 

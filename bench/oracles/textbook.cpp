@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/numbers/random.h"
-#include "grin/media/phase_function.h"
+#include "grin/media/scattering/phase_function.h"
 
 namespace flatspeckle::oracles {
 

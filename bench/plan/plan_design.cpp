@@ -2,7 +2,7 @@
 
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
-#include "grin/design/scene/designer.h"
+#include "grin/design/problem/designer.h"
 
 namespace flatspeckle::bench {
 

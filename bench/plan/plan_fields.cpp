@@ -5,8 +5,8 @@
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
-#include "mc/estimators/covariance_estimator.h"
-#include "mc/speckle/speckle_field.h"
+#include "mc/paths/estimators/covariance_estimator.h"
+#include "mc/paths/speckle/speckle_field.h"
 
 namespace flatspeckle::bench {
 

@@ -5,10 +5,10 @@
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/synthetic_slab.h"
-#include "mc/estimators/covariance_estimator.h"
-#include "mc/estimators/gradient.h"
 #include "mc/fit/model/slab_model.h"
 #include "mc/fit/task/fit_data.h"
+#include "mc/paths/estimators/covariance_estimator.h"
+#include "mc/paths/estimators/gradient.h"
 
 namespace flatspeckle::bench {
 

@@ -9,10 +9,10 @@
 #include "bench/scenes/standard_scenes.h"
 #include "flatland/media/cell_density.h"
 #include "flatland/media/layers.h"
-#include "mc/changes/brownian.h"
-#include "mc/changes/frequency_shifts.h"
-#include "mc/estimators/covariance_estimator.h"
-#include "mc/estimators/gradient.h"
+#include "mc/paths/dynamics/brownian.h"
+#include "mc/paths/dynamics/frequency_shifts.h"
+#include "mc/paths/estimators/covariance_estimator.h"
+#include "mc/paths/estimators/gradient.h"
 
 namespace flatspeckle::bench {
 

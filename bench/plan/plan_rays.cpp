@@ -4,8 +4,8 @@
 
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
-#include "grin/rays/trace.h"
-#include "grin/space/space.h"
+#include "grin/rays/marching/trace.h"
+#include "grin/render/flights/space.h"
 
 namespace flatspeckle::bench {
 

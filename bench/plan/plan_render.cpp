@@ -7,10 +7,10 @@
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/meshes.h"
 #include "bench/scenes/render_scenes.h"
-#include "grin/estimators/analog_light.h"
-#include "grin/estimators/path_kernels.h"
-#include "grin/estimators/tracer.h"
-#include "grin/render/map_datasets.h"
+#include "grin/render/methods/analog_light.h"
+#include "grin/render/methods/path_kernels.h"
+#include "grin/render/methods/tracer.h"
+#include "grin/render/pictures/map_datasets.h"
 
 namespace flatspeckle::bench {
 

@@ -3,8 +3,8 @@
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
+#include "mc/slab/adding/space_scene.h"
 #include "mc/slab/slab_covariance.h"
-#include "mc/space/space_scene.h"
 
 namespace flatspeckle::bench {
 

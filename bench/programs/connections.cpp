@@ -12,13 +12,13 @@
 #include <string>
 
 #include "core/run/stopwatch.h"
-#include "grin/connections/connection_solver.h"
-#include "grin/fields/fisheye.h"
-#include "grin/fields/gaussian_blobs.h"
-#include "grin/fields/luneburg.h"
-#include "grin/fields/parabolic.h"
-#include "grin/fields/spline_field.h"
-#include "grin/fields/ultrasound.h"
+#include "grin/media/fields/fisheye.h"
+#include "grin/media/fields/gaussian_blobs.h"
+#include "grin/media/fields/luneburg.h"
+#include "grin/media/fields/parabolic.h"
+#include "grin/media/fields/spline_field.h"
+#include "grin/media/fields/ultrasound.h"
+#include "grin/rays/connections/connection_solver.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;

@@ -9,7 +9,7 @@
 
 #include "bench/oracles/slab_photons.h"
 #include "core/run/stopwatch.h"
-#include "grin/render/render_job.h"
+#include "grin/render/pictures/render_job.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;

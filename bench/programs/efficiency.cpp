@@ -19,7 +19,7 @@
 #include "bench/oracles/textbook.h"
 #include "bench/scenes/standard_scenes.h"
 #include "core/run/stopwatch.h"
-#include "mc/estimators/covariance_estimator.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::bench;

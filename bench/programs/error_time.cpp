@@ -12,7 +12,7 @@
 
 #include "core/run/stopwatch.h"
 #include "flatland/scene/scene.h"
-#include "mc/estimators/covariance_estimator.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 #include "wave_solver/solutions/ensemble.h"
 
 using namespace flatspeckle;

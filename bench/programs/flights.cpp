@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/run/stopwatch.h"
-#include "grin/space/space.h"
+#include "grin/render/flights/space.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;

@@ -9,7 +9,7 @@
 #include "core/numbers/hankel_array.h"
 #include "core/numbers/phasor.h"
 #include "flatland/scene/scene.h"
-#include "mc/estimators/covariance_estimator.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 using namespace flatspeckle;

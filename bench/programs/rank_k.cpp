@@ -22,7 +22,7 @@
 #include "bench/measure/median.h"
 #include "core/run/stopwatch.h"
 #include "flatland/scene/scene.h"
-#include "mc/estimators/covariance_estimator.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::bench;

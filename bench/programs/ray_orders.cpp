@@ -8,13 +8,13 @@
 #include <numbers>
 #include <vector>
 
-#include "grin/fields/fisheye.h"
-#include "grin/fields/luneburg.h"
-#include "grin/fields/parabolic.h"
-#include "grin/fields/sech.h"
-#include "grin/fields/tanh_ramp.h"
-#include "grin/rays/ray_invariants.h"
-#include "grin/rays/trace.h"
+#include "grin/media/fields/fisheye.h"
+#include "grin/media/fields/luneburg.h"
+#include "grin/media/fields/parabolic.h"
+#include "grin/media/fields/sech.h"
+#include "grin/media/fields/tanh_ramp.h"
+#include "grin/rays/marching/ray_invariants.h"
+#include "grin/rays/marching/trace.h"
 
 using namespace flatspeckle::grin;
 

@@ -15,9 +15,9 @@
 #include "bench/measure/median.h"
 #include "core/numbers/random.h"
 #include "core/run/stopwatch.h"
-#include "grin/rays/ray_lanes.h"
-#include "grin/scene/ray_tracing.h"
-#include "grin/space/space.h"
+#include "grin/rays/marching/ray_lanes.h"
+#include "grin/render/flights/space.h"
+#include "grin/trace/ray_tracing.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;

@@ -13,7 +13,7 @@
 
 #include "bench/scenes/render_scenes.h"
 #include "core/run/stopwatch.h"
-#include "grin/estimators/photon_map.h"
+#include "grin/render/methods/photon_map.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::grin;

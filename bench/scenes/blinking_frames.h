@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mc/imaging/camera_frame.h"
-#include "mc/unmixing/unmixing.h"
+#include "mc/imaging/unmixing/unmixing.h"
 
 namespace flatspeckle::bench {
 

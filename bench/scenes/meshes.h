@@ -4,7 +4,7 @@
 #include <map>
 #include <numbers>
 
-#include "grin/surfaces/mesh_surface.h"
+#include "grin/rays/surfaces/mesh_surface.h"
 
 namespace flatspeckle::bench {
 

@@ -5,8 +5,8 @@
 
 #include "bench/scenes/synthetic_slab.h"
 #include "core/run/runner.h"
-#include "mc/changes/moving_slopes.h"
-#include "mc/estimators/gradient.h"
+#include "mc/paths/dynamics/moving_slopes.h"
+#include "mc/paths/estimators/gradient.h"
 
 namespace flatspeckle::bench {
 

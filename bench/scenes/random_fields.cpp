@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "grin/media/start_directions.h"
+#include "grin/media/scattering/start_directions.h"
 
 namespace flatspeckle::bench {
 

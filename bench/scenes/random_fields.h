@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/numbers/random.h"
-#include "grin/fields/gaussian_blobs.h"
-#include "grin/fields/spline_field.h"
+#include "grin/media/fields/gaussian_blobs.h"
+#include "grin/media/fields/spline_field.h"
 
 namespace flatspeckle::bench {
 

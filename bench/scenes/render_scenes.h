@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "grin/render/render_job.h"
+#include "grin/render/pictures/render_job.h"
 
 namespace flatspeckle::bench {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flatland/scene/scene.h"
-#include "mc/estimators/covariance_estimator.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 
 namespace flatspeckle::bench {
 

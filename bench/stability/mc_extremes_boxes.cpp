@@ -6,8 +6,8 @@
 
 #include "bench/stability/extreme_rows.h"
 #include "bench/stability/mc_extremes.h"
-#include "mc/ends/coherent_field.h"
-#include "mc/ends/scattering.h"
+#include "mc/paths/endpoint_factors/coherent_field.h"
+#include "mc/paths/endpoint_factors/scattering.h"
 
 namespace flatspeckle::bench {
 

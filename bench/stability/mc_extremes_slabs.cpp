@@ -15,7 +15,7 @@
 #include "bench/stability/extreme_rows.h"
 #include "bench/stability/mc_extremes.h"
 #include "flatland/media/layers.h"
-#include "mc/estimators/flux.h"
+#include "mc/paths/estimators/flux.h"
 #include "mc/theory/memory_effect.h"
 
 namespace flatspeckle::bench {

@@ -7,12 +7,12 @@
 #include "bench/oracles/multiprecision.h"
 #include "bench/stability/extreme_rows.h"
 #include "flatland/media/medium.h"
-#include "grin/media/diffusion_rate.h"
-#include "mc/ends/end_factors.h"
-#include "mc/estimators/single_scattering.h"
-#include "mc/speckle/speckle_field.h"
+#include "grin/media/scattering/diffusion_rate.h"
+#include "mc/paths/endpoint_factors/end_factors.h"
+#include "mc/paths/estimators/single_scattering.h"
+#include "mc/paths/speckle/speckle_field.h"
+#include "mc/paths/walk/importance.h"
 #include "mc/theory/diffusion.h"
-#include "mc/walk/importance.h"
 
 namespace flatspeckle::bench {
 

@@ -5,11 +5,11 @@
 #include "bench/stability/extreme_rows.h"
 #include "bench/stability/mc_extremes.h"
 #include "bench/stability/mc_extremes_fit.h"
-#include "grin/media/phase_function.h"
+#include "grin/media/scattering/phase_function.h"
 #include "mc/jobs/flux_job.h"
+#include "mc/slab/adding/space_scene.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_flux.h"
-#include "mc/space/space_scene.h"
 
 namespace flatspeckle::bench {
 

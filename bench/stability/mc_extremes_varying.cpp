@@ -7,9 +7,9 @@
 #include "bench/stability/mc_extremes.h"
 #include "flatland/media/cell_density.h"
 #include "flatland/media/layers.h"
-#include "mc/changes/brownian.h"
-#include "mc/graded/graded_ends.h"
-#include "mc/graded/linear_medium.h"
+#include "mc/paths/bent/graded_ends.h"
+#include "mc/paths/bent/linear_medium.h"
+#include "mc/paths/dynamics/brownian.h"
 #include "mc/slab/slab_covariance.h"
 
 namespace flatspeckle::bench {

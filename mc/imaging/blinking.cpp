@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "mc/imaging/camera_frame.h"
-#include "mc/recovery/frame_statistics.h"
+#include "mc/imaging/recovery/frame_statistics.h"
 
 namespace flatspeckle::mc {
 

@@ -7,8 +7,8 @@
 #include "core/numbers/complex.h"
 #include "mc/imaging/excitation.h"
 #include "mc/imaging/line_camera.h"
-#include "mc/recovery/image_score.h"
-#include "mc/unmixing/unmixing.h"
+#include "mc/imaging/recovery/image_score.h"
+#include "mc/imaging/unmixing/unmixing.h"
 
 namespace flatspeckle::mc {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/result/result_group.h"
-#include "mc/recovery/recovery_datasets.h"
-#include "mc/unmixing/unmixing_datasets.h"
+#include "mc/imaging/recovery/recovery_datasets.h"
+#include "mc/imaging/unmixing/unmixing_datasets.h"
 
 namespace flatspeckle::mc {
 

@@ -5,7 +5,7 @@
 
 #include "core/numbers/complex.h"
 #include "core/numbers/random.h"
-#include "mc/recovery/camera_noise.h"
+#include "mc/imaging/recovery/camera_noise.h"
 
 namespace flatspeckle::mc {
 

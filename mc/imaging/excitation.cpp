@@ -6,8 +6,8 @@
 
 #include "core/run/interrupt.h"
 #include "flatland/request/triangle.h"
-#include "mc/estimators/covariance_estimator.h"
-#include "mc/speckle/speckle_field.h"
+#include "mc/paths/estimators/covariance_estimator.h"
+#include "mc/paths/speckle/speckle_field.h"
 
 namespace flatspeckle::mc {
 

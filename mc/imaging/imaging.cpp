@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/run/interrupt.h"
-#include "mc/estimators/covariance_estimator.h"
 #include "mc/imaging/camera_frame.h"
-#include "mc/speckle/field_plan.h"
+#include "mc/paths/estimators/covariance_estimator.h"
+#include "mc/paths/speckle/field_plan.h"
 
 namespace flatspeckle::mc {
 

@@ -8,10 +8,10 @@
 #include "mc/imaging/blinking.h"
 #include "mc/imaging/line_camera.h"
 #include "mc/imaging/pair_signals.h"
-#include "mc/recovery/deconvolution.h"
-#include "mc/recovery/image_score.h"
-#include "mc/recovery/recovery.h"
-#include "mc/speckle/speckle_field.h"
+#include "mc/imaging/recovery/deconvolution.h"
+#include "mc/imaging/recovery/image_score.h"
+#include "mc/imaging/recovery/recovery.h"
+#include "mc/paths/speckle/speckle_field.h"
 
 namespace flatspeckle::mc {
 

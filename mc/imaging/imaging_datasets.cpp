@@ -7,7 +7,7 @@
 #include "mc/imaging/blinking_datasets.h"
 #include "mc/imaging/media_statistics.h"
 #include "mc/imaging/picture_datasets.h"
-#include "mc/recovery/recovery_datasets.h"
+#include "mc/imaging/recovery/recovery_datasets.h"
 
 namespace flatspeckle::mc {
 

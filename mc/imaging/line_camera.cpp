@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "mc/speckle/speckle_field.h"
+#include "mc/paths/speckle/speckle_field.h"
 
 namespace flatspeckle::mc {
 

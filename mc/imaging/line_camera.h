@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "flatland/scene/scene.h"
-#include "mc/recovery/line_object.h"
+#include "mc/imaging/recovery/line_object.h"
 
 namespace flatspeckle::mc {
 

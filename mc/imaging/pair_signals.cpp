@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "mc/recovery/speckle_band.h"
+#include "mc/imaging/recovery/speckle_band.h"
 
 namespace flatspeckle::mc {
 

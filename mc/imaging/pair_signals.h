@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "mc/recovery/camera_noise.h"
-#include "mc/recovery/line_object.h"
+#include "mc/imaging/recovery/camera_noise.h"
+#include "mc/imaging/recovery/line_object.h"
 
 namespace flatspeckle::mc {
 

@@ -5,7 +5,7 @@
 #include "core/result/result_group.h"
 #include "mc/imaging/media_statistics.h"
 #include "mc/imaging/picture_prediction.h"
-#include "mc/recovery/recovery_datasets.h"
+#include "mc/imaging/recovery/recovery_datasets.h"
 
 namespace flatspeckle::mc {
 

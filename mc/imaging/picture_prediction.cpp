@@ -6,9 +6,9 @@
 #include <numeric>
 #include <vector>
 
-#include "mc/recovery/deconvolution.h"
-#include "mc/recovery/line_spectrum.h"
-#include "mc/recovery/speckle_band.h"
+#include "mc/imaging/recovery/deconvolution.h"
+#include "mc/imaging/recovery/line_spectrum.h"
+#include "mc/imaging/recovery/speckle_band.h"
 
 namespace flatspeckle::mc {
 

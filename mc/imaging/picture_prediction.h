@@ -4,7 +4,7 @@
 #include <span>
 
 #include "mc/imaging/line_camera.h"
-#include "mc/recovery/camera_noise.h"
+#include "mc/imaging/recovery/camera_noise.h"
 
 namespace flatspeckle::mc {
 

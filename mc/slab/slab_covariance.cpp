@@ -10,11 +10,11 @@
 #include "core/numbers/blas.h"
 #include "core/run/interrupt.h"
 #include "core/run/parallel.h"
+#include "mc/slab/adding/chains.h"
+#include "mc/slab/adding/direction_modes.h"
+#include "mc/slab/adding/plane.h"
+#include "mc/slab/adding/space.h"
 #include "mc/slab/finite_ends.h"
-#include "mc/space/space.h"
-#include "mc/transport/chains.h"
-#include "mc/transport/direction_modes.h"
-#include "mc/transport/plane.h"
 
 namespace flatspeckle::mc {
 

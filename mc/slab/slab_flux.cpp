@@ -10,10 +10,10 @@
 #include "core/run/interrupt.h"
 #include "core/run/parallel.h"
 #include "mc/jobs/flux_job.h"
+#include "mc/slab/adding/direction_modes.h"
+#include "mc/slab/adding/plane.h"
+#include "mc/slab/adding/space.h"
 #include "mc/slab/slab_scene.h"
-#include "mc/space/space.h"
-#include "mc/transport/direction_modes.h"
-#include "mc/transport/plane.h"
 
 namespace flatspeckle::mc {
 

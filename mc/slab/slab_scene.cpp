@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "flatland/media/layers.h"
-#include "mc/space/space.h"
-#include "mc/transport/plane.h"
+#include "mc/slab/adding/plane.h"
+#include "mc/slab/adding/space.h"
 
 namespace flatspeckle::mc {
 

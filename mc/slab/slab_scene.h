@@ -1,7 +1,7 @@
 #pragma once
 
 #include "flatland/scene/scene.h"
-#include "mc/transport/slab.h"
+#include "mc/slab/adding/slab.h"
 
 namespace flatspeckle::mc {
 

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "core/result/hdf5_handle.h"
-#include "grin/media/density_grid.h"
-#include "grin/render/render_job.h"
-#include "grin/scene/ray_tracing.h"
-#include "grin/space/space.h"
+#include "grin/media/scattering/density_grid.h"
+#include "grin/render/flights/space.h"
+#include "grin/render/pictures/render_job.h"
+#include "grin/trace/ray_tracing.h"
 #include "tests/fuzz/input.h"
 
 // Grids of the index and of the density, of any numbers, and a few rays or flights through those

@@ -12,9 +12,9 @@
 #include "core/result/result_file.h"
 #include "core/session/run_settings.h"
 #include "flatland/scene/scene.h"
-#include "grin/render/render_datasets.h"
-#include "grin/scene/render_values.h"
-#include "grin/scene/trace_scene.h"
+#include "grin/render/pictures/render_datasets.h"
+#include "grin/render/values/render_values.h"
+#include "grin/trace/trace_scene.h"
 #include "tests/fuzz/input.h"
 
 // Scene files. The first line says whose, and may go on with flags of the command line:

@@ -4,8 +4,8 @@
 #include "core/keys/csv.h"
 #include "flatland/placement/placement.h"
 #include "flatland/request/sensor.h"
-#include "grin/fields/scene_field.h"
-#include "grin/rays/ray_starts.h"
+#include "grin/media/fields/scene_field.h"
+#include "grin/rays/marching/ray_starts.h"
 #include "tests/fuzz/input.h"
 
 // Tables. The first line, a comment, says what they hold: "# disks".

@@ -7,8 +7,8 @@
 #include "core/result/run_state_file.h"
 #include "core/run/run_merger.h"
 #include "flatland/media/structure_table.h"
-#include "grin/fields/spline_field.h"
-#include "grin/media/density_grid.h"
+#include "grin/media/fields/spline_field.h"
+#include "grin/media/scattering/density_grid.h"
 #include "tests/fuzz/input.h"
 
 namespace flatspeckle::fuzz {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "grin/render/render_datasets.h"
+#include "grin/render/pictures/render_datasets.h"
 #include "tests/grin/render_tests.h"
 
 namespace flatspeckle::grin::tests {

@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "bench/oracles/harmonic_ball.h"
-#include "grin/connections/connection_solver.h"
+#include "grin/rays/connections/connection_solver.h"
 
 namespace flatspeckle::grin::tests {
 

@@ -8,7 +8,7 @@
 
 #include "bench/oracles/harmonic_ball.h"
 #include "core/run/parallel.h"
-#include "grin/connections/connection_solver.h"
+#include "grin/rays/connections/connection_solver.h"
 #include "tests/statistics.h"
 
 // Sums over the curves between two points of a harmonic ball: the exact ones against K-weighted

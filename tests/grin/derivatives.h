@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/index/index_field.h"
+#include "grin/media/index/index_field.h"
 
 namespace flatspeckle::grin::tests {
 

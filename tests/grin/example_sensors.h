@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "grin/sensors/sensor.h"
+#include "grin/render/sensors/sensor.h"
 #include "tests/grin/path_ends.h"
 
 namespace flatspeckle::grin {

@@ -7,9 +7,9 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/connections/geometric_spreading.h"
-#include "grin/ends/path_end.h"
-#include "grin/media/start_directions.h"
+#include "grin/media/scattering/start_directions.h"
+#include "grin/rays/connections/geometric_spreading.h"
+#include "grin/render/endpoints/path_end.h"
 #include "tests/statistics.h"
 
 namespace flatspeckle::grin {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/oracles/photon_walk.h"
-#include "grin/render/render_job.h"
+#include "grin/render/pictures/render_job.h"
 
 namespace flatspeckle::grin::tests {
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/numbers/random.h"
-#include "grin/fields/luneburg.h"
-#include "grin/fields/spline_field.h"
-#include "grin/rays/ray_step.h"
+#include "grin/media/fields/luneburg.h"
+#include "grin/media/fields/spline_field.h"
+#include "grin/rays/marching/ray_step.h"
 
 namespace flatspeckle::grin::tests {
 

@@ -7,7 +7,7 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/render/render_job.h"
+#include "grin/render/pictures/render_job.h"
 #include "tests/statistics.h"
 
 namespace flatspeckle::grin::tests {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/numbers/random.h"
-#include "grin/space/space.h"
+#include "grin/render/flights/space.h"
 
 namespace flatspeckle::grin::tests {
 

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/render/render_datasets.h"
+#include "grin/render/pictures/render_datasets.h"
 #include "tests/grin/photon_comparison.h"
 #include "tests/grin/render_tests.h"
 #include "tests/grin/seen_from_outside.h"

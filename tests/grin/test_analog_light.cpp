@@ -4,9 +4,9 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/estimators/analog_light.h"
-#include "grin/estimators/tracer.h"
-#include "grin/render/render_datasets.h"
+#include "grin/render/methods/analog_light.h"
+#include "grin/render/methods/tracer.h"
+#include "grin/render/pictures/render_datasets.h"
 #include "tests/grin/render_tests.h"
 
 // Light paths without joins, side by side, and powers on disks within each other.

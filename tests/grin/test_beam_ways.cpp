@@ -8,8 +8,8 @@
 
 #include "bench/scenes/furnaces.h"
 #include "bench/scenes/random_fields.h"
-#include "grin/connections/geometric_spreading.h"
-#include "grin/geometry/frame.h"
+#include "grin/media/geometry/frame.h"
+#include "grin/rays/connections/geometric_spreading.h"
 #include "tests/grin/render_tests.h"
 #include "tests/grin/space_stages.h"
 

@@ -7,11 +7,11 @@
 
 #include "bench/scenes/random_fields.h"
 #include "core/error.h"
-#include "grin/connections/connection_solver.h"
-#include "grin/fields/fisheye.h"
-#include "grin/fields/gaussian_blobs.h"
-#include "grin/fields/luneburg.h"
-#include "grin/fields/parabolic.h"
+#include "grin/media/fields/fisheye.h"
+#include "grin/media/fields/gaussian_blobs.h"
+#include "grin/media/fields/luneburg.h"
+#include "grin/media/fields/parabolic.h"
+#include "grin/rays/connections/connection_solver.h"
 #include "tests/grin/connection_lists.h"
 
 namespace flatspeckle::grin::test_connection {

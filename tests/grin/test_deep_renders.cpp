@@ -5,7 +5,7 @@
 
 #include "bench/oracles/peierls_slab.h"
 #include "bench/oracles/slab_photons.h"
-#include "grin/estimators/tracer.h"
+#include "grin/render/methods/tracer.h"
 #include "tests/grin/slab_renders.h"
 
 // Light deep behind media: importance in depth changes the variance alone.

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/media/even_turns.h"
+#include "grin/media/scattering/even_turns.h"
 #include "tests/statistics.h"
 
 namespace flatspeckle::grin::test_even_turns {

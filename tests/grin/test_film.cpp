@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "core/numbers/random.h"
-#include "grin/paths/transport_counts.h"
+#include "grin/render/transport/transport_counts.h"
 
 namespace flatspeckle::grin::test_film {
 

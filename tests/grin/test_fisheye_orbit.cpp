@@ -4,11 +4,11 @@
 #include <doctest/doctest.h>
 
 #include "bench/scenes/random_fields.h"
-#include "grin/connections/connection_trial.h"
-#include "grin/connections/geometric_spreading.h"
-#include "grin/curved/fisheye_orbit.h"
-#include "grin/curved/ray_field.h"
-#include "grin/rays/ray_step.h"
+#include "grin/rays/connections/connection_trial.h"
+#include "grin/rays/connections/geometric_spreading.h"
+#include "grin/rays/marching/ray_step.h"
+#include "grin/render/curved/fisheye_orbit.h"
+#include "grin/render/curved/ray_field.h"
 
 namespace flatspeckle::grin::test_fisheye_orbit {
 

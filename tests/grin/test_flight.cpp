@@ -8,7 +8,7 @@
 #include "bench/scenes/meshes.h"
 #include "bench/scenes/random_fields.h"
 #include "core/error.h"
-#include "grin/rays/trace.h"
+#include "grin/rays/marching/trace.h"
 #include "tests/grin/ray_tests.h"
 #include "tests/grin/space_stages.h"
 #include "tests/statistics.h"

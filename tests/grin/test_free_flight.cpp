@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "core/numbers/random.h"
-#include "grin/media/free_flight.h"
+#include "grin/media/scattering/free_flight.h"
 #include "tests/statistics.h"
 
 namespace flatspeckle::grin::test_free_flight {

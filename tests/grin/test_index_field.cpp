@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "core/numbers/bessel.h"
-#include "grin/fields/any_index_field.h"
+#include "grin/media/fields/any_index_field.h"
 #include "tests/grin/derivatives.h"
 
 namespace flatspeckle::grin::test_index_field {

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/surfaces/interface.h"
+#include "grin/rays/surfaces/interface.h"
 
 namespace flatspeckle::grin::test_interface {
 

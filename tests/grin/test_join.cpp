@@ -5,7 +5,7 @@
 
 #include "bench/oracles/harmonic_ball.h"
 #include "bench/scenes/random_fields.h"
-#include "grin/connections/connection_solver.h"
+#include "grin/rays/connections/connection_solver.h"
 #include "tests/grin/space_stages.h"
 
 namespace flatspeckle::grin::test_join {

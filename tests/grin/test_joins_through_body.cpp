@@ -9,9 +9,9 @@
 
 #include "bench/scenes/meshes.h"
 #include "bench/scenes/random_fields.h"
-#include "grin/connections/geometric_spreading.h"
-#include "grin/ends/path_end.h"
-#include "grin/surfaces/straight_way.h"
+#include "grin/rays/connections/geometric_spreading.h"
+#include "grin/rays/surfaces/straight_way.h"
+#include "grin/render/endpoints/path_end.h"
 #include "tests/grin/furnace.h"
 #include "tests/grin/space_stages.h"
 #include "tests/statistics.h"

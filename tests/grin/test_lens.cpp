@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "grin/geometry/lens.h"
-#include "grin/surfaces/straight_way.h"
+#include "grin/rays/surfaces/lens.h"
+#include "grin/rays/surfaces/straight_way.h"
 
 namespace flatspeckle::grin::test_lens {
 

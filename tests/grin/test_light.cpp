@@ -1,8 +1,8 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "grin/connections/geometric_spreading.h"
-#include "grin/lights/light.h"
+#include "grin/rays/connections/geometric_spreading.h"
+#include "grin/render/lights/light.h"
 #include "tests/grin/path_ends.h"
 
 namespace flatspeckle::grin::test_light {

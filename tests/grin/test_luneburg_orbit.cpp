@@ -4,9 +4,9 @@
 #include <doctest/doctest.h>
 
 #include "bench/scenes/random_fields.h"
-#include "grin/connections/connection_trial.h"
-#include "grin/curved/luneburg_orbit.h"
-#include "grin/curved/ray_field.h"
+#include "grin/rays/connections/connection_trial.h"
+#include "grin/render/curved/luneburg_orbit.h"
+#include "grin/render/curved/ray_field.h"
 #include "tests/grin/ray_tests.h"
 
 namespace flatspeckle::grin::test_luneburg_orbit {

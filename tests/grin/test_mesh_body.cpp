@@ -10,7 +10,7 @@
 #include "bench/scenes/meshes.h"
 #include "bench/scenes/random_fields.h"
 #include "bench/scenes/render_scenes.h"
-#include "grin/space/space.h"
+#include "grin/render/flights/space.h"
 #include "tests/grin/furnace.h"
 #include "tests/grin/space_stages.h"
 

@@ -7,11 +7,11 @@
 #include "bench/scenes/meshes.h"
 #include "core/error.h"
 #include "core/numbers/random.h"
-#include "grin/rays/trace.h"
-#include "grin/surfaces/bernstein.h"
-#include "grin/surfaces/curvature.h"
-#include "grin/surfaces/mesh_distance.h"
-#include "grin/surfaces/straight_way.h"
+#include "grin/rays/marching/trace.h"
+#include "grin/rays/surfaces/bernstein.h"
+#include "grin/rays/surfaces/curvature.h"
+#include "grin/rays/surfaces/mesh_distance.h"
+#include "grin/rays/surfaces/straight_way.h"
 
 namespace flatspeckle::grin::tests::test_mesh_surface {
 

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "bench/scenes/render_scenes.h"
-#include "grin/estimators/method_choice.h"
+#include "grin/render/methods/method_choice.h"
 #include "tests/grin/furnace.h"
 #include "tests/grin/render_tests.h"
 

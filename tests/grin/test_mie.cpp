@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "core/numbers/random.h"
-#include "grin/media/mie_phase.h"
+#include "grin/media/scattering/mie_phase.h"
 #include "tests/statistics.h"
 
 namespace flatspeckle::grin::test_mie {

@@ -5,7 +5,7 @@
 
 #include "bench/oracles/guided_beam.h"
 #include "bench/oracles/quadrature.h"
-#include "grin/sensors/sensor_edges.h"
+#include "grin/render/sensors/sensor_edges.h"
 #include "tests/grin/analog_powers.h"
 
 // Derivatives of powers by numbers of the index field: against closed forms, and against

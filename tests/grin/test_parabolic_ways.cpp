@@ -4,8 +4,8 @@
 #include <doctest/doctest.h>
 
 #include "bench/scenes/random_fields.h"
-#include "grin/connections/connection_solver.h"
-#include "grin/curved/parabolic_rays.h"
+#include "grin/rays/connections/connection_solver.h"
+#include "grin/render/curved/parabolic_rays.h"
 
 namespace flatspeckle::grin::test_parabolic_ways {
 

@@ -6,9 +6,9 @@
 
 #include "bench/scenes/random_fields.h"
 #include "core/numbers/random.h"
-#include "grin/paths/beam_join.h"
-#include "grin/paths/path_join.h"
-#include "grin/space/space.h"
+#include "grin/render/flights/space.h"
+#include "grin/render/transport/beam_join.h"
+#include "grin/render/transport/path_join.h"
 
 namespace flatspeckle::grin::tests::test_path_weights {
 

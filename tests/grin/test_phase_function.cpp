@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/numbers/random.h"
-#include "grin/media/phase_function.h"
+#include "grin/media/scattering/phase_function.h"
 #include "tests/statistics.h"
 
 namespace flatspeckle::grin::test_phase_function {

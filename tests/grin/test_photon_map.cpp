@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "bench/scenes/meshes.h"
-#include "grin/estimators/photon_map.h"
+#include "grin/render/methods/photon_map.h"
 #include "tests/grin/render_tests.h"
 
 namespace flatspeckle::grin::tests::test_photon_map {

@@ -4,8 +4,8 @@
 #include <Eigen/Geometry>
 #include <doctest/doctest.h>
 
-#include "grin/lights/light.h"
-#include "grin/space/space.h"
+#include "grin/render/flights/space.h"
+#include "grin/render/lights/light.h"
 #include "tests/grin/example_sensors.h"
 
 namespace flatspeckle::grin::test_pictures {

@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "bench/oracles/peierls_slab.h"
-#include "grin/paths/path_score.h"
+#include "grin/render/transport/path_score.h"
 #include "tests/grin/analog_powers.h"
 
 // Derivatives of powers by mu_s, mu_a and g: against closed forms, and against differences of

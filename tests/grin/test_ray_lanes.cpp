@@ -7,9 +7,9 @@
 
 #include "core/numbers/random.h"
 #include "core/numbers/wide/functions.h"
-#include "grin/fields/any_index_field.h"
-#include "grin/rays/ray_lanes.h"
-#include "grin/scene/trace_scene.h"
+#include "grin/media/fields/any_index_field.h"
+#include "grin/rays/marching/ray_lanes.h"
+#include "grin/trace/trace_scene.h"
 
 // Rays side by side in lanes, against the same rays one by one.
 

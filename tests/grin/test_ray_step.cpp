@@ -2,12 +2,12 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/fields/fisheye.h"
-#include "grin/fields/parabolic.h"
-#include "grin/fields/sech.h"
-#include "grin/fields/tanh_ramp.h"
-#include "grin/fields/ultrasound.h"
-#include "grin/rays/ray_invariants.h"
+#include "grin/media/fields/fisheye.h"
+#include "grin/media/fields/parabolic.h"
+#include "grin/media/fields/sech.h"
+#include "grin/media/fields/tanh_ramp.h"
+#include "grin/media/fields/ultrasound.h"
+#include "grin/rays/marching/ray_invariants.h"
 #include "tests/grin/derivatives.h"
 #include "tests/grin/ray_tests.h"
 #include "tests/statistics.h"

@@ -5,8 +5,8 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/scene/render_values.h"
-#include "grin/scene/trace_scene.h"
+#include "grin/render/values/render_values.h"
+#include "grin/trace/trace_scene.h"
 
 // Scenes made of plain structs, without a command line: what they come to, and what is refused by
 // the names of keys.

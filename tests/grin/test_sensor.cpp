@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "grin/connections/geometric_spreading.h"
+#include "grin/rays/connections/geometric_spreading.h"
 #include "tests/grin/example_sensors.h"
 
 namespace flatspeckle::grin::test_sensor {

@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/render/render_datasets.h"
+#include "grin/render/pictures/render_datasets.h"
 #include "tests/grin/slab_renders.h"
 
 // Reflectance and transmittance of a slab in one run, and media that are described in two ways.

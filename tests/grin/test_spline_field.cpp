@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/result/result_file.h"
-#include "grin/fields/spline_field.h"
+#include "grin/media/fields/spline_field.h"
 #include "tests/grin/derivatives.h"
 
 namespace flatspeckle::grin::test_spline_field {

@@ -6,12 +6,12 @@
 #include "bench/oracles/harmonic_ball.h"
 #include "bench/scenes/random_fields.h"
 #include "core/numbers/random.h"
-#include "grin/connections/geometric_spreading.h"
-#include "grin/fields/fisheye.h"
-#include "grin/fields/luneburg.h"
-#include "grin/fields/parabolic.h"
-#include "grin/media/start_directions.h"
-#include "grin/rays/ray_step.h"
+#include "grin/media/fields/fisheye.h"
+#include "grin/media/fields/luneburg.h"
+#include "grin/media/fields/parabolic.h"
+#include "grin/media/scattering/start_directions.h"
+#include "grin/rays/connections/geometric_spreading.h"
+#include "grin/rays/marching/ray_step.h"
 
 namespace flatspeckle::grin::test_spreading {
 

@@ -2,9 +2,9 @@
 
 #include <doctest/doctest.h>
 
-#include "grin/curved/ray_field.h"
-#include "grin/media/start_directions.h"
-#include "grin/scene/step_choice.h"
+#include "grin/media/scattering/start_directions.h"
+#include "grin/render/curved/ray_field.h"
+#include "grin/render/values/step_choice.h"
 
 namespace flatspeckle::grin::test_step_choice {
 

@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "flatland/scene/scene.h"
-#include "mc/estimators/covariance_estimator.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 
 namespace flatspeckle::mc::tests {
 

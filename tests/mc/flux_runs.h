@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bench/oracles/discrete_ordinates.h"
-#include "mc/estimators/flux.h"
+#include "mc/paths/estimators/flux.h"
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "mc/changes/brownian.h"
+#include "mc/paths/dynamics/brownian.h"
 #include "mc/theory/diffusion.h"
 #include "tests/mc/estimates.h"
 

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/ends/coherent_field.h"
+#include "mc/paths/endpoint_factors/coherent_field.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc::test_coherent_field {

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "mc/estimators/gradient.h"
+#include "mc/paths/estimators/gradient.h"
 #include "mc/slab/slab_jobs.h"
 #include "tests/mc/estimates.h"
 

@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/ends/end_factors.h"
+#include "mc/paths/endpoint_factors/end_factors.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc::test_end_factors {

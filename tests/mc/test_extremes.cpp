@@ -4,7 +4,7 @@
 
 #include "bench/oracles/quadrature.h"
 #include "bench/oracles/slab_theory.h"
-#include "mc/ends/coherent_field.h"
+#include "mc/paths/endpoint_factors/coherent_field.h"
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 

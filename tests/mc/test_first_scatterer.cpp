@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/walk/first_scatterer.h"
+#include "mc/paths/walk/first_scatterer.h"
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 

@@ -7,9 +7,9 @@
 
 #include "bench/oracles/quadrature.h"
 #include "core/numbers/random.h"
-#include "grin/media/phase_function.h"
-#include "mc/estimators/covariance_estimator.h"
-#include "mc/estimators/flux.h"
+#include "grin/media/scattering/phase_function.h"
+#include "mc/paths/estimators/covariance_estimator.h"
+#include "mc/paths/estimators/flux.h"
 #include "tests/mc/flux_runs.h"
 
 namespace flatspeckle::mc::test_flux {

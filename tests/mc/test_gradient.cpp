@@ -6,8 +6,8 @@
 #include "bench/oracles/quadrature.h"
 #include "bench/oracles/slab_theory.h"
 #include "core/error.h"
-#include "mc/ends/end_factors.h"
-#include "mc/estimators/gradient.h"
+#include "mc/paths/endpoint_factors/end_factors.h"
+#include "mc/paths/estimators/gradient.h"
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 

@@ -5,9 +5,9 @@
 #include "bench/oracles/slab_theory.h"
 #include "bench/oracles/textbook.h"
 #include "core/error.h"
-#include "grin/media/diffusion_rate.h"
+#include "grin/media/scattering/diffusion_rate.h"
+#include "mc/paths/walk/importance.h"
 #include "mc/theory/diffusion.h"
-#include "mc/walk/importance.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc::test_importance {

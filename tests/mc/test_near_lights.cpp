@@ -4,9 +4,9 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "mc/ends/end_factors.h"
-#include "mc/ends/gaussian_beam.h"
-#include "mc/walk/first_scatterer.h"
+#include "mc/paths/endpoint_factors/end_factors.h"
+#include "mc/paths/endpoint_factors/gaussian_beam.h"
+#include "mc/paths/walk/first_scatterer.h"
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 

@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "flatland/scatterers/scatterer.h"
-#include "mc/walk/scene_scattering.h"
+#include "mc/paths/walk/scene_scattering.h"
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 

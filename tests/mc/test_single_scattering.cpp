@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/ends/end_factors.h"
+#include "mc/paths/endpoint_factors/end_factors.h"
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 

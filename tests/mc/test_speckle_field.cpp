@@ -3,9 +3,9 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/speckle/field_plan.h"
-#include "mc/speckle/field_statistics.h"
-#include "mc/speckle/speckle_field.h"
+#include "mc/paths/speckle/field_plan.h"
+#include "mc/paths/speckle/field_statistics.h"
+#include "mc/paths/speckle/speckle_field.h"
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 

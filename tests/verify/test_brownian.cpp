@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "flatland/scene/scene.h"
-#include "mc/changes/brownian.h"
+#include "mc/paths/dynamics/brownian.h"
 #include "tests/statistics.h"
 #include "wave_solver/solutions/wave_solution.h"
 

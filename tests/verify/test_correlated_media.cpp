@@ -9,7 +9,7 @@
 #include "core/keys/csv.h"
 #include "flatland/media/structure_factor.h"
 #include "flatland/scene/scene.h"
-#include "mc/estimators/covariance_estimator.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 
 namespace flatspeckle::test_correlated_media {
 

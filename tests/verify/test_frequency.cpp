@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "flatland/scene/frequency_shift.h"
-#include "mc/changes/frequency_shifts.h"
+#include "mc/paths/dynamics/frequency_shifts.h"
 #include "tests/statistics.h"
 #include "wave_solver/solutions/ensemble.h"
 

@@ -8,7 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "flatland/scene/scene.h"
-#include "mc/estimators/covariance_estimator.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 #include "tests/statistics.h"
 #include "wave_solver/solutions/ensemble.h"
 

@@ -8,8 +8,8 @@
 #include <doctest/doctest.h>
 
 #include "flatland/scene/scene.h"
-#include "mc/ends/coherent_field.h"
-#include "mc/estimators/covariance_estimator.h"
+#include "mc/paths/endpoint_factors/coherent_field.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 #include "wave_solver/solutions/ensemble.h"
 
 namespace flatspeckle::test_wave_against_mc {

@@ -10,14 +10,14 @@
 #include "bench/oracles/harmonic_ball.h"
 #include "bench/scenes/random_fields.h"
 #include "bench/stability/extreme_rows.h"
-#include "grin/connections/connection_solver.h"
-#include "grin/fields/fisheye.h"
-#include "grin/fields/gaussian_blobs.h"
-#include "grin/fields/luneburg.h"
-#include "grin/fields/parabolic.h"
-#include "grin/fields/tanh_ramp.h"
-#include "grin/rays/ray_step.h"
-#include "grin/scene/trace_scene.h"
+#include "grin/media/fields/fisheye.h"
+#include "grin/media/fields/gaussian_blobs.h"
+#include "grin/media/fields/luneburg.h"
+#include "grin/media/fields/parabolic.h"
+#include "grin/media/fields/tanh_ramp.h"
+#include "grin/rays/connections/connection_solver.h"
+#include "grin/rays/marching/ray_step.h"
+#include "grin/trace/trace_scene.h"
 
 namespace flatspeckle::bench {
 

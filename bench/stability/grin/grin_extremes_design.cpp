@@ -8,7 +8,7 @@
 #include "grin/design/adjoint/design_ray.h"
 #include "grin/design/adjoint/reading.h"
 #include "grin/design/forms/field_form.h"
-#include "grin/design/scene/designer.h"
+#include "grin/design/problem/designer.h"
 
 namespace flatspeckle::bench {
 

@@ -6,14 +6,14 @@
 
 #include "bench/oracles/multiprecision.h"
 #include "bench/stability/extreme_rows.h"
-#include "grin/fields/fisheye.h"
-#include "grin/fields/luneburg.h"
-#include "grin/fields/parabolic.h"
-#include "grin/fields/sech.h"
-#include "grin/fields/tanh_ramp.h"
-#include "grin/fields/ultrasound.h"
-#include "grin/scene/trace_scene.h"
-#include "grin/surfaces/interface.h"
+#include "grin/media/fields/fisheye.h"
+#include "grin/media/fields/luneburg.h"
+#include "grin/media/fields/parabolic.h"
+#include "grin/media/fields/sech.h"
+#include "grin/media/fields/tanh_ramp.h"
+#include "grin/media/fields/ultrasound.h"
+#include "grin/rays/surfaces/interface.h"
+#include "grin/trace/trace_scene.h"
 
 namespace flatspeckle::bench {
 

@@ -9,10 +9,10 @@
 
 #include "bench/oracles/multiprecision.h"
 #include "bench/stability/extreme_rows.h"
-#include "grin/media/free_flight.h"
-#include "grin/media/phase_function.h"
-#include "grin/space/space.h"
-#include "mc/walk/bounded_stretched_flight.h"
+#include "grin/media/scattering/free_flight.h"
+#include "grin/media/scattering/phase_function.h"
+#include "grin/render/flights/space.h"
+#include "mc/paths/walk/bounded_stretched_flight.h"
 
 namespace flatspeckle::bench {
 

@@ -6,7 +6,7 @@
 #include "bench/scenes/meshes.h"
 #include "bench/scenes/random_fields.h"
 #include "bench/stability/extreme_rows.h"
-#include "grin/space/space.h"
+#include "grin/render/flights/space.h"
 
 namespace flatspeckle::bench {
 

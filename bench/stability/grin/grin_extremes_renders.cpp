@@ -10,9 +10,9 @@
 #include "bench/oracles/peierls_slab.h"
 #include "bench/scenes/furnaces.h"
 #include "bench/stability/extreme_rows.h"
-#include "grin/paths/path_score.h"
-#include "grin/render/map_datasets.h"
-#include "grin/render/power_gradients.h"
+#include "grin/render/pictures/map_datasets.h"
+#include "grin/render/pictures/power_gradients.h"
+#include "grin/render/transport/path_score.h"
 
 namespace flatspeckle::bench {
 

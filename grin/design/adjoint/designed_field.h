@@ -3,9 +3,9 @@
 #include <array>
 #include <concepts>
 
-#include "grin/fields/ball_spline.h"
-#include "grin/fields/graded_guide.h"
-#include "grin/fields/radial_spline.h"
+#include "grin/media/fields/ball_spline.h"
+#include "grin/media/fields/graded_guide.h"
+#include "grin/media/fields/radial_spline.h"
 
 namespace flatspeckle::grin::design {
 

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "grin/rays/ray_step.h"
-#include "grin/surfaces/signed_distance.h"
+#include "grin/rays/marching/ray_step.h"
+#include "grin/rays/surfaces/signed_distance.h"
 
 namespace flatspeckle::grin::design {
 

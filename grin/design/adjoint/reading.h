@@ -1,7 +1,7 @@
 #pragma once
 
 #include "grin/design/adjoint/ray_adjoint.h"
-#include "grin/geometry/frame.h"
+#include "grin/media/geometry/frame.h"
 
 namespace flatspeckle::grin::design {
 

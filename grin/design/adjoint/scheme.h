@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "grin/rays/ray_step.h"
+#include "grin/rays/marching/ray_step.h"
 
 namespace flatspeckle::grin::design {
 

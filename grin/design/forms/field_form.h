@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "grin/design/adjoint/designed_field.h"
-#include "grin/surfaces/signed_distance.h"
+#include "grin/rays/surfaces/signed_distance.h"
 
 namespace flatspeckle::grin::design {
 

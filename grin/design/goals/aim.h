@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "grin/design/goals/goal.h"
-#include "grin/design/search/ray_system.h"
+#include "grin/design/system/ray_system.h"
 
 namespace flatspeckle::grin::design {
 

@@ -1,6 +1,6 @@
 #include "grin/design/goals/equal_goal.h"
 
-#include "grin/design/search/vectors.h"
+#include "grin/design/system/vectors.h"
 
 namespace flatspeckle::grin::design {
 

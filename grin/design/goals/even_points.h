@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "grin/geometry/vec3.h"
+#include "grin/media/geometry/vec3.h"
 
 namespace flatspeckle::grin::design {
 

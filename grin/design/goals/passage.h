@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "grin/surfaces/signed_distance.h"
+#include "grin/rays/surfaces/signed_distance.h"
 
 namespace flatspeckle::grin::design {
 

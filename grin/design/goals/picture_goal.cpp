@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "grin/index/cubic_splines.h"
+#include "grin/media/index/cubic_splines.h"
 
 namespace flatspeckle::grin::design {
 

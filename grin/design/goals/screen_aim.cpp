@@ -10,7 +10,7 @@
 #include "grin/design/goals/passage.h"
 #include "grin/design/goals/picture_file.h"
 #include "grin/design/goals/solid_hull.h"
-#include "grin/geometry/vector_values.h"
+#include "grin/media/geometry/vector_values.h"
 
 namespace flatspeckle::grin::design {
 

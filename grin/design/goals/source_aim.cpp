@@ -7,8 +7,8 @@
 #include "grin/design/goals/even_points.h"
 #include "grin/design/goals/passage.h"
 #include "grin/design/goals/solid_hull.h"
-#include "grin/geometry/frame.h"
-#include "grin/geometry/vector_values.h"
+#include "grin/media/geometry/frame.h"
+#include "grin/media/geometry/vector_values.h"
 
 namespace flatspeckle::grin::design {
 

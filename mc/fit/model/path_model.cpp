@@ -6,11 +6,11 @@
 
 #include "core/error.h"
 #include "core/search/levenberg_marquardt.h"
-#include "mc/estimators/gradient.h"
 #include "mc/fit/task/correlated_errors.h"
 #include "mc/fit/task/curve_values.h"
 #include "mc/fit/task/fit_data.h"
 #include "mc/jobs/directional_slope.h"
+#include "mc/paths/estimators/gradient.h"
 
 namespace flatspeckle::mc {
 

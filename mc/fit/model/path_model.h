@@ -6,10 +6,10 @@
 #include <Eigen/Core>
 
 #include "core/run/runner.h"
-#include "mc/changes/moving_slopes.h"
 #include "mc/fit/model/slab_model.h"
 #include "mc/fit/task/fit_task.h"
 #include "mc/jobs/path_job.h"
+#include "mc/paths/dynamics/moving_slopes.h"
 
 namespace flatspeckle::mc {
 

@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "grin/design/scene/designer.h"
+#include "grin/design/problem/designer.h"
 
 namespace flatspeckle::grin::design::test_designer {
 

@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "flatland/scene/frequency_shift.h"
-#include "mc/changes/frequency_shifts.h"
+#include "mc/paths/dynamics/frequency_shifts.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_jobs.h"
 #include "tests/mc/estimates.h"

@@ -3,9 +3,9 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/changes/brownian.h"
-#include "mc/changes/moving_slopes.h"
-#include "mc/estimators/gradient.h"
+#include "mc/paths/dynamics/brownian.h"
+#include "mc/paths/dynamics/moving_slopes.h"
+#include "mc/paths/estimators/gradient.h"
 #include "mc/slab/slab_covariance.h"
 #include "tests/mc/estimates.h"
 

@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/recovery/deconvolution.h"
+#include "mc/imaging/recovery/deconvolution.h"
 
 namespace flatspeckle::mc::test_deconvolution {
 

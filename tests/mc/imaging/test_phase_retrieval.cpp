@@ -5,7 +5,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/recovery/phase_retrieval.h"
+#include "mc/imaging/recovery/phase_retrieval.h"
 
 namespace flatspeckle::mc::test_phase_retrieval {
 

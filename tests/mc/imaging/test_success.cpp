@@ -5,9 +5,9 @@
 
 #include <doctest/doctest.h>
 
+#include "mc/imaging/recovery/image_score.h"
+#include "mc/imaging/recovery/sparse_search.h"
 #include "mc/imaging/success_prediction.h"
-#include "mc/recovery/image_score.h"
-#include "mc/recovery/sparse_search.h"
 
 namespace flatspeckle::mc::test_success {
 

@@ -7,8 +7,8 @@
 
 #include "core/error.h"
 #include "mc/imaging/camera_frame.h"
-#include "mc/recovery/image_score.h"
-#include "mc/unmixing/unmixing.h"
+#include "mc/imaging/recovery/image_score.h"
+#include "mc/imaging/unmixing/unmixing.h"
 
 namespace flatspeckle::mc::test_unmixing {
 

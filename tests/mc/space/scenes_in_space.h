@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "mc/slab/adding/space_scene.h"
 #include "mc/slab/slab_covariance.h"
-#include "mc/space/space_scene.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc::tests {

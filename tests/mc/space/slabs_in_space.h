@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "grin/media/phase_function.h"
+#include "grin/media/scattering/phase_function.h"
+#include "mc/slab/adding/space.h"
 #include "mc/slab/slab_covariance.h"
-#include "mc/space/space.h"
 
 namespace flatspeckle::mc::tests {
 

@@ -4,10 +4,10 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "grin/media/mie_sphere.h"
-#include "mc/changes/brownian.h"
-#include "mc/estimators/gradient.h"
-#include "mc/space/space.h"
+#include "grin/media/scattering/mie_sphere.h"
+#include "mc/paths/dynamics/brownian.h"
+#include "mc/paths/estimators/gradient.h"
+#include "mc/slab/adding/space.h"
 #include "tests/mc/space/scenes_in_space.h"
 
 namespace flatspeckle::mc::test_space_walks {

@@ -5,7 +5,7 @@
 
 #include "bench/oracles/pair_transport.h"
 #include "bench/oracles/slab_theory.h"
-#include "mc/changes/brownian.h"
+#include "mc/paths/dynamics/brownian.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_jobs.h"
 #include "mc/theory/diffusion.h"

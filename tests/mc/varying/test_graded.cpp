@@ -5,10 +5,10 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "mc/graded/graded_ends.h"
-#include "mc/graded/linear_medium.h"
-#include "mc/walk/graded_first.h"
-#include "mc/walk/scene_scattering.h"
+#include "mc/paths/bent/graded_ends.h"
+#include "mc/paths/bent/linear_medium.h"
+#include "mc/paths/walk/graded_first.h"
+#include "mc/paths/walk/scene_scattering.h"
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"
 

@@ -4,8 +4,8 @@
 
 #include "core/error.h"
 #include "flatland/media/layers.h"
-#include "mc/changes/brownian.h"
-#include "mc/estimators/flux_walk.h"
+#include "mc/paths/dynamics/brownian.h"
+#include "mc/paths/estimators/flux_walk.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_flux.h"
 #include "mc/slab/slab_jobs.h"

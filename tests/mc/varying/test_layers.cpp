@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "flatland/media/layers.h"
-#include "mc/varying/layer_gradient.h"
+#include "mc/paths/layers/layer_gradient.h"
 #include "tests/mc/flux_runs.h"
 
 namespace flatspeckle::mc::test_layers {

@@ -3,8 +3,8 @@
 #include <boost/math/quadrature/gauss.hpp>
 #include <doctest/doctest.h>
 
-#include "mc/graded/graded_medium.h"
-#include "mc/graded/homogenised_box.h"
+#include "mc/paths/bent/graded_medium.h"
+#include "mc/paths/bent/homogenised_box.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc::test_mean_field {

@@ -1,0 +1,140 @@
+#include "grin/design/descent/least_squares.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "grin/design/forms/roughness.h"
+#include "grin/design/system/vectors.h"
+
+namespace flatspeckle::grin::design {
+
+namespace {
+
+constexpr double least_curvature = 1e-9, least_damping = 1e-9;
+constexpr int most_trials = 12;
+
+}  // namespace
+
+/// Residuals as linear functions of the coefficients, about where the search is.
+struct LeastSquares::Model {
+  RayRows rows;
+  Roughness roughness;
+  Numbers gradient, curvature, rough_diagonal;
+  double rough_unit, mean_curvature;
+  double roughness_weight;
+  std::vector<char> is_held;  ///< at a bound that it would cross
+
+  /// Of D^T D in the normal matrix.
+  double rough(double damping) const { return (damping + roughness_weight) * rough_unit; }
+};
+
+LeastSquares::Model LeastSquares::model_at(SearchState& state) const {
+  const Numbers residuals = *objective_.residuals(state.coefficients);
+  const std::size_t count = state.coefficients.size();
+  Model model{objective_.rays().linearised(),
+              Roughness(shape_of(objective_.form())),
+              Numbers(count),
+              Numbers(count),
+              Numbers(count, 0.0),
+              0,
+              0,
+              state.roughness,
+              std::vector<char>(count, 0)};
+  ++state.traces;
+  model.rows.transposed(objective_.goal().transposed(residuals), model.gradient);
+  model.rows.squares(objective_.goal().weights(), model.curvature);
+  model.mean_curvature = mean(model.curvature);
+  model.roughness.add_diagonal(1, model.rough_diagonal);
+  const double rough = mean(model.rough_diagonal);
+  model.rough_unit = rough > 0 ? model.mean_curvature / rough : 0;
+  model.roughness.add_times(state.coefficients, state.roughness * model.rough_unit, model.gradient);
+  const auto& [least, most] = search_.bounds;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool low = state.coefficients[i] <= least[i] && model.gradient[i] >= 0;
+    const bool high = state.coefficients[i] >= most[i] && model.gradient[i] <= 0;
+    model.is_held[i] = low || high || least[i] == most[i];
+  }
+  return model;
+}
+
+/// The normal matrix and its damping times a step.
+Numbers LeastSquares::curved(const Model& model, double damping,
+                             std::span<const double> step) const {
+  const RaySystem& rays = objective_.rays();
+  const Goal& goal = objective_.goal();
+  Numbers result(step.size());
+  if (goal.is_plain()) {
+    model.rows.normal(step, result);
+  } else {
+    Numbers readings(rays.rays() * rays.readings());
+    model.rows.times(step, readings);
+    model.rows.transposed(goal.transposed(goal.times(readings)), result);
+  }
+  for (std::size_t i = 0; i < step.size(); ++i)
+    result[i] += (damping * model.curvature[i] + least_curvature * model.mean_curvature) * step[i];
+  const double rough = model.rough(search_.smooth_damping * damping);
+  model.roughness.add_times(step, rough, result);
+  for (std::size_t i = 0; i < step.size(); ++i)
+    if (model.is_held[i]) result[i] = 0;
+  return result;
+}
+
+/// Conjugate gradients, preconditioned by the diagonal.
+Numbers LeastSquares::solve(const Model& model, double damping) const {
+  const std::size_t count = model.gradient.size();
+  const double rough = model.rough(search_.smooth_damping * damping);
+  Numbers inverse(count), step(count, 0.0), rest(count), along(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    inverse[i] = 1 / (model.curvature[i] * (1 + damping) + rough * model.rough_diagonal[i] +
+                      least_curvature * model.mean_curvature);
+    if (model.is_held[i]) inverse[i] = 0;
+    rest[i] = model.is_held[i] ? 0 : -model.gradient[i];
+  }
+  const auto preconditioned = [&] {
+    Numbers z(count);
+    for (std::size_t i = 0; i < count; ++i) z[i] = inverse[i] * rest[i];
+    return z;
+  };
+  along = preconditioned();
+  double size = dot(rest, along);
+  const double enough = 1e-20 * size;
+  for (int i = 0; i < search_.solver_steps && size > enough; ++i) {
+    const Numbers image = curved(model, damping, along);
+    const double factor = size / dot(along, image);
+    add(step, factor, along);
+    add(rest, -factor, image);
+    const Numbers z = preconditioned();
+    const double before = std::exchange(size, dot(rest, z));
+    for (std::size_t j = 0; j < count; ++j) along[j] = z[j] + size / before * along[j];
+  }
+  return step;
+}
+
+SearchStep LeastSquares::advance(SearchState& state) {
+  const Model model = model_at(state);
+  const double rays = static_cast<double>(objective_.rays().rays());
+  const double rough = state.roughness * model.rough_unit / rays;
+  const double now = state.loss + rough * model.roughness.square(state.coefficients);
+  double promised = 0;  // by the first trial
+  for (int trial = 0; trial < most_trials; ++trial) {
+    const Numbers step = solve(model, state.damping);
+    Numbers next = state.coefficients;
+    add(next, 1, step);
+    search_.bounds.hold(next);
+    if (trial == 0) promised = -dot(model.gradient, step) / rays;
+    const double loss = objective_.loss(next);
+    ++state.traces;
+    if (loss + rough * model.roughness.square(next) < now) {
+      state.coefficients = std::move(next);
+      state.loss = loss;
+      state.damping = std::max(0.1 * state.damping, least_damping);
+      return SearchStep::better;
+    }
+    state.damping *= 10;
+  }
+  constexpr double worth = 1e-3;
+  return promised > worth * now ? SearchStep::stalled : SearchStep::settled;
+}
+
+}  // namespace flatspeckle::grin::design

@@ -1,0 +1,297 @@
+#include "grin/design/problem/design_datasets.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/result/result_group.h"
+#include "grin/trace/ray_tracing.h"
+
+namespace flatspeckle::grin::design {
+
+const DatasetTable design_table{
+    .name = "design",
+    .rows =
+        {{"history/step", Data::numbers, "", "1", "number of a step of the search; 0: the start"},
+         {"history/rms", Data::real, "history/step", "1",
+          "what rays miss by after it, root mean square: a length (focus, throughput), a part of "
+          "the delay "
+          "(equal_path), of a picture's largest value (irradiance), an angle (deflections, "
+          "collimation)"},
+         {"history/traces", Data::real, "history/step", "1",
+          "how often each ray was traced by then, forward or backward"},
+         {"history/cpu_s", Data::real, "history/step", "s", "processor time by then"},
+         {"history/coefficients", Data::count, "history/step", "1", "how many there were"},
+         {"rms/seen", Data::real, "", "1", "what the rays of the search miss by"},
+         {"rms/seen_half_step", Data::real, "", "1", "the same by steps of half the length"},
+         {"rms/held_out", Data::real, "", "1", "what rays that it has not seen miss by"},
+         {"rms/held_out_half_step", Data::real, "", "1", "the same by steps of half the length"},
+         {"rms/start_held_out", Data::real, "", "1",
+          "what these miss by in the field at the start"},
+         {"throughput", Data::real, "", "1",
+          "share of the rays that the search has not seen that pass through the aperture, by steps "
+          "of half the length"},
+         {"at_bounds", Data::count, "", "1", "coefficients that stand at a bound"},
+         {"unseen", Data::count, "", "1",
+          "coefficients within the field that no ray of the search depends on"},
+         {"coefficient_x", Data::numbers, "", "1", "number of a coefficient along x"},
+         {"coefficient_y", Data::numbers, "", "1", "number of a coefficient along y"},
+         {"coefficient_z", Data::numbers, "", "1", "number of a coefficient along z"},
+         {"coefficient", Data::numbers, "", "1", "number of a coefficient along r"},
+         {"ball_spline", Data::real, "coefficient_x coefficient_y coefficient_z", "1",
+          "coefficients of the spline s of a ball, n = 1 + (1 - r^2/R^2) s"},
+         {"radial_spline", Data::real, "coefficient", "1",
+          "coefficients of the spline s, n = 1 + (1 - r^2/R^2) s"},
+         {"graded_spline", Data::real, "coefficient", "1",
+          "coefficients of the spline s of q = (rho/R)^2, n^2 = n0^2 (1 - 2 delta (q^(exponent/2) "
+          "+ "
+          "q (1 - q) s))"},
+         {"node_x", Data::numbers, "", "1", "number of a node along x"},
+         {"node_y", Data::numbers, "", "1", "number of a node along y"},
+         {"node_z", Data::numbers, "", "1", "number of a node along z"},
+         {"excess", Data::real, "node_x node_y node_z", "1", "n - 1 at the nodes of a grid"},
+         {"profile/r", Data::scale, "", "length", "distance from the centre"},
+         {"profile/index", Data::real, "profile/r", "1", "index there, mean over directions"},
+         {"profile/spread", Data::real, "profile/r", "1",
+          "largest difference from it over directions"},
+         {"slice_x", Data::scale, "", "length", "x of the slice's points"},
+         {"slice_z", Data::scale, "", "length", "z of the slice's points"},
+         {"slice_index", Data::real, "slice_x slice_z", "1", "index in the plane y = 0"},
+         {"path_ray", Data::numbers, "", "1", "number of a drawn ray, along x before the field"},
+         {"path_point", Data::numbers, "", "1", "number of a point, evenly in arc length"},
+         {"before/x", Data::real, "path_ray path_point", "length", "x of the points at the start"},
+         {"before/z", Data::real, "path_ray path_point", "length", "z of the points at the start"},
+         {"after/x", Data::real, "path_ray path_point", "length", "x of the points at the end"},
+         {"after/z", Data::real, "path_ray path_point", "length", "z of the points at the end"},
+         {"picture/view", Data::numbers, "", "1", "number of a beam"},
+         {"picture/row", Data::numbers, "", "1", "number of a row of pixels, from the top"},
+         {"picture/column", Data::numbers, "", "1", "number of a column"},
+         {"picture/asked", Data::real, "picture/view picture/row picture/column", "1",
+          "share of a beam's light that is to fall on each pixel"},
+         {"picture/shown", Data::real, "picture/view picture/row picture/column", "1",
+          "share that falls there, by rays that the search has not seen"},
+         {"picture/psnr_db", Data::real, "picture/view", "1",
+          "20 log10 of the picture's largest value over the root mean square difference"}},
+    .attributes = {{"ball_spline", "origin", "float64s",
+                    "three numbers: where the first coefficient's knot lies"},
+                   {"ball_spline", "spacing", "float64s", "three numbers: of the knots"},
+                   {"radial_spline", "centre", "float64s", "three numbers"},
+                   {"radial_spline", "radius", "float64", "R"},
+                   {"graded_spline", "index", "float64", "n0 on the axis"},
+                   {"graded_spline", "delta", "float64", "of n^2 at the radius"},
+                   {"graded_spline", "radius", "float64", "R, of the core"},
+                   {"graded_spline", "exponent", "float64", "of the power law"},
+                   {"excess", "origin", "float64s", "three numbers: of the first node"},
+                   {"excess", "spacing", "float64s", "three numbers"},
+                   {"picture/asked", "width", "float64", "of the pictures' side"},
+                   {"", "goal", "text", "what light was to do"},
+                   {"", "focus", "float64", "where light is to meet, from the centre"},
+                   {"", "stalled", "bool", "the search found no way on"}}};
+
+namespace {
+
+void write_coefficients(const ResultGroup& root, const BallForm& form,
+                        const std::vector<double>& values) {
+  const FieldGrid grid = form.grid();
+  const Vec3 first = grid.origin - grid.spacing;
+  for (const char* axis : {"coefficient_x", "coefficient_y", "coefficient_z"})
+    root.number(axis, static_cast<std::size_t>(form.nodes) + 2);
+  root.put("ball_spline", values);
+  root.attribute("ball_spline", "origin", std::vector<double>{first[0], first[1], first[2]});
+  root.attribute("ball_spline", "spacing",
+                 std::vector<double>{grid.spacing[0], grid.spacing[1], grid.spacing[2]});
+}
+void write_coefficients(const ResultGroup& root, const RadialForm& form,
+                        const std::vector<double>& values) {
+  root.number("coefficient", values.size());
+  root.put("radial_spline", values);
+  root.attribute("radial_spline", "centre",
+                 std::vector<double>{form.centre[0], form.centre[1], form.centre[2]});
+  root.attribute("radial_spline", "radius", form.radius);
+}
+
+/// Of the guide's own coefficients, or of none.
+void write_coefficients(const ResultGroup& root, const GuideForm& form,
+                        const std::vector<double>& values) {
+  const GradedGuide field = form.field(values);
+  const GradedProfile& profile = field.profile();
+  root.number("coefficient", profile.correction().size());
+  root.put("graded_spline", profile.correction());
+  root.attribute("graded_spline", "index", 1 + profile.core().axis_excess);
+  root.attribute("graded_spline", "delta", profile.core().delta);
+  root.attribute("graded_spline", "radius", profile.core().radius);
+  root.attribute("graded_spline", "exponent", profile.core().exponent);
+}
+/// Two more nodes beyond each face, where nothing is: so the spline through all is the same one.
+void write_coefficients(const ResultGroup& root, const BoxForm& form,
+                        const std::vector<double>& values) {
+  constexpr int beyond = 2;
+  const SplineField field = form.field(values);
+  const FieldGrid grid = form.grid();
+  const int nodes = form.nodes + 2 * beyond;
+  const Vec3 origin = grid.origin - beyond * grid.spacing;
+  std::vector<double> excess;
+  const auto is_in = [&](int i) { return i >= beyond && i < form.nodes + beyond; };
+  for (int i = 0; i < nodes; ++i)
+    for (int j = 0; j < nodes; ++j)
+      for (int k = 0; k < nodes; ++k) {
+        const Vec3 x = origin + grid.spacing.cwiseProduct(Vec3(i, j, k));
+        excess.push_back(is_in(i) && is_in(j) && is_in(k) ? field.excess(x) : 0);
+      }
+  for (const char* axis : {"node_x", "node_y", "node_z"})
+    root.number(axis, static_cast<std::size_t>(nodes));
+  root.put("excess", excess);
+  root.attribute("excess", "origin", std::vector<double>{origin[0], origin[1], origin[2]});
+  root.attribute("excess", "spacing",
+                 std::vector<double>{grid.spacing[0], grid.spacing[1], grid.spacing[2]});
+}
+
+void write_history(const ResultGroup& root, const DesignHistory& history) {
+  root.number("history/step", history.rms.size());
+  root.put("history/rms", history.rms);
+  root.put("history/traces", history.traces);
+  root.put("history/cpu_s", history.cpu_s);
+  root.put("history/coefficients", history.coefficients);
+}
+
+void write_check(const ResultGroup& root, const DesignCheck& check) {
+  const auto put = [&](const char* name, const std::optional<double>& rms) {
+    if (rms) root.put(name, *rms);
+  };
+  put("rms/seen", check.seen);
+  put("rms/seen_half_step", check.seen_half_step);
+  put("rms/held_out", check.held_out);
+  put("rms/held_out_half_step", check.held_out_half_step);
+  put("rms/start_held_out", check.start_held_out);
+}
+
+/// Mean over directions all around, of a guide those across it, and the largest difference.
+template <IndexField F>
+void write_profile(const ResultGroup& root, const F& field, double radius, bool is_guide) {
+  constexpr int radii = 101, directions = 50;
+  std::vector<double> r, mean, spread;
+  for (int i = 0; i < radii; ++i) {
+    r.push_back(radius * i / (radii - 1));
+    std::vector<double> found;
+    double sum = 0, most = 0;
+    for (int d = 0; d < directions; ++d) {
+      const double z = is_guide ? 0 : 1 - (2 * d + 1.0) / directions, rho = std::sqrt(1 - z * z);
+      const Vec3 along(rho * std::cos(2.4 * d), rho * std::sin(2.4 * d), z);
+      found.push_back(index(field, (r.back() * along).eval()));
+      sum += found.back();
+    }
+    mean.push_back(sum / directions);
+    for (const double n : found) most = std::max(most, std::abs(n - mean.back()));
+    spread.push_back(most);
+  }
+  root.put("profile/r", r);
+  root.put("profile/index", mean);
+  root.put("profile/spread", spread);
+}
+
+template <IndexField F>
+void write_slice(const ResultGroup& root, const F& field, const Surface& hull, double radius) {
+  constexpr int pixels = 101;
+  std::vector<double> places, map;
+  for (int i = 0; i < pixels; ++i) places.push_back(radius * (2.0 * i / (pixels - 1) - 1));
+  for (const double x : places)
+    for (const double z : places) {
+      const Vec3 at(x, 0, z);
+      map.push_back(distance(hull, at) < 0 ? index(field, at) : 1);
+    }
+  root.put("slice_x", places);
+  root.put("slice_z", places);
+  root.put("slice_index", map);
+}
+
+/// Parallel rays along z through a ball and a little on, or to the faces of a box.
+template <class F>
+std::vector<TracedRay> drawn_rays(const F& field, double radius, std::size_t points) {
+  SceneField scene{facts(field), field};
+  constexpr int rays = 21;
+  const double start = scene.grid ? -(1 - 1e-9) * radius : -1.3 * radius;
+  std::vector<RayStart> starts;
+  for (int i = 0; i < rays; ++i)
+    starts.push_back({{0.98 * radius * (2.0 * i / (rays - 1) - 1), 0, start}, Vec3::UnitZ()});
+  const Plane stop{{0, 0, 1.5 * radius}, Vec3::UnitZ()};
+  return trace_rays(scene, {}, {{stop}, 8 * radius, 1e-10 * radius}, {Sharma(), radius / 20, 1e-8},
+                    starts, points);
+}
+
+void write_rays(const ResultGroup& root, const std::string& group,
+                const std::vector<TracedRay>& rays) {
+  for (const int axis : {0, 2}) {
+    std::vector<double> values;
+    for (const TracedRay& ray : rays)
+      for (const Vec3& x : ray.path) values.push_back(x[axis]);
+    root.put(group + '/' + "xyz"[axis], values);
+  }
+}
+
+void write_drawings(const ResultGroup& root, const Surface& hull, const auto& form,
+                    const DesignScene& scene, const std::vector<double>& coefficients) {
+  constexpr std::size_t points = 61;
+  const auto field = form.field(coefficients);
+  write_slice(root, field, hull, form.radius);
+  const auto rays = drawn_rays(field, form.radius, points);
+  root.number("path_ray", rays.size());
+  root.number("path_point", points);
+  std::vector<double> start(form.shape().size(), scene.start.coefficients.front());
+  bounds_of(form, scene.start.least_index, scene.start.most_index).hold(start);
+  write_rays(root, "before", drawn_rays(form.field(start), form.radius, points));
+  write_rays(root, "after", rays);
+}
+
+void write_pictures(const ResultGroup& root, const ScreenAim& aim,
+                    const std::vector<double>& readings) {
+  std::vector<double> asked_all, shown_all, psnr;
+  const auto pictures = aim.shown_by(readings, true);
+  for (std::size_t v = 0; v < pictures.size(); ++v) {
+    const auto& light = pictures[v].values;
+    const Picture asked = shown(aim.views()[v].picture);
+    double square = 0;
+    for (std::size_t p = 0; p < light.size(); ++p)
+      square += std::pow(light[p] - asked.values[p], 2) / static_cast<double>(light.size());
+    psnr.push_back(20 * std::log10(std::ranges::max(asked.values) / std::sqrt(square)));
+    asked_all.insert(asked_all.end(), asked.values.begin(), asked.values.end());
+    shown_all.insert(shown_all.end(), light.begin(), light.end());
+  }
+  const auto pixels = static_cast<std::size_t>(pictures.front().pixels);
+  root.number("picture/view", pictures.size());
+  root.number("picture/row", pixels);
+  root.number("picture/column", pixels);
+  root.put("picture/asked", asked_all);
+  root.put("picture/shown", shown_all);
+  root.put("picture/psnr_db", psnr);
+  root.attribute("picture/asked", "width", pictures.front().width);
+}
+
+}  // namespace
+
+void write_design(ResultFile& file, const DesignScene& scene, const Designer& designer,
+                  const DesignState& state, const DesignCheck& check) {
+  const ResultGroup root(file, design_table);
+  const std::vector<double>& coefficients = state.search.coefficients;
+  write_history(root, state.history);
+  write_check(root, check);
+  root.put("at_bounds", static_cast<std::uint64_t>(designer.at_bounds(state)));
+  root.put("unseen", static_cast<std::uint64_t>(check.unseen));
+  if (scene.goal == ThroughputValues::word) root.put("throughput", check.in_place);
+  root.attribute("goal", scene.goal);
+  if (scene.focus) root.attribute("focus", *scene.focus);
+  root.attribute("stalled", state.stalled);
+  const FieldForm form = designer.form(state);
+  std::visit([&](const auto& of) { write_coefficients(root, of, coefficients); }, form);
+  if (const auto* guide = std::get_if<GuideForm>(&form))
+    write_profile(root, guide->field(coefficients), guide->core.radius, true);
+  const auto draw = [&]<class Form>(const Form& of) {
+    if constexpr (!std::same_as<Form, GuideForm>) {
+      write_profile(root, of.field(coefficients), of.radius, false);
+      write_drawings(root, *hull_of(form), of, scene, coefficients);
+    }
+  };
+  std::visit(draw, form);
+  if (const auto* aim = dynamic_cast<const ScreenAim*>(scene.aim.get()); aim && check.readings)
+    write_pictures(root, *aim, *check.readings);
+}
+
+}  // namespace flatspeckle::grin::design

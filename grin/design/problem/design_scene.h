@@ -1,0 +1,40 @@
+#pragma once
+
+#include "core/keys/keys.h"
+#include "grin/design/descent/optimiser.h"
+#include "grin/design/forms/form_values.h"
+#include "grin/design/goals/aim_values.h"
+
+namespace flatspeckle::grin::design {
+
+/// What is sought and what light is to do, as keys have it.
+struct DesignValues {
+  FormValues form{};
+  AimValues aim{};
+  std::optional<double> step = {}, target = {}, noise = {};
+  std::int64_t iterations = 60;
+  double roughness = 0, rate = 0.01;
+  std::string method = "gauss_newton";
+};
+
+void add_keys(Keys& keys, DesignValues& values);
+
+struct DesignScene {
+  FormStart start;
+  std::shared_ptr<const Aim> aim;
+  std::string goal;
+  std::optional<double> focus = {};  ///< of a ball
+  RayWalk walk;
+  std::string method;
+  double rate;         ///< of Adam
+  double roughness;    ///< at the start
+  bool has_noise;      ///< roughness is lowered until the target, which is the noise, is reached
+  int iterations = 0;  ///< at most
+  double target = 0;   ///< the loss' root that is enough
+};
+
+/// Both throw InputError; of values alone, all must be of use.
+DesignScene make_design_scene(const Keys& keys, const DesignValues& values);
+DesignScene make_design_scene(const DesignValues& values);
+
+}  // namespace flatspeckle::grin::design

@@ -1,0 +1,175 @@
+#include "grin/design/problem/designer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/run/stopwatch.h"
+
+namespace flatspeckle::grin::design {
+
+namespace {
+
+double share_of_zeros(const std::vector<double>& residuals) {
+  return static_cast<double>(std::ranges::count(residuals, 0.0)) /
+         static_cast<double>(residuals.size());
+}
+
+}  // namespace
+
+Designer::Designer(const DesignScene& scene)
+    : scene_(scene),
+      seen_(scene.aim->task(scene.walk, false)),
+      held_out_(scene.aim->task(scene.walk, true)) {}
+
+FieldForm Designer::form(const DesignState& state) const {
+  FieldForm form = scene_.start.form;
+  for (int i = 0; i < state.level; ++i)
+    form = std::visit([](const auto& f) -> FieldForm { return f.finer(); }, form);
+  return form;
+}
+
+Search Designer::search_in(const FieldForm& form) const {
+  Search search{bounds_of(form, scene_.start.least_index, scene_.start.most_index)};
+  search.rate = scene_.rate;
+  const auto& extent = shape_of(form).extent;
+  if (extent[0] == 1) search.smooth_damping = 0;  // all of a profile is seen
+  return search;
+}
+
+DesignState Designer::begin() {
+  DesignState state;
+  const FieldForm& form = scene_.start.form;
+  state.search =
+      begin_search({*seen_.rays, *seen_.goal, form}, search_in(form), scene_.start.coefficients);
+  state.search.roughness = scene_.roughness;
+  note(state);
+  return state;
+}
+
+void Designer::note(DesignState& state) const {
+  state.history.rms.push_back(std::sqrt(state.search.loss));
+  state.history.traces.push_back(static_cast<double>(state.search.traces));
+  state.history.cpu_s.push_back(state.cpu_before + process_cpu_seconds());
+  state.history.coefficients.push_back(state.search.coefficients.size());
+}
+
+void Designer::refine(DesignState& state) {
+  FinerField fine = finer(form(state), state.search.coefficients);
+  const Search search = search_in(fine.form);
+  search.bounds.hold(fine.coefficients);
+  state.search.coefficients = std::move(fine.coefficients);
+  state.search.damping = search.first_damping;
+  state.search.memory.clear();
+  state.search.loss =
+      Objective(*seen_.rays, *seen_.goal, fine.form).loss(state.search.coefficients);
+  ++state.search.traces;
+  state.slow_steps = 0;
+  ++state.level;
+}
+
+/// With less weight of the roughness, as long as there is noise to come down to and the last time
+/// did something: else the field's own knots are what is left. (Of much weight nothing is found.)
+bool Designer::smoothes_on(DesignState& state) const {
+  constexpr double least = 1e-12, factor = 0.3;
+  if (!scene_.has_noise || state.search.roughness < least) return false;
+  const double rms = std::sqrt(state.search.loss);
+  const double last = std::exchange(state.rms_as_smooth, rms);
+  if (rms < 0.5 * state.history.rms.front() && rms > 0.98 * last) return false;
+  state.search.roughness *= factor;
+  state.search.damping = search_in(form(state)).first_damping;
+  state.slow_steps = 0;
+  return true;
+}
+
+/// Whether rays miss by less than their steps are off: then a search only cancels their error.
+/// Looked at again where they miss by half as much.
+bool Designer::leans_on_steps(DesignState& state) {
+  const double now = std::sqrt(state.search.loss);
+  if (scene_.method != "gauss_newton" || now > 0.5 * state.rms_by_half_steps) return false;
+  const auto by_half = rms(seen_, seen_.rays->trace(form(state), state.search.coefficients, 2));
+  state.search.traces += 3;  // and once more as they were
+  state.rms_by_half_steps = by_half.value_or(now);
+  return state.rms_by_half_steps > 2 * now;
+}
+
+void Designer::advance(DesignState& state) {
+  const bool is_last = state.level + 1 == scene_.start.levels;
+  // of the root mean square, in a step; by its gradient alone a search goes on and on
+  const double slow = scene_.method != "gauss_newton" ? 1 : is_last ? 0.97 : 0.7;
+  const int most_slow_steps = scene_.method == "adam" ? 200 : scene_.has_noise ? 1 : 2;
+  const FieldForm form = this->form(state);
+  const auto search =
+      make_optimiser(scene_.method, {*seen_.rays, *seen_.goal, form}, search_in(form));
+  const double before = state.search.loss;
+  const SearchStep step = search->advance(state.search);
+  const double rms = std::sqrt(state.search.loss);
+  constexpr double rounding = 1e-9;  // of what was missed at the start
+  state.stalled = step == SearchStep::stalled && rms > rounding * state.history.rms.front();
+  const bool is_enough = rms <= scene_.target;
+  const bool gained = step == SearchStep::better && rms < slow * std::sqrt(before);
+  state.slow_steps = gained ? 0 : state.slow_steps + 1;
+  const bool is_slow = step != SearchStep::better || state.slow_steps == most_slow_steps ||
+                       (is_last && rms > 0.8 * std::sqrt(before) && leans_on_steps(state));
+  note(state);
+  const bool is_spent = static_cast<int>(state.history.rms.size()) > scene_.iterations;
+  const bool may_end = is_last && (is_enough || (is_slow && !smoothes_on(state)));
+  state.ended = is_spent || may_end;
+  if (!state.ended && !is_last && (is_slow || is_enough)) refine(state);
+}
+
+std::optional<double> Designer::rms(DesignTask& task,
+                                    const std::optional<std::vector<double>>& readings) {
+  if (!readings) return std::nullopt;
+  double sum = 0;
+  for (const double r : task.goal->residuals(*readings)) sum += r * r;
+  return std::sqrt(sum / static_cast<double>(task.rays->rays()));
+}
+
+DesignCheck Designer::check(const DesignState& state) {
+  const auto& coefficients = state.search.coefficients;
+  const auto rms_by = [&](DesignTask& task, int parts) {
+    return rms(task, task.rays->trace(form(state), coefficients, parts));
+  };
+  DesignCheck check;
+  check.seen = rms_by(seen_, 1);
+  check.unseen = unseen(state);
+  check.seen_half_step = rms_by(seen_, 2);
+  check.held_out = rms_by(held_out_, 1);
+  check.start_held_out =
+      rms(held_out_, held_out_.rays->trace(scene_.start.form, scene_.start.coefficients))
+          .value_or(0);
+  check.readings = held_out_.rays->trace(form(state), coefficients, 2);
+  check.held_out_half_step = rms(held_out_, check.readings);
+  if (check.readings) check.in_place = share_of_zeros(held_out_.goal->residuals(*check.readings));
+  return check;
+}
+
+/// Of coefficients within the field that are not held; is(number, bounds).
+template <class Is>
+std::size_t Designer::count_free(const DesignState& state, const Is& is) const {
+  const FieldForm form = this->form(state);
+  const Bounds bounds = bounds_of(form, scene_.start.least_index, scene_.start.most_index);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < state.search.coefficients.size(); ++i)
+    if (is_within(form, i) && bounds.least[i] < bounds.most[i] && is(i, bounds)) ++count;
+  return count;
+}
+
+std::size_t Designer::at_bounds(const DesignState& state) const {
+  const auto& values = state.search.coefficients;
+  return count_free(state, [&](std::size_t i, const Bounds& bounds) {
+    return values[i] <= bounds.least[i] || values[i] >= bounds.most[i];
+  });
+}
+
+std::size_t Designer::unseen(const DesignState& state) {
+  const auto& values = state.search.coefficients;
+  const auto readings = seen_.rays->trace(form(state), values);
+  if (!readings) return 0;
+  std::vector<double> squares(values.size());
+  seen_.rays->linearised().squares(std::vector<double>(readings->size(), 1.0), squares);
+  return count_free(state, [&](std::size_t i, const Bounds&) { return squares[i] == 0; });
+}
+
+}  // namespace flatspeckle::grin::design

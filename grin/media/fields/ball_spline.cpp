@@ -1,0 +1,59 @@
+#include "grin/media/fields/ball_spline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace flatspeckle::grin {
+
+namespace {
+
+Sphere ball_in(const FieldGrid& grid) {
+  constexpr double rounding = 1e-9;
+  const Vec3 size = grid.end() - grid.origin;
+  const auto [least, most] = std::minmax({size[0], size[1], size[2]});
+  if (!(most - least <= rounding * most))
+    throw InputError("sides of the cube about a ball", listed(size), "must be equal");
+  return {grid.origin + size / 2, least / 2};
+}
+
+/// A grid of coefficients, two more than nodes along each axis, as a file has it.
+struct BallGrid {
+  BallGrid(const FieldGrid& where, std::span<const double> values)
+      : ball(nodes_of(where), {values.begin(), values.end()}) {
+    for (const double c : values)
+      if (!(c > -1 && std::isfinite(c)))
+        throw InputError("coefficient of a ball", c, "must be finite and above -1");
+  }
+  static FieldGrid nodes_of(FieldGrid where) {
+    where.origin += where.spacing;
+    for (int& nodes : where.nodes) nodes -= 2;
+    return where;
+  }
+  BallSpline ball;
+};
+
+}  // namespace
+
+BallSpline::BallSpline(const FieldGrid& grid, std::vector<double> coefficients)
+    : spline_(SplineField::of_coefficients(grid, std::move(coefficients))),
+      ball_(ball_in(grid)),
+      inverse_area_(1 / (ball_.radius * ball_.radius)) {}
+
+FieldFacts facts(const BallSpline& field) {
+  return {.scale = std::min(2 * field.spline().grid().spacing[0], field.ball().radius),
+          .centre = field.ball().centre,
+          .rim = field.ball()};
+}
+
+void add_keys(Keys& keys, BallValues& values) {
+  keys.add("ball_spline", values.ball, "Result of design, or HDF5 with its dataset ball_spline")
+      .file();
+}
+
+BallSpline make_field(const Keys& keys, const BallValues& values, const FieldUse&) {
+  return read_grid_of<BallGrid>(keys.name(values.ball), keys.required(values.ball), "ball_spline")
+      .ball;
+}
+
+}  // namespace flatspeckle::grin

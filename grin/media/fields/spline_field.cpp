@@ -1,0 +1,261 @@
+#include "grin/media/fields/spline_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/numbers/wide/every_width.h"
+#include "grin/media/index/cubic_splines.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+constexpr double margin = 1;  // in cells
+
+void check_samples(std::span<const double> excess) {
+  for (const double e : excess)
+    if (!(e > -1 && std::isfinite(e)))
+      throw InputError("sample of n - 1", e, "must be finite and above -1");
+}
+
+/// Samples f[0 .. n-1] to coefficients c[0 .. n+1] of the splines about nodes -1 .. n, in place in
+/// c[1 .. n]: (c[i-1] + 4 c[i] + c[i+1]) / 6 = f[i] with a third derivative that does not jump at
+/// the second and the last but one node, from which their coefficients follow at once.
+void interpolate(std::vector<double>& c, std::vector<double>& pivot) {
+  const std::size_t n = c.size() - 2;
+  const auto knot = [&](std::size_t i) { return (8 * c[i] - c[i - 1] - c[i + 1]) / 6; };
+  const double f1 = c[1], f2 = c[2], g1 = c[n], g2 = c[n - 1];
+  const double first = knot(2), last = knot(n - 1);
+  c[2] = first;
+  c[n - 1] = last;
+  // Between them 4 on the diagonal, 1 beside it: elimination down, substitution up.
+  double before = first, p = 0;
+  for (std::size_t i = 3; i + 2 <= n; ++i) {
+    p = 1 / (4 - p);
+    pivot[i] = p;
+    before = c[i] = (6 * c[i] - before) * p;
+  }
+  for (std::size_t i = n - 2; i >= 3; --i) c[i] -= pivot[i] * c[i + 1];
+  c[1] = 6 * f2 - 4 * c[2] - c[3];
+  c[0] = 6 * f1 - 4 * c[1] - c[2];
+  c[n] = 6 * g2 - 4 * c[n - 1] - c[n - 2];
+  c[n + 1] = 6 * g1 - 4 * c[n] - c[n - 1];
+}
+
+}  // namespace
+
+SplineField::SplineField(const FieldGrid& grid, std::size_t samples, int least_nodes)
+    : grid_(grid), per_length_(grid.spacing.cwiseInverse()) {
+  check(grid, samples, least_nodes);
+  for (int a = 0; a < 3; ++a) extent_[a] = grid.nodes[a] + 2;
+  coefficients_.resize(static_cast<std::size_t>(extent_[0]) * extent_[1] * extent_[2]);
+}
+
+SplineField SplineField::of_coefficients(const FieldGrid& grid, std::vector<double> coefficients) {
+  SplineField field(grid, grid.size(), 2);
+  if (coefficients.size() != field.coefficients_.size())
+    throw InputError("coefficients of a grid", coefficients.size(),
+                     "must be two more along each axis than nodes");
+  field.coefficients_ = std::move(coefficients);
+  return field;
+}
+
+SplineField::SplineField(const FieldGrid& grid, std::span<const double> excess)
+    : SplineField(grid, excess.size(), 4) {
+  check_samples(excess);
+  const auto [nx, ny, nz] = grid.nodes;
+  for (int i = 0; i < nx; ++i)
+    for (int j = 0; j < ny; ++j)
+      std::copy_n(&excess[(static_cast<std::size_t>(i) * ny + j) * nz], nz,
+                  coefficients_.begin() + (row(i + 1, j + 1, 1) - coefficients_.data()));
+  std::vector<double> line, pivot;
+  const std::array<std::size_t, 3> stride{static_cast<std::size_t>(extent_[1]) * extent_[2],
+                                          static_cast<std::size_t>(extent_[2]), 1};
+  for (int a = 0; a < 3; ++a) {
+    const std::size_t count = extent_[a];
+    line.resize(count);
+    pivot.resize(count);
+    for (std::size_t base = 0; base < coefficients_.size(); ++base) {
+      if (base / stride[a] % count != 0) continue;
+      for (std::size_t i = 0; i < count; ++i) line[i] = coefficients_[base + i * stride[a]];
+      interpolate(line, pivot);
+      for (std::size_t i = 0; i < count; ++i) coefficients_[base + i * stride[a]] = line[i];
+    }
+  }
+}
+
+template <int Derivatives>
+SplineField::Axis SplineField::axis(const Vec3& x, int which) const {
+  const double scale = per_length_[which], cells = grid_.nodes[which] - 1;
+  const double position = (x[which] - grid_.origin[which]) * scale;
+  const double held = std::clamp(position, -margin, cells + margin);
+  const double cell = cell_of(held, cells), slope = position == held ? scale : 0;
+  const CubicSplines splines{held - cell};
+  const auto four = [](const CubicSplines::Four& values) {
+    return Eigen::Map<const Axis::Four>(values.data());
+  };
+  Axis result;
+  result.cell = static_cast<int>(cell);
+  result.w = four(splines.values());
+  if constexpr (Derivatives >= 1) result.d = four(splines.slopes(slope));
+  if constexpr (Derivatives >= 2) result.dd = four(splines.turns(slope * slope));
+  return result;
+}
+
+// Sums over x and y are of four splines along z at a time.
+
+double SplineField::excess(const Vec3& x) const {
+  const Axis a = axis<0>(x, 0), b = axis<0>(x, 1), c = axis<0>(x, 2);
+  Axis::Four sum = Axis::Four::Zero();
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) sum += a.w[i] * b.w[j] * four(a.cell + i, b.cell + j, c.cell);
+  return (sum * c.w).sum();
+}
+
+IndexGradient SplineField::gradient(const Vec3& x) const {
+  const Axis a = axis<1>(x, 0), b = axis<1>(x, 1), c = axis<1>(x, 2);
+  Axis::Four f = Axis::Four::Zero(), fx = f, fy = f;
+  for (int i = 0; i < 4; ++i) {
+    Axis::Four g = Axis::Four::Zero(), gy = g;
+    for (int j = 0; j < 4; ++j) {
+      const auto values = four(a.cell + i, b.cell + j, c.cell);
+      g += b.w[j] * values;
+      gy += b.d[j] * values;
+    }
+    f += a.w[i] * g;
+    fx += a.d[i] * g;
+    fy += a.w[i] * gy;
+  }
+  return {(f * c.w).sum(), {(fx * c.w).sum(), (fy * c.w).sum(), (f * c.d).sum()}};
+}
+
+/// Sums over x and y of a lane's splines, and their derivatives: four numbers along z each.
+inline void SplineField::add_rows(const std::array<LaneAxis, 3>& axes, int lane, WideFour& f,
+                                  WideFour& fx, WideFour& fy) const {
+  const auto& [a, b, c] = axes;
+  const double* first = row(static_cast<int>(a.cell[lane]), static_cast<int>(b.cell[lane]),
+                            static_cast<int>(c.cell[lane]));
+  f = fx = fy = WideFour{};
+  for (int i = 0; i < 4; ++i) {
+    WideFour g{}, gy{};
+    for (int j = 0; j < 4; ++j) {
+      WideFour values;
+      load(first + (i * extent_[1] + j) * extent_[2], values);
+      g += b.w[j][lane] * values;
+      gy += b.d[j][lane] * values;
+    }
+    f += a.w[i][lane] * g;
+    fx += a.d[i][lane] * g;
+    fy += a.w[i][lane] * gy;
+  }
+}
+
+inline void SplineField::look_along(int which, const double* x, LaneAxis& found) const {
+  const double scale = per_length_[which], cells = grid_.nodes[which] - 1;
+  const double origin = grid_.origin[which];
+#pragma omp simd
+  for (int k = 0; k < lanes; ++k) {
+    const double place = (x[k] - origin) * scale;
+    const double held = std::clamp(place, -margin, cells + margin), cell = cell_of(held, cells);
+    const CubicSplines splines{held - cell};
+    const CubicSplines::Four w = splines.values(), d = splines.slopes(place == held ? scale : 0);
+    found.cell[k] = cell;
+    found.w[0][k] = w[0];
+    found.w[1][k] = w[1];
+    found.w[2][k] = w[2];
+    found.w[3][k] = w[3];
+    found.d[0][k] = d[0];
+    found.d[1][k] = d[1];
+    found.d[2][k] = d[2];
+    found.d[3][k] = d[3];
+  }
+}
+
+FLATSPECKLE_EVERY_WIDTH void SplineField::gradients(const LaneVectors& x,
+                                                    LaneGradients& found) const {
+  std::array<LaneAxis, 3> axes;
+  look_along(0, x.x, axes[0]);
+  look_along(1, x.y, axes[1]);
+  look_along(2, x.z, axes[2]);
+  const LaneAxis& z = axes[2];
+  for (int k = 0; k < lanes; k += 4) {
+    WideFour f[4], fx[4], fy[4];
+    for (int i = 0; i < 4; ++i) add_rows(axes, k + i, f[i], fx[i], fy[i]);
+    transpose(f);
+    transpose(fx);
+    transpose(fy);
+    const auto sum = [k](const WideFour* values, const double(*weights)[lanes], double* to) {
+      WideFour all{};
+      for (int i = 0; i < 4; ++i) all += values[i] * wide_four_at(weights[i] + k);
+      wide_four_at(to + k) = all;
+    };
+    sum(f, z.w, found.excess);
+    sum(fx, z.w, found.gradient.x);
+    sum(fy, z.w, found.gradient.y);
+    sum(f, z.d, found.gradient.z);
+  }
+}
+
+IndexHessian SplineField::hessian(const std::array<Axis, 3>& axes) const {
+  const auto& [a, b, c] = axes;
+  Axis::Four f = Axis::Four::Zero(), fx = f, fy = f, fxx = f, fxy = f, fyy = f;
+  for (int i = 0; i < 4; ++i) {
+    Axis::Four g = Axis::Four::Zero(), gy = g, gyy = g;
+    for (int j = 0; j < 4; ++j) {
+      const auto values = four(a.cell + i, b.cell + j, c.cell);
+      g += b.w[j] * values;
+      gy += b.d[j] * values;
+      gyy += b.dd[j] * values;
+    }
+    f += a.w[i] * g;
+    fx += a.d[i] * g;
+    fy += a.w[i] * gy;
+    fxx += a.dd[i] * g;
+    fxy += a.d[i] * gy;
+    fyy += a.w[i] * gyy;
+  }
+  const double xy = (fxy * c.w).sum(), xz = (fx * c.d).sum(), yz = (fy * c.d).sum();
+  return {
+      (f * c.w).sum(),
+      {(fx * c.w).sum(), (fy * c.w).sum(), (f * c.d).sum()},
+      Mat3{{(fxx * c.w).sum(), xy, xz}, {xy, (fyy * c.w).sum(), yz}, {xz, yz, (f * c.dd).sum()}}};
+}
+
+IndexHessian SplineField::hessian(const Vec3& x) const {
+  return hessian({axis<2>(x, 0), axis<2>(x, 1), axis<2>(x, 2)});
+}
+
+SplineField::Look SplineField::look(const Vec3& x) const {
+  const std::array<Axis, 3> axes{axis<2>(x, 0), axis<2>(x, 1), axis<2>(x, 2)};
+  return {axes, hessian(axes)};
+}
+
+/// A spline is a mean of its coefficients.
+double SplineField::range() const {
+  const auto [least, most] = std::minmax_element(coefficients_.begin(), coefficients_.end());
+  return *most - *least;
+}
+
+SplineField read_spline_field(const std::filesystem::path& path) {
+  return read_grid<SplineField>(path, "excess");
+}
+
+FieldFacts facts(const SplineField& field) {
+  const FieldGrid& grid = field.grid();
+  return {.scale = 2 * grid.spacing.minCoeff(),
+          .strength = 4 * field.range(),
+          .grid = Box{grid.origin, grid.end()}};
+}
+
+void add_keys(Keys& keys, GridValues& values) {
+  keys.add("grid", values.grid,
+           "HDF5 with excess[x, y, z] = n - 1 and its attributes origin, spacing")
+      .file();
+}
+
+SplineField make_field(const Keys& keys, const GridValues& values, const FieldUse&) {
+  return read_grid_of<SplineField>(keys.name(values.grid), keys.required(values.grid), "excess");
+}
+
+}  // namespace flatspeckle::grin

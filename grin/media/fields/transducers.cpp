@@ -1,0 +1,138 @@
+#include "grin/media/fields/transducers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/keys/csv.h"
+#include "grin/media/fields/focused_sound.h"
+#include "grin/media/geometry/frame.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+std::vector<Vec3> directions(const Transducer& of, int waves) {
+  const Vec3 axis = of.direction.normalized();
+  if (!(of.aperture > 0)) return {axis};
+  const Frame across = frame_across(axis);
+  std::vector<Vec3> found;
+  for (const Vec3& d : cap_directions(waves, of.aperture))
+    found.push_back(d[0] * across.col(0) + d[1] * across.col(1) + d[2] * axis);
+  return found;
+}
+
+}  // namespace
+
+Transducers::Transducers(double background, const std::vector<Transducer>& all, int waves)
+    : background_(background) {
+  for (const Transducer& one : all)
+    largest_wavenumber_ = std::max(largest_wavenumber_, one.wavenumber);
+  for (const Transducer& one : all) {
+    const auto towards = directions(one, waves);
+    const double amplitude = one.amplitude / static_cast<double>(towards.size());
+    for (const Vec3& direction : towards) {
+      const Vec3 k = one.wavenumber * direction;
+      waves_.push_back(
+          {k, amplitude, k.dot(one.focus) + one.phase, one.wavenumber / largest_wavenumber_});
+    }
+  }
+}
+
+Transducers Transducers::frozen(double phase) const {
+  constexpr double periods = 1 << 20, turn = 2 * std::numbers::pi;
+  const double before = std::floor(phase / turn * periods);  // whole periods of the fastest
+  Transducers sound = *this;
+  for (Wave& wave : sound.waves_)
+    wave.phase += wave.rate * phase + turn * std::remainder(wave.rate * before, 1);
+  return sound;
+}
+
+double Transducers::largest() const {
+  double sum = 0;
+  for (const Wave& wave : waves_) sum += std::abs(wave.amplitude);
+  return sum;
+}
+
+IndexGradient Transducers::gradient(const Vec3& x) const {
+  IndexGradient sum{background_, Vec3::Zero()};
+  for (const auto& [k, amplitude, phase, rate] : waves_) {
+    const double at = k.dot(x) - phase;
+    sum.excess += amplitude * std::cos(at);
+    sum.gradient -= amplitude * std::sin(at) * k;
+  }
+  return sum;
+}
+
+IndexHessian Transducers::hessian(const Vec3& x) const {
+  IndexHessian sum{background_, Vec3::Zero(), Mat3::Zero()};
+  for (const auto& [k, amplitude, phase, rate] : waves_) {
+    const double at = k.dot(x) - phase, value = amplitude * std::cos(at);
+    sum.excess += value;
+    sum.gradient -= amplitude * std::sin(at) * k;
+    sum.hessian -= value * k * k.transpose();
+  }
+  return sum;
+}
+
+namespace {
+
+constexpr std::size_t row_size = 10;
+const std::vector<std::string> columns{"amplitude", "wavenumber", "phase", "x",  "y",
+                                       "z",         "dx",         "dy",    "dz", "aperture"};
+
+Transducer transducer(std::span<const double> row) {
+  return {row[0],
+          positive("wavenumber of a transducer", row[1]),
+          row[2],
+          {row[3], row[4], row[5]},
+          {row[6], row[7], row[8]},
+          row[9]};
+}
+
+void check(const Transducer& one) {
+  if (!(one.direction.norm() > 0))
+    throw InputError("direction of a transducer", 0, "must not be 0 0 0");
+  if (!(one.aperture >= 0 && one.aperture <= std::numbers::pi))
+    throw InputError("aperture of a transducer", one.aperture, "must be from 0 to pi");
+}
+
+/// Row by row.
+std::vector<double> all_numbers(const Keys& keys, const TransducersValues& values) {
+  std::vector<double> rows = keys.read(values.transducer);
+  const std::string& path = keys.read(values.transducer_table);
+  if (path.empty()) return rows;
+  const Table table = read_csv(path, columns);
+  std::vector<std::span<const double>> by_column;
+  for (const std::string& name : columns) by_column.push_back(table.column(name));
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    for (const auto& column : by_column) rows.push_back(column[row]);
+  return rows;
+}
+
+}  // namespace
+
+void add_keys(Keys& keys, TransducersValues& values) {
+  add_index_key(keys, values.index, "without the sound");
+  keys.add("transducer", values.transducer,
+           "Of each: amplitude of the index, wavenumber and phase of the sound, the point and the "
+           "direction that it is aimed at, half angle of its aperture (0: a plane wave)")
+      .each_of(row_size, "amplitude wavenumber phase x y z dx dy dz aperture");
+  keys.add("transducer_table", values.transducer_table, "CSV with these columns").file();
+  keys.add("transducer_waves", values.transducer_waves, "Plane waves of a transducer's aperture")
+      .from(1, 100'000);
+}
+
+Transducers make_field(const Keys& keys, const TransducersValues& values, const FieldUse& use) {
+  const std::vector<double> rows = all_numbers(keys, values);
+  if (rows.empty()) throw InputError("transducer", "none", "wants one, or a transducer_table");
+  std::vector<Transducer> all;
+  for (std::size_t i = 0; i < rows.size(); i += row_size) {
+    all.push_back(transducer(std::span(rows).subspan(i, row_size)));
+    check(all.back());
+  }
+  return {background(keys, values.index, use), all,
+          static_cast<int>(keys.read(values.transducer_waves))};
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,164 @@
+#pragma once
+
+#include <cmath>
+#include <complex>
+#include <memory>
+
+#include "grin/media/index/bessel_profile.h"
+#include "grin/media/index/sound.h"
+
+namespace flatspeckle::grin {
+
+/// A cylindrical standing wave of sound about the z axis, frozen (conventions, C28):
+/// n = 1 + background + amplitude S J_m(kr rho) cos(m phi).
+class StandingWave {
+ public:
+  /// kr > 0. Fast up to rho = reach, correct beyond. Throws InputError where BesselProfile does.
+  StandingWave(double background, double amplitude, int m, double kr, double reach);
+
+  /// The wave that a ray meets at the sound's phase S, from -1 to 1. The table is shared.
+  StandingWave frozen(double s) const {
+    StandingWave wave = *this;
+    wave.amplitude_ *= s;
+    return wave;
+  }
+
+  double background() const { return background_; }
+  double amplitude() const { return amplitude_; }
+  double wavenumber() const { return kr_; }
+  int order() const { return m_; }
+
+  double excess(const Vec3& x) const {
+    const double u = kr_ * kr_ * (x[0] * x[0] + x[1] * x[1]);
+    return background_ + amplitude_ * profile_->value(u) * power(x, m_).real();
+  }
+
+  IndexGradient gradient(const Vec3& x) const {
+    const double u = kr_ * kr_ * (x[0] * x[0] + x[1] * x[1]);
+    const auto [value, slope] = profile_->jet(u);
+    const double radial = 2 * amplitude_ * kr_ * kr_ * slope;
+    if (m_ == 0) return {background_ + amplitude_ * value, Vec3(radial * x[0], radial * x[1], 0)};
+    // z^m and its derivative m z^(m-1) by z = kr (x + i y): by x its real part, by y minus its
+    // imaginary one.
+    const std::complex<double> lower = power(x, m_ - 1);
+    const double re = kr_ * (x[0] * lower.real() - x[1] * lower.imag());
+    const double turn = amplitude_ * value * m_ * kr_;
+    return {background_ + amplitude_ * value * re,
+            Vec3(radial * re * x[0] + turn * lower.real(), radial * re * x[1] - turn * lower.imag(),
+                 0)};
+  }
+
+  void gradients(const LaneVectors& x, LaneGradients& found) const {
+    const double amplitude = amplitude_, background = background_, k2 = kr_ * kr_;
+    alignas(64) double u[lanes], value[lanes], slope[lanes];
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) u[k] = k2 * (x.x[k] * x.x[k] + x.y[k] * x.y[k]);
+    profile_->jets(u, value, slope);
+    if (m_ > 0) return angular_gradients(x, value, slope, found);
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) {
+      const double radial = 2 * amplitude * k2 * slope[k];
+      found.excess[k] = background + amplitude * value[k];
+      found.gradient.x[k] = radial * x.x[k];
+      found.gradient.y[k] = radial * x.y[k];
+      found.gradient.z[k] = 0;
+    }
+  }
+
+  IndexHessian hessian(const Vec3& x) const {
+    return m_ == 0 ? round_hessian(x) : angular_hessian(x);
+  }
+
+ private:
+  /// Of g(u): 2 g' delta_ij + 4 g'' x_i x_j.
+  IndexHessian round_hessian(const Vec3& x) const {
+    const double a = kr_ * x[0], b = kr_ * x[1];
+    const auto at = profile_->bent_jet(a * a + b * b);
+    const double scale = amplitude_ * kr_ * kr_, slope = 2 * scale * at.slope;
+    const double bend = 4 * scale * at.bend;
+    IndexHessian found{
+        background_ + amplitude_ * at.value, {slope * x[0], slope * x[1], 0}, Mat3::Zero()};
+    found.hessian(0, 0) = slope + bend * a * a;
+    found.hessian(1, 1) = slope + bend * b * b;
+    found.hessian(0, 1) = found.hessian(1, 0) = bend * a * b;
+    return found;
+  }
+  IndexHessian angular_hessian(const Vec3& x) const;
+  /// As gradient().
+  void angular_gradients(const LaneVectors& x, const double* value, const double* slope,
+                         LaneGradients& found) const {
+    const double amplitude = amplitude_, background = background_, kr = kr_, m = m_;
+    alignas(64) double re[lanes], im[lanes], a[lanes], b[lanes];
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) {
+      re[k] = 1;
+      im[k] = 0;
+      a[k] = kr * x.x[k];
+      b[k] = kr * x.y[k];
+    }
+    for (int exponent = m_ - 1; exponent > 0; exponent >>= 1) {
+      const bool is_odd = exponent & 1;
+#pragma omp simd
+      for (int k = 0; k < lanes; ++k) {
+        const double next = re[k] * a[k] - im[k] * b[k], side = re[k] * b[k] + im[k] * a[k];
+        re[k] = is_odd ? next : re[k];
+        im[k] = is_odd ? side : im[k];
+        const double square = a[k] * a[k] - b[k] * b[k];
+        b[k] *= 2 * a[k];
+        a[k] = square;
+      }
+    }
+#pragma omp simd
+    for (int k = 0; k < lanes; ++k) {
+      const double whole = kr * (x.x[k] * re[k] - x.y[k] * im[k]);
+      const double turn = amplitude * value[k] * m * kr;
+      const double radial = 2 * amplitude * kr * kr * slope[k] * whole;
+      found.excess[k] = background + amplitude * value[k] * whole;
+      found.gradient.x[k] = radial * x.x[k] + turn * re[k];
+      found.gradient.y[k] = radial * x.y[k] - turn * im[k];
+      found.gradient.z[k] = 0;
+    }
+  }
+
+  /// (kr (x + i y))^exponent, by squaring.
+  std::complex<double> power(const Vec3& x, int exponent) const {
+    double re = 1, im = 0, a = kr_ * x[0], b = kr_ * x[1];
+    for (; exponent > 0; exponent >>= 1) {
+      if (exponent & 1) {
+        const double next = re * a - im * b;
+        im = re * b + im * a;
+        re = next;
+      }
+      const double square = a * a - b * b;
+      b *= 2 * a;
+      a = square;
+    }
+    return {re, im};
+  }
+
+  double background_, amplitude_, kr_;
+  int m_;
+  std::shared_ptr<const BesselProfile> profile_;
+};
+
+/// As light meets it at this phase of the sound, from 0 to 2 pi: S = cos(phase).
+inline StandingWave at_phase(const StandingWave& field, double phase) {
+  return field.frozen(std::cos(phase));
+}
+
+inline FieldFacts facts(const StandingWave& field) {
+  return {.scale = 1 / field.wavenumber(),
+          .strength = std::abs(field.amplitude()),
+          .symmetry = field.order() == 0 ? Symmetry::round_guide : Symmetry::guide};
+}
+
+struct UltrasoundValues : SoundValues {
+  using Field = StandingWave;
+  static constexpr const char* word = "ultrasound";
+  std::int64_t sound_order = 0;
+};
+
+void add_keys(Keys& keys, UltrasoundValues& values);
+StandingWave make_field(const Keys& keys, const UltrasoundValues& values, const FieldUse& use);
+
+}  // namespace flatspeckle::grin

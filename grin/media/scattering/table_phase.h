@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/keys/angle_table.h"
+#include "grin/media/scattering/space_phase.h"
+
+namespace flatspeckle::grin {
+
+/// A phase function that was measured or computed elsewhere: a CSV file with columns angle
+/// (radians, rising from 0 to pi) and value (per solid angle; not negative, in any unit), linear in
+/// between.
+class TablePhase {
+ public:
+  explicit TablePhase(AngleTable table);
+
+  double density(double cosine) const;
+  double one_minus_cosine(RandomStream& random) const;
+  double mean_cosine() const { return shape_->mean_cosine; }
+
+ private:
+  struct Shape {
+    AngleTable table;
+    std::vector<double> so_far = {0};  ///< integral over the sphere up to each angle
+    double mean_cosine = 0;
+  };
+  std::shared_ptr<const Shape> shape_;
+};
+
+struct TablePhaseValues {
+  static constexpr const char* word = "phase_table";
+  std::string phase_table{};
+};
+
+inline void add_keys(Keys& keys, TablePhaseValues& values, const std::string& prefix) {
+  keys.add(prefix + "phase_table", values.phase_table,
+           "CSV with columns angle (0 to pi) and value (any unit), linear in between")
+      .file()
+      .only_of(values.word);
+}
+/// Throws InputError for a file that is no such table.
+TablePhase make_phase(const Keys& keys, const TablePhaseValues& values);
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,45 @@
+#include "grin/rays/connections/geometric_spreading.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+
+namespace flatspeckle::grin {
+
+namespace {
+
+// A map this much narrower than wide has a determinant of rounding errors.
+constexpr double rounding = 1e-13;
+
+/// Caustics between two points with the transverse maps `before` and `after`: the negative
+/// eigenvalues of after before^-1.
+int crossings(const Mat2& before, const Mat2& after) {
+  Mat2 adjugate;
+  adjugate << before(1, 1), -before(0, 1), -before(1, 0), before(0, 0);
+  const double sign = before.determinant();
+  if ((sign < 0) != (after.determinant() < 0)) return 1;
+  return (after * adjugate).trace() * sign < 0 ? 2 : 0;
+}
+
+}  // namespace
+
+Widths widths(const Mat2& map) {
+  const double determinant = std::abs(map.determinant());
+  const double sum = std::sqrt(map.squaredNorm() + 2 * determinant);
+  const double difference = std::sqrt(std::max(0.0, map.squaredNorm() - 2 * determinant));
+  const double wide = (sum + difference) / 2;
+  return {wide > 0 ? determinant / wide : 0, wide};
+}
+
+void CausticCount::pass(const RayState& ray, const RayTangent& tangent) {
+  here_ = carried_across(here_, ray.v);
+  const Mat2 map = transverse_map(tangent, n_start_, start_, here_);
+  const auto [narrow, wide] = widths(map);
+  widest_ = std::max(widest_, wide);
+  if (narrow < rounding * widest_) return;  // on a caustic: judge by the points on both sides
+  count_ += crossings(before_, map);
+  before_ = map;
+}
+
+}  // namespace flatspeckle::grin

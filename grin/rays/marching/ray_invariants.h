@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "grin/rays/marching/ray.h"
+
+namespace flatspeckle::grin {
+
+/// What a ray keeps, by the symmetry of its field (conventions, C27).
+struct RayInvariants {
+  double index_mismatch;  ///< |v| - n: 0 in any field
+  Vec3 angular_momentum;  ///< (x - centre) cross v: spherical symmetry
+  double axial_momentum;  ///< v along the axis: a guide
+  double axial_rotation;  ///< angular momentum along the axis through the centre: a round guide
+  Vec3 transverse;  ///< v across the axis, of length n sin(angle): a field stratified along it
+};
+
+template <IndexField F>
+RayInvariants ray_invariants(const F& field, const RayState& ray, const Vec3& centre = Vec3::Zero(),
+                             const Vec3& axis = Vec3::UnitZ()) {
+  const Vec3 rotation = (ray.x - centre).cross(ray.v);
+  const double along = axis.dot(ray.v);
+  return {ray.v.norm() - index(field, ray.x), rotation, along, axis.dot(rotation),
+          ray.v - along * axis};
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,83 @@
+#pragma once
+
+#include "grin/rays/marching/ray_step.h"
+#include "grin/rays/surfaces/curvature.h"
+#include "grin/rays/surfaces/interface.h"
+
+namespace flatspeckle::grin {
+
+/// A ray at a surface where the index jumps (conventions, C25: the jump in dx/dv0): it goes on
+/// refracted or reflected, and its neighbours with it, each from where it meets the surface.
+class RayJump {
+ public:
+  /// from, to: the index on the side that the ray comes from, and beyond.
+  RayJump(const Surface& surface, const RayState& ray, const IndexGradient& from,
+          const IndexGradient& to)
+      : normal_(normal(surface, ray.x)),
+        face_(ray.v, normal_, from.excess, to.excess),
+        turn_(curvature(surface, ray.x)),
+        force_(ray_force(from)),
+        change_of_force_(ray_force(to) - force_),
+        is_hollow_(hollow(surface)) {
+    if (ray.v.dot(normal_) >= 0) return;
+    normal_ = -normal_;
+    turn_ = -turn_;
+  }
+
+  bool is_total() const { return face_.is_total(); }
+  double reflectance() const { return face_.reflectance(); }
+  /// Of what happens here, Fresnel's.
+  double chance(bool reflected) const { return reflected ? reflectance() : 1 - reflectance(); }
+  /// Of a surface by which there may be many ways between two points, each seldom found.
+  bool is_hollow() const { return is_hollow_; }
+
+  /// Not where the reflection is total.
+  void refract(RayState& ray, RayTangent* tangent = nullptr) const {
+    const Vec3 refracted = *face_.refracted();
+    if (tangent) {
+      const Turned turned = meet(ray, *tangent);
+      const double q1 = normal_.dot(ray.v), q2 = normal_.dot(refracted);
+      const RowVec3 q2_change = (q1 * turned.q1 + change_of_force_.transpose() * tangent->dx) / q2;
+      tangent->dv += normal_ * (q2_change - turned.q1) + (q2 - q1) * turned.normal;
+    }
+    ray.v = refracted;
+  }
+  void reflect(RayState& ray, RayTangent* tangent = nullptr) const {
+    if (tangent) {
+      const Turned turned = meet(ray, *tangent);
+      tangent->dv -= 2 * (normal_ * turned.q1 + normal_.dot(ray.v) * turned.normal);
+    }
+    ray.v = face_.reflected();
+  }
+  void pass(bool reflects, RayState& ray, RayTangent* tangent = nullptr) const {
+    reflects ? reflect(ray, tangent) : refract(ray, tangent);
+  }
+
+ private:
+  static bool hollow(const Surface& surface) {
+    const auto* level = std::get_if<LevelSurface>(&surface);
+    return level && !level->looks_convex();
+  }
+
+  using RowVec3 = Eigen::RowVector3d;
+  /// Derivatives by v0 where neighbours meet the surface: of the normal, and of q1 = v.normal.
+  struct Turned {
+    Mat3 normal;
+    RowVec3 q1;
+  };
+  Turned meet(const RayState& ray, RayTangent& tangent) const {
+    const RowVec3 sooner = -(normal_.transpose() * tangent.dx) / normal_.dot(ray.v);
+    tangent.dx += ray.v * sooner;
+    tangent.dv += force_ * sooner;
+    const Mat3 turned = turn_ * tangent.dx;
+    return {turned, normal_.transpose() * tangent.dv + ray.v.transpose() * turned};
+  }
+
+  Vec3 normal_;  ///< along the ray
+  Interface face_;
+  Mat3 turn_;
+  Vec3 force_, change_of_force_;
+  bool is_hollow_;
+};
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,69 @@
+#pragma once
+
+#include "grin/rays/connections/connection_solver.h"
+#include "grin/render/curved/fisheye_rays.h"
+#include "grin/render/curved/luneburg_rays.h"
+#include "grin/render/curved/parabolic_rays.h"
+
+namespace flatspeckle::grin {
+
+/// Rays of the same index everywhere, without steps.
+class StraightRays final : public RayFieldOf<Homogeneous> {
+ public:
+  explicit StraightRays(const Homogeneous& field) : RayFieldOf(field), field_(field) {}
+
+  ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
+                             RandomStream& random,
+                             ConnectionStatistics& statistics) const override {
+    return grin::connect(Trial(field_, ends.region, ends.from, ends.to, options), random,
+                         statistics);
+  }
+  std::vector<FoundConnection> connections(const CurveEnds& ends, const ConnectionOptions& options,
+                                           std::uint64_t trials, RandomStream& random,
+                                           ConnectionStatistics& statistics) const override {
+    const Trial trial(field_, ends.region, ends.from, ends.to, options);
+    return all_connections(trial, trials, random, statistics);
+  }
+
+ private:
+  using Trial = ConnectionTrial<Homogeneous, Sides>;
+
+  Homogeneous field_;
+};
+
+/// A field as it is for rays in a room: steps that reach past its outer surface stay smooth.
+template <IndexField F>
+std::unique_ptr<const RayField> ray_field_within(const F& field, std::span<const Surface> room,
+                                                 bool leapfrogs) {
+  if constexpr (HomogeneousField<F>) return std::make_unique<StraightRays>(field);
+  if constexpr (goes_by_leapfrog<F>)
+    if (leapfrogs) return std::make_unique<RayFieldOf<F, Leapfrog>>(field);
+  if constexpr (std::same_as<F, ParabolicGuide>)
+    if (!room.empty() && bends_within(field, room[0]))
+      return std::make_unique<ParabolicRays>(field, room[0]);
+  if constexpr (requires { smooth_within(field, Sphere()); })
+    if (const Sphere* sphere = room.empty() ? nullptr : std::get_if<Sphere>(&room[0])) {
+      const F smooth = smooth_within(field, *sphere);
+      if (room.size() == 1)
+        if (auto closed = closed_form_within(smooth, *sphere)) return closed;
+      return std::make_unique<RayFieldOf<F>>(smooth);
+    }
+  return std::make_unique<RayFieldOf<F>>(field);
+}
+
+template <std::size_t file, std::size_t number>
+std::unique_ptr<const RayField> ray_field_from(const AnyIndexField& field,
+                                               std::span<const Surface> room, bool leapfrogs) {
+  if constexpr (number < std::variant_size_v<AnyIndexField>) {
+    if (const auto* of = std::get_if<number>(&field)) return ray_field_within(*of, room, leapfrogs);
+    return ray_field_from<file, number + ray_field_files>(field, room, leapfrogs);
+  }
+  return nullptr;
+}
+template <std::size_t file>
+std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field,
+                                             std::span<const Surface> room, bool leapfrogs) {
+  return ray_field_from<file, file>(field, room, leapfrogs);
+}
+
+}  // namespace flatspeckle::grin

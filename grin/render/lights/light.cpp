@@ -1,0 +1,150 @@
+#include "grin/render/lights/light.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flatspeckle::grin {
+
+namespace {
+
+template <class... Kind>
+void add_all(Keys& keys, LightKinds<Kind...>& values) {
+  (add_keys(keys, static_cast<Kind&>(values)), ...);
+}
+
+template <class... Kind>
+std::vector<Light> make_all(const Keys& keys, const LightKinds<Kind...>& values) {
+  std::vector<Light> lights;
+  const auto append = [&](const auto& more) {
+    lights.insert(lights.end(), more.begin(), more.end());
+  };
+  (append(make_lights(keys, static_cast<const Kind&>(values))), ...);
+  return lights;
+}
+
+LightValues::End end_of(const Light& light, const Stage& stage, const IndexAt& index) {
+  return std::visit(
+      [&]<class L>(const L& of) -> LightValues::End { return typename L::End(of, stage, index); },
+      light);
+}
+
+}  // namespace
+
+void add_keys(Keys& keys, LightValues& values) {
+  keys.group("Lights of the stage");
+  add_all(keys, values);
+}
+
+std::vector<Light> make_lights(const Keys& keys, const LightValues& values) {
+  return make_all(keys, values);
+}
+
+Lights::Lights(const std::vector<Light>& lights, const Stage& stage, const IndexAt& index)
+    : regions_(stage) {
+  if (lights.empty())
+    throw InputError(
+        "light is not given: a scene needs one or more of point_light, beam_light, gaussian_beam, "
+        "fibre_light, gaussian_fibre, face_light, environment");
+  for (const Light& light : lights) {
+    const auto number = static_cast<int>(source_.size());
+    auto end = end_of(light, stage, index);
+    const auto power_of = [](const auto& of) { return of.power(); };
+    const double power = std::visit(power_of, end);
+    power_ += power;
+    if (std::holds_alternative<FaceLightEnd>(end)) faces_.push_back(number);
+    if (std::holds_alternative<BeamLightEnd>(end)) {
+      beams_.push_back(number);
+      beam_power_ += power;
+    }
+    source_.push_back({std::move(end), power});
+  }
+  settle_chances();
+}
+
+void Lights::settle_chances() {
+  const auto some_density = [](const auto& end) {
+    RandomStream random(0, 0, 0);
+    return end.density(end.sample(random).x);
+  };
+  double so_far = 0;
+  for (Source& s : source_) {
+    s.chance = s.power / power_;
+    const double density = s.chance * std::visit(some_density, s.end);
+    if (!(density > 0 && std::isfinite(density)))
+      throw InputError("light", &s - source_.data() + 1,
+                       "has a size or a share of the power too small or too large for numbers");
+    so_far += s.chance;
+    s.chance_so_far = so_far;
+  }
+}
+
+EndPosition Lights::position(int light, const BoundaryPoint& at) const {
+  return std::visit(
+      [&](const auto& end) -> EndPosition {
+        return {.point = {at.x, regions_.at(at.x)},
+                .inward = at.inward,
+                .position_density = source_[light].chance * end.density(at.x),
+                .light = light,
+                .is_point = end.is_point,
+                .is_beam = end.is_beam};
+      },
+      source_[light].end);
+}
+
+Lights::PlaceInBeam Lights::beam_place(double stratum) const {
+  double power = stratum * beam_power_;
+  std::size_t i = 0;
+  while (i + 1 < beams_.size() && power >= source_[beams_[i]].power)
+    power -= source_[beams_[i++]].power;
+  return {i, std::min(power / source_[beams_[i]].power, 1.0)};
+}
+
+Lights::Beam Lights::beam_at(std::size_t number) const {
+  return {number, std::get<BeamLightEnd>(source_[beams_[number]].end).disk(), beam_power_};
+}
+
+Lights::Beam Lights::beam_of(const EndPosition& at) const {
+  const auto number = std::find(beams_.begin(), beams_.end(), at.light) - beams_.begin();
+  return beam_at(static_cast<std::size_t>(number));
+}
+
+EndPosition Lights::beam_position(double stratum, double u, double v) const {
+  return position_on(beam_place(stratum).number, u, v);
+}
+
+EndPosition Lights::beam_position(double stratum, double v) const {
+  const PlaceInBeam place = beam_place(stratum);
+  return position_on(place.number, place.u, v);
+}
+
+EndPosition Lights::position_on(std::size_t beam, double u, double v) const {
+  return position(beams_[beam], beam_at(beam).disk.from_square(u, v));
+}
+
+EndPosition Lights::draw_position(RandomStream& random) const {
+  const double u = random.uniform();
+  int light = 0;
+  while (light + 1 < static_cast<int>(source_.size()) && u >= source_[light].chance_so_far) ++light;
+  return position(
+      light, std::visit([&](const auto& end) { return end.sample(random); }, source_[light].end));
+}
+
+EndDirection Lights::sample_direction(const EndPosition& at, RandomStream& random) const {
+  const Source& from = source_[at.light];
+  EndDirection to =
+      std::visit([&](const auto& end) { return end.sample_direction(at, random); }, from.end);
+  if (at.is_beam) to.strength /= from.chance;  // which is in its density of positions
+  return to;
+}
+
+EmissionChange Lights::by_index(const EndPosition& at, const Vec3& direction) const {
+  return std::visit([&](const auto& end) { return end.by_index(at, direction); },
+                    source_[at.light].end);
+}
+
+EndDirection Lights::towards(const EndPosition& at, const Vec3& direction) const {
+  return std::visit([&](const auto& end) { return end.towards(at, direction); },
+                    source_[at.light].end);
+}
+
+}  // namespace flatspeckle::grin

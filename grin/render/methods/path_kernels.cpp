@@ -1,0 +1,42 @@
+#include "grin/render/methods/path_kernels.h"
+
+#include <numbers>
+
+#include "grin/render/transport/bidirectional.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+/// Sensor paths take the pixels in turn.
+double stratum(int path, int paths, RandomStream& random) {
+  return (path + random.uniform()) / paths;
+}
+
+template <class Family>
+PathKernel kernel_of(std::shared_ptr<const Transport> transport, std::shared_ptr<const Space> space,
+                     bool random_phase) {
+  return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts,
+             JoinPromises* promises) {
+    const auto add = [&](const Space& met, int first, int last) {
+      Bidirectional<Family> estimator(*transport, met, random, film, counts);
+      for (int path = first; path < last; ++path) {
+        estimator.add(stratum(path, paths, random));
+        if (promises) estimator.append_promises(*promises);
+      }
+    };
+    if (!random_phase) return add(*space, 0, paths);
+    for (int path = 0; path < paths; ++path)
+      add(*space->frozen(2 * std::numbers::pi * random.uniform()), path, path + 1);
+  };
+}
+
+}  // namespace
+
+PathKernel path_kernel(const RenderPlan& plan, std::shared_ptr<const Transport> transport,
+                       std::shared_ptr<const Space> space, bool random_phase) {
+  return plan.deep ? kernel_of<LightFamily>(transport, space, random_phase)
+                   : kernel_of<LonePath>(transport, space, random_phase);
+}
+
+}  // namespace flatspeckle::grin

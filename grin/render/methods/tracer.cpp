@@ -1,0 +1,212 @@
+#include "grin/render/methods/tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <tuple>
+
+#include "grin/render/methods/analog_light.h"
+#include "grin/render/methods/photon_map.h"
+#include "grin/render/methods/render_pilot.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+bool is_beam(const Light& light) {
+  return std::holds_alternative<BeamLight>(light);
+}
+
+Strategies strategies(const RenderScene& scene, RenderMethod method) {
+  const bool is_light = method == RenderMethod::light;
+  const bool has_beam = std::any_of(scene.lights.begin(), scene.lights.end(), is_beam);
+  return {.short_light = method == RenderMethod::path,
+          .short_sensor = is_light,
+          .joins_beams = has_beam && !is_light};
+}
+
+int path_limit(const RenderRequest& request) {
+  constexpr int unlimited = std::numeric_limits<int>::max();
+  if (request.max_scatterings <= 0) return unlimited;
+  return static_cast<int>(std::min<std::int64_t>(request.max_scatterings, unlimited));
+}
+
+double photon_radius(const RenderScene& scene, const RenderRequest& request) {
+  return request.photon_radius > 0 ? request.photon_radius : default_photon_radius(scene.stage);
+}
+
+double index_at(const RenderScene& scene, const PathPoint& p) {
+  if (p.part != scene.stage.field_part()) return 1 + scene.stage.excess_in(p.part);
+  return std::visit([&](const auto& field) { return index(field, p.x); }, scene.field);
+}
+
+/// Of light that stays in a guide between the lowest and the highest index, rad.
+double bending_of(const RenderScene& scene) {
+  return scene.index ? std::sqrt(2 * (scene.index->highest / scene.index->lowest - 1)) : 0;
+}
+
+}  // namespace
+
+RenderPlan render_plan(const RenderScene& scene) {
+  RenderPlan plan;
+  plan.curved = !std::holds_alternative<Homogeneous>(scene.field);
+  plan.body = !scene.stage.bodies.empty();
+  plan.timed = scene.bins.keeps_paths();
+  plan.scatters = plan.absorbs = plan.gridded = plan.deep = false;
+  const auto add = [&](const ScatteringMedium& medium) {
+    plan.scatters |= medium.mu_s > 0;
+    plan.absorbs |= medium.mu_a > 0;
+    plan.gridded |= medium.density && medium.mu_t() > 0;
+  };
+  add(scene.stage.medium);
+  for (const Body& body : scene.stage.bodies) add(body.medium);
+  return plan;
+}
+
+bool can_be_analog(const RenderScene& scene) {
+  const auto ends = sensor_ends(scene.sensors, scene.stage);
+  return std::all_of(ends.begin(), ends.end(),
+                     [](const SensorEnd& end) { return end.can_be_hit(); });
+}
+
+std::shared_ptr<Transport> transport_of(const RenderScene& scene, const RenderRequest& request,
+                                        RenderMethod method) {
+  const auto index = [&](const PathPoint& p) { return index_at(scene, p); };
+  return std::make_shared<Transport>(Transport{
+      .stage = scene.stage,
+      .lights = Lights(scene.lights, scene.stage, index),
+      .sensors = sensor_ends(scene.sensors, scene.stage),
+      .strategies = strategies(scene, method),
+      .max_scatterings = path_limit(request),
+  });
+}
+
+void Tracer::add(int paths, RandomStream& random, Film& film, TransportCounts& counts) const {
+  if (kernel) kernel(paths, random, film, counts, nullptr);
+  if (!unscattered_beams) return;
+  const double rays = std::ceil(rays_per_path * paths);
+  unscattered_beams(static_cast<int>(rays), paths / rays, random, film, counts);
+}
+
+Tracers::Tracers(const RenderScene& scene, const RenderRequest& request)
+    : scene_(scene), request_(request), plan_(render_plan(scene)) {
+  if (!plan_.curved && plan_.scatters) find_depth();
+  if (!scene.parameters.empty()) find_motion();
+  if (!scene.sensors.empty() && request.method != RenderMethod::photon_map) find_beams();
+}
+
+void Tracers::find_depth() {
+  const auto transport = transport_of(scene_, request_, RenderMethod::light);
+  const auto depth = DepthImportance::of(scene_.stage, transport->lights, scene_.sensors);
+  if (depth) depth_ = std::make_shared<const DepthImportance>(*depth);
+  plan_.deep = depth.has_value();
+}
+
+void Tracers::find_motion() {
+  std::vector<SensorEdges> edges;
+  int first_pixel = 0;
+  for (const Sensor& sensor : scene_.sensors) {
+    edges.emplace_back(sensor, std::get<Box>(scene_.stage.boundary), first_pixel);
+    first_pixel += pixels_of(sensor).grid.count();
+  }
+  moving_ = std::make_shared<const MovingField>(MovingField::Scene{
+      scene_.field, scene_.stage, options(Spreading::none), scene_.parameters, std::move(edges)});
+}
+
+/// The same for all methods: a search for ways to them may take longer than a pilot.
+void Tracers::find_beams() {
+  const auto transport = transport_of(scene_, request_, RenderMethod::bidirectional);
+  if (!(transport->lights.beam_power() > 0)) return;
+  walks_ = plan_.scatters || !transport->lights.are_beams() || !are_followed(*transport);
+  const BeamsRequest asked{scene_.random_phase, !walks_, moving_};
+  const std::shared_ptr<const Space> space =
+      make_space(scene_.field, without_scattering(scene_.stage), options(Spreading::none));
+  unscattered_beams_ = beams_kernel(asked, transport, space);
+  if (walks_ && plan_.curved) few_rays_per_path_ = rays_beside_path(transport->lights, *space);
+}
+
+Tracer Tracers::make(RenderMethod method) const {
+  Tracer tracer = untuned(method);
+  if (method != RenderMethod::photon_map) tracer.unscattered_beams = unscattered_beams_;
+  if (method == RenderMethod::analog) tracer.rays_per_path = few_rays_per_path_;
+  if (!walks_ && method != RenderMethod::photon_map) {
+    tracer.kernel = nullptr;
+    return tracer;
+  }
+  tracer.flights_per_pair = flights(tracer);
+  return tracer;
+}
+
+double Tracers::flights(const Tracer& tracer) const {
+  const auto& [method, transport, kernel] =
+      std::tie(tracer.method, tracer.transport, tracer.kernel);
+  if (method == RenderMethod::analog) return flights_per_path(*transport, kernel, scene_.bins);
+  if (method == RenderMethod::photon_map) return flights_per_pair(*transport, kernel, scene_.bins);
+  return tune_joins(*transport, kernel, scene_.bins, tracer.flights_per_join);
+}
+
+MapKernel Tracers::map_kernel() const {
+  if (!scene_.map) return {};
+  const auto transport = transport_of(scene_, request_, RenderMethod::light);
+  const std::shared_ptr<const Space> space =
+      make_space(scene_.field, scene_.stage, options(Spreading::none));
+  return grin::map_kernel(*scene_.map, transport, space, scene_.random_phase);
+}
+
+double Tracers::cost_of_flight() const {
+  const Box box = bounds(scene_.stage.boundary);
+  const double diagonal = (box.high - box.low).norm();
+  double tentative = 0;
+  const auto add = [&](const ScatteringMedium& medium) {
+    if (medium.density) tentative += medium.mu_t() * medium.density->largest() * diagonal;
+  };
+  add(scene_.stage.medium);
+  for (const Body& body : scene_.stage.bodies) add(body.medium);
+  const double steps = plan_.curved ? diagonal / scene_.step : 0;
+  return std::max(1.0, steps / 20) + tentative / 5;
+}
+
+double Tracers::steps_of_flight() const {
+  const Box box = bounds(scene_.stage.boundary);
+  const double across = (box.high - box.low).norm();
+  return across / (1 + scene_.stage.medium.mu_s * across) / scene_.step;
+}
+
+SpaceOptions Tracers::options(Spreading spreading) const {
+  return {scene_.step, scene_.max_length, spreading, scene_.leapfrogs};
+}
+
+/// Of its flights: weights of light tracing ask for it at the last one alone. That is flown a
+/// second time, which pays where many come before it.
+Spreading Tracers::spreading_of(RenderMethod method) const {
+  if (method == RenderMethod::photon_map || method == RenderMethod::analog) return Spreading::none;
+  if (method != RenderMethod::light || !plan_.curved) return Spreading::all;
+  constexpr double many = 6;  // scattering depth
+  const Part part = scene_.stage.field_part();
+  const Box box = bounds(scene_.stage.surface(part));
+  const double depth = scene_.stage.medium_in(part).mu_s * (box.high - box.low).minCoeff();
+  return depth > many ? Spreading::to_boundary : Spreading::all;
+}
+
+Tracer Tracers::untuned(RenderMethod method) const {
+  const auto transport = transport_of(scene_, request_, method);
+  if (!plan_.curved) transport->depth = depth_;
+  const std::shared_ptr<const Space> space =
+      make_space(scene_.field, scene_.stage, options(spreading_of(method)));
+  if (method == RenderMethod::photon_map)
+    return {method, transport,
+            photon_kernel(plan_.timed, transport, space, scene_.random_phase,
+                          photon_radius(scene_, request_))};
+  if (method == RenderMethod::analog)
+    return {method, transport,
+            analog_kernel(transport, space, SensorAim::of(*transport, *space, bending_of(scene_)),
+                          scene_.random_phase, moving_)};
+  Tracer tracer{method, transport, path_kernel(plan_, transport, space, scene_.random_phase)};
+  if (!plan_.curved) return tracer;
+  tracer.flights_per_join = space->cost_of_join();
+  tracer.cost_of_closed_join = space->cost_of_closed_join();
+  tracer.spreading = spreading_of(method);
+  return tracer;
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,335 @@
+#include "grin/render/methods/unscattered_beams.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "grin/render/methods/beam_edges.h"
+#include "grin/render/transport/light_tally.h"
+#include "grin/render/transport/path_score.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+/// A way costs as much as some tens of rays; the search for one where pinholes see none, more.
+double share_of_ways(bool is_any_seen) {
+  return is_any_seen ? 1.0 / 32 : 1.0 / 512;
+}
+
+constexpr double golden = 0.61803398874989484820;
+double fraction(double x) {
+  return x - std::floor(x);
+}
+
+/// Rays do not say all of what this sensor sees of beams.
+bool needs_ways(const Space& space, const SensorEnd& sensor) {
+  return !sensor.can_be_hit() || space.joins_through();
+}
+
+/// Where searches for ways from a sensor to a beam begin, of each sensor and beam; and whether any
+/// light may come that way, as far as a search tells.
+struct BeamSeeds {
+  std::vector<std::vector<BeamSeed>> of_pair;
+  bool is_any_seen = false;
+};
+
+bool is_among(std::span<const BeamWay> ways, const BeamWay& one) {
+  constexpr double same = 1e-4;  // rad
+  return std::any_of(ways.begin(), ways.end(), [&](const BeamWay& way) {
+    return way.passages == one.passages &&
+           (way.start_direction - one.start_direction).norm() < same;
+  });
+}
+
+/// Of the ways that random trials find from a few places of the sensor, those that bring most
+/// light, each once. Decided by the scene alone.
+std::vector<BeamSeed> seeds_of(const Space& space, const SensorEnd& sensor,
+                               const Lights::Beam& beam, int trials, bool& is_any_seen) {
+  constexpr std::size_t most = 24;
+  const int places = sensor.can_be_hit() ? 4 : 1;
+  constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max() - 1;
+  RandomStream random(0, static_cast<std::uint64_t>(Stream::render), no_batch);
+  ConnectionStatistics statistics;
+  const ParallelLight light = beam.light();
+  std::vector<BeamSeed> seeds;
+  std::vector<std::pair<double, BeamSeed>> found;  // light
+  for (int place = 0; place < places; ++place) {
+    const EndPosition z = sensor.sample_position(space, random);
+    std::vector<BeamWay> known = space.ways_to_beam(z.point, light, seeds, random, statistics);
+    is_any_seen |= std::any_of(known.begin(), known.end(),
+                               [&](const BeamWay& way) { return beam.disk.contains(way.place); });
+    std::erase_if(known, [](const BeamWay& way) { return way.multiplicity != 1; });  // by chance
+    for (int i = 0; i < trials / places; ++i) {
+      const auto way = space.some_way_to_beam(z.point, light, random, statistics);
+      if (!way || is_among(known, *way)) continue;
+      known.push_back(*way);
+      const double strength = sensor.towards(z, way->start_direction).strength;
+      if (!beam.disk.contains(way->place) || !(strength > 0)) continue;
+      seeds.push_back({way->start_direction, way->passages, way->first_met});
+      found.emplace_back(strength * way->transmittance / way->thinning, seeds.back());
+    }
+  }
+  is_any_seen |= sensor.can_be_hit() || !seeds.empty();
+  if (seeds.size() <= most) return seeds;
+  std::sort(found.begin(), found.end(),
+            [](const auto& a, const auto& b) { return a.first > b.first; });
+  for (std::size_t i = 0; i < most; ++i) seeds[i] = found[i].second;
+  seeds.resize(most);
+  return seeds;
+}
+
+BeamSeeds all_seeds(const Transport& transport, const Space& space, int trials) {
+  trials /= static_cast<int>(std::min<std::size_t>(transport.lights.beams(), 8));
+  BeamSeeds seeds;
+  for (const SensorEnd& sensor : transport.sensors)
+    for (std::size_t beam = 0; beam < transport.lights.beams(); ++beam)
+      seeds.of_pair.push_back(
+          needs_ways(space, sensor)
+              ? seeds_of(space, sensor, transport.lights.beam_at(beam), trials, seeds.is_any_seen)
+              : std::vector<BeamSeed>());
+  return seeds;
+}
+
+/// What all batches have.
+struct BeamsSetup {
+  BeamSeeds seeds;
+  double ways_per_ray;
+  bool books;  ///< where the power of rays goes
+  std::shared_ptr<const MovingField> moving;
+};
+
+/// Light of beams that meets no collision: rays from the beams that hit sensors, and ways from
+/// places of the sensors back to the beams, ways_per_ray of them. A way that the body's surface
+/// refracts or reflects can be found by both, and is shared by multiple importance sampling; of
+/// sensors that can be hit the others are the rays' alone.
+class UnscatteredBeams {
+ public:
+  UnscatteredBeams(const Transport& transport, const BeamsSetup& setup, const Space& space,
+                   double worth, RandomStream& random, Film& film, TransportCounts& counts)
+      : transport_(transport),
+        setup_(setup),
+        space_(space),
+        worth_(worth),
+        random_(random),
+        film_(film),
+        counts_(counts) {
+    if (setup.moving) moving_.emplace(*setup.moving, film, counts, false);
+  }
+
+  void add_ray(const EndPosition& start, double stratum) {
+    add_ray(start, space_.fly(start.point, start.inward, random_), stratum);
+  }
+  /// That has gone so.
+  void add_ray(const EndPosition& start, const Flight& flight, double stratum) {
+    counts_.add_flight(flight.end == Flight::End::lost);
+    if (setup_.books) book(start, flight);
+    if (flight.end == Flight::End::lost) return;
+    if (moving_) move(start, flight);
+    for (const SensorEnd& sensor : transport_.sensors)
+      sensor.hit(space_, flight.point.x, flight.direction, [&](const EndHit& hit) {
+        const double value = worth_ * transport_.lights.beam_power() * flight.weight * hit.value *
+                             weight_of_ray(flight, hit, transport_.lights.beam(stratum));
+        add(hit.direction.pixel, value, flight.optical_path);
+        if (!film_.has_derivatives()) return;
+        PathScore score;
+        score.flew(flight.arc_length);
+        score.add_to(film_, hit.direction.pixel, value, transport_.medium(start.point.part));
+      });
+  }
+
+  /// After all rays.
+  void finish() {
+    if (moving_) moving_->finish();
+  }
+
+  /// From each sensor that needs them to the beam that the stratum says; they stand for so many
+  /// rays.
+  void add_ways(double stratum) {
+    const Lights::Beam beam = transport_.lights.beam(stratum);
+    for (std::size_t i = 0; i < transport_.sensors.size(); ++i)
+      if (needs_ways(space_, transport_.sensors[i]))
+        add_ways(transport_.sensors[i], beam,
+                 setup_.seeds.of_pair[i * transport_.lights.beams() + beam.number]);
+  }
+
+ private:
+  void move(const EndPosition& start, const Flight& flight) {
+    moving_->land(moving_->begin(start.point.x, start.inward), flight.point.x, flight.direction,
+                  flight.arc_length, worth_ * transport_.lights.beam_power() * flight.weight);
+  }
+  void book(const EndPosition& start, const Flight& flight) {
+    PathVertex from;
+    from.point = start.point;
+    from.end = &start;
+    from.weight = worth_ * transport_.lights.beam_power();
+    LightTally tally(film_.energy);
+    tally.emitted(from);
+    flight.end == Flight::End::lost ? tally.lost(from, flight) : tally.left(from, flight);
+    tally.end_path();
+  }
+  void add_ways(const SensorEnd& sensor, const Lights::Beam& beam,
+                std::span<const BeamSeed> seeds) {
+    const EndPosition z = sensor.sample_position(space_, random_);
+    const auto ways =
+        space_.ways_to_beam(z.point, beam.light(), seeds, random_, counts_.connections);
+    ++counts_.joins;
+    for (const BeamWay& way : ways)
+      if (beam.disk.contains(way.place)) add_way(sensor, z, beam, way);
+  }
+  void add_way(const SensorEnd& sensor, const EndPosition& z, const Lights::Beam& beam,
+               const BeamWay& way) {
+    const EndDirection to = sensor.towards(z, way.start_direction);
+    const double value = beam.irradiance(way.place) * to.strength * way.transmittance /
+                         (z.position_density * z.index * z.index * way.thinning);
+    double weight = 1;
+    if (sensor.can_be_hit()) {
+      if (way.passages.count == 0) return;
+      weight = 1 / (1 + 1 / heuristic(ways_over_rays(z, way, beam)));
+    }
+    add(to.pixel, worth_ * value * weight * way.multiplicity / setup_.ways_per_ray,
+        way.optical_path);
+  }
+
+  double weight_of_ray(const Flight& flight, const EndHit& hit, const Lights::Beam& beam) const {
+    if (flight.passages.count == 0 || !flight.is_joinable) return 1;
+    const auto way = space_.beam_way(hit.position.point, beam.light(), -flight.direction,
+                                     flight.passages.reversed(), random_);
+    return way ? 1 / (1 + heuristic(ways_over_rays(hit.position, *way, beam))) : 1;
+  }
+
+  /// Of the densities with which both find a way, per area of the beam.
+  double ways_over_rays(const EndPosition& z, const BeamWay& way, const Lights::Beam& beam) const {
+    const double by_rays = beam.disk.density(way.place);
+    const double by_ways = z.position_density * way.thinning / z.inward.dot(way.start_direction);
+    return setup_.ways_per_ray * by_ways / by_rays;
+  }
+  void add(int pixel, double value, double optical_path) {
+    deposit(film_, counts_, pixel, value, optical_path);
+  }
+
+  const Transport& transport_;
+  const BeamsSetup& setup_;
+  const Space& space_;
+  double worth_;
+  RandomStream& random_;
+  Film& film_;
+  TransportCounts& counts_;
+  std::optional<MovingPaths> moving_;
+};
+
+/// Where the rays of a batch begin, evenly.
+class EvenRays {
+ public:
+  EvenRays(const Lights& lights, int rays, RandomStream& random)
+      : lights_(lights), rays_(rays), first_(random.uniform()), turn_(random.uniform()) {}
+
+  double stratum(int ray) const { return (ray + first_) / rays_; }
+  EndPosition start(int ray) const {
+    return lights_.beam_position(stratum(ray), fraction(turn_ + ray * golden));
+  }
+
+ private:
+  const Lights& lights_;
+  int rays_;
+  double first_, turn_;
+};
+
+/// Rays side by side.
+void add_rays(const Space& space, int rays, const EvenRays& from, RandomStream& random,
+              UnscatteredBeams& light) {
+  std::array<int, lanes> number{};
+  std::array<EndPosition, lanes> starts{};
+  int next = 0;
+  space.fly_side_by_side([&](int lane, const Flight* flown) -> std::optional<Space::FlightStart> {
+    int& own = number[static_cast<std::size_t>(lane)];
+    EndPosition& start = starts[static_cast<std::size_t>(lane)];
+    if (flown) light.add_ray(start, *flown, from.stratum(own));
+    if (next == rays) return std::nullopt;
+    own = next++;
+    start = from.start(own);
+    return Space::FlightStart{start.point, start.inward, &random};
+  });
+  light.finish();
+}
+
+/// Whether light can hit a sensor, so that rays of beams are followed.
+bool has_area(const Transport& transport) {
+  return std::any_of(transport.sensors.begin(), transport.sensors.end(),
+                     [](const SensorEnd& sensor) { return sensor.can_be_hit(); });
+}
+
+/// Of lines, which cost as much as some hundreds of rays.
+void add_edges(const MovingField& field, const Lights& lights, int rays, double worth,
+               RandomStream& random, Film& film, TransportCounts& counts) {
+  const int lines = (rays + 255) / 256;
+  for (int i = 0; i < lines; ++i) {
+    const double stratum = random.uniform(), v = random.uniform();
+    BeamEdges(field, lights, stratum, v)
+        .add(worth * rays / lines * lights.beam_power(), film, counts);
+  }
+}
+
+/// in_lanes: all rays may go side by side.
+BeamsKernel kernel(std::shared_ptr<const Transport> transport, const BeamsSetup& setup,
+                   std::shared_ptr<const Space> space, bool random_phase, bool in_lanes) {
+  return [=](int rays, double worth, RandomStream& random, Film& film, TransportCounts& counts) {
+    const EvenRays from(transport->lights, rays, random);
+    const double beam_of_way = random.uniform(), first_way = random.uniform();
+    const auto ways_before = [=](int ray) {
+      return std::floor(ray * setup.ways_per_ray + first_way);
+    };
+    const bool follows_rays = has_area(*transport);
+    if (follows_rays && in_lanes) {
+      UnscatteredBeams light(*transport, setup, *space, worth, random, film, counts);
+      add_rays(*space, rays, from, random, light);
+    }
+    const auto add = [&](const Space& met, int ray) {
+      UnscatteredBeams light(*transport, setup, met, worth, random, film, counts);
+      if (follows_rays && !in_lanes) {
+        light.add_ray(from.start(ray), from.stratum(ray));
+        light.finish();
+      }
+      if (const double way = ways_before(ray); ways_before(ray + 1) > way)
+        light.add_ways(fraction(beam_of_way + way * golden));
+    };
+    for (int ray = 0; ray < rays; ++ray) {
+      if (random_phase)
+        add(*space->frozen(2 * std::numbers::pi * random.uniform()), ray);
+      else
+        add(*space, ray);
+    }
+    if (setup.moving)
+      add_edges(*setup.moving, transport->lights, rays, worth, random, film, counts);
+  };
+}
+
+}  // namespace
+
+bool are_followed(const Transport& transport) {
+  return transport.lights.beam_power() > 0 && has_area(transport);
+}
+
+BeamsKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
+                         std::shared_ptr<const Space> space) {
+  const BeamSeeds seeds = all_seeds(*transport, *space, space->has_curves() ? 512 : 32768);
+  const BeamsSetup setup{seeds, share_of_ways(seeds.is_any_seen), request.books, request.moving};
+  return kernel(transport, setup, space, request.random_phase,
+                !request.random_phase && space->has_lanes());
+}
+
+double rays_beside_path(const Lights& lights, const Space& space) {
+  constexpr int some = 16;
+  RandomStream random(0, static_cast<std::uint64_t>(Stream::render), 0);
+  const EvenRays from(lights, some, random);
+  double light_left = 0;
+  for (int ray = 0; ray < some; ++ray) {
+    const EndPosition start = from.start(ray);
+    light_left += space.fly(start.point, start.inward, random).weight / some;
+  }
+  return std::clamp(10 * light_left, 1.0 / 16, 1.0);
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,247 @@
+#include "grin/render/pictures/render_datasets.h"
+
+#include <array>
+#include <numeric>
+
+#include "core/result/result_group.h"
+#include "grin/rays/marching/light_speed.h"
+#include "grin/render/pictures/picture_errors.h"
+
+namespace flatspeckle::grin {
+
+const DatasetTable render_table{
+    .name = "render",
+    .rows = {{"optical_path", Data::scale, "", "length", "middle of the bin of optical path"},
+             {"time", Data::real, "optical_path", "s", "optical path over the speed of light"},
+             {"parameter", Data::numbers, "", "1",
+              "what derivatives are by: see the attribute names"},
+             {"transport/flights", Data::count, "", "1", "ways from one event to the next"},
+             {"transport/lost_flights", Data::count, "", "1",
+              "of these, too long, trapped or into an index that is not positive: they carry "
+              "nothing on"},
+             {"transport/joins", Data::count, "", "1",
+              "vertices of light and sensor that were joined"},
+             {"transport/lost_values", Data::count, "", "1",
+              "contributions that were not finite, left out"}},
+    .attributes = {{"", "length_unit", "float64", "metres in a unit of length, where given"},
+                   {"", "mesh_volume", "float64", "that body_mesh encloses"},
+                   {"", "body_volume", "float64", "of the smooth body in its place"},
+                   {"parameter", "names", "texts",
+                    "mu_s, mu_a, g, as far as the medium has them (gradient); keys of the field "
+                    "(gradient_by)"}}};
+
+namespace {
+
+/// The pixels of one sensor among all, and what is kept of each.
+struct Pixels {
+  SensorPixels of;
+  std::size_t first;
+  TimeBins bins;
+
+  std::size_t count() const { return static_cast<std::size_t>(of.grid.count()); }
+  std::size_t sums() const { return static_cast<std::size_t>(bins.sums()); }
+  std::size_t parts() const { return static_cast<std::size_t>(bins.parts()); }
+};
+
+Complex sum(std::span<const Complex> values) {
+  return std::accumulate(values.begin(), values.end(), Complex());
+}
+
+/// Of as many entries per pixel.
+Estimate own_part(const Estimate& all, const Pixels& pixels, std::size_t per_pixel) {
+  if (all.value.empty()) return {};
+  Estimate own = part(all, pixels.first * per_pixel, pixels.count() * per_pixel);
+  bound_errors(own, pixels.of.grid);
+  return own;
+}
+
+/// theta(samples, sums of all pixels, each by its share of the area).
+Estimator of_all_pixels(const Pixels& pixels, const Estimator& theta) {
+  return [=](double samples, std::span<const Complex> all) {
+    std::vector<Complex> means(pixels.sums());
+    const auto own = all.subspan(pixels.first * pixels.sums(), pixels.count() * pixels.sums());
+    for (std::size_t i = 0; i < own.size(); ++i)
+      means[i % pixels.sums()] += pixels.of.share(i / pixels.sums()) * own[i];
+    return theta(samples, means);
+  };
+}
+
+Estimate bounded(Estimate whole) {
+  bound_errors(whole, {1, 1});
+  return whole;
+}
+
+Estimate steady_mean(const RenderJob& job, const GroupedSums& sums, const Pixels& pixels,
+                     double factor) {
+  const auto mean = [&](double samples, std::span<const Complex> all) {
+    return std::vector{factor / samples * sum(all.first(pixels.parts()))};
+  };
+  return bounded(job.estimate(sums, of_all_pixels(pixels, mean)));
+}
+
+void add_pulses(SensorResult& result, const RenderJob& job, const GroupedSums& sums,
+                const Pixels& pixels, double factor) {
+  const auto means = [&](double samples, std::span<const Complex> all) {
+    return sample_mean(samples / factor, all.first(pixels.parts()));
+  };
+  const Estimate parts = job.estimate(sums, of_all_pixels(pixels, means));
+  const std::size_t bins = pixels.parts() - 2;
+  result.pulse_before = bounded(part(parts, 0, 1));
+  result.pulse = bounded(part(parts, 1, bins));
+  result.pulse_after = bounded(part(parts, 1 + bins, 1));
+}
+
+/// Of sums that end in the moments; 0 without light.
+std::array<Complex, 2> path_means(const Pixels& pixels, std::span<const Complex> sums) {
+  const Complex light = sum(sums.first(pixels.parts()));
+  if (light == 0.0) return {};
+  return {sums[pixels.parts()] / light, sums[pixels.parts() + 1] / light};
+}
+
+void add_paths(SensorResult& result, const GroupedSums& sums, const Pixels& pixels) {
+  const auto means = [&](double, std::span<const Complex> all) {
+    const auto [mean, square] = path_means(pixels, all);
+    return std::vector{mean, square};
+  };
+  result.paths = jackknife(sums, of_all_pixels(pixels, means));
+  result.pixel_paths = jackknife(sums, [&](double, std::span<const Complex> all) {
+    std::vector<Complex> means;
+    for (std::size_t i = pixels.first; i < pixels.first + pixels.count(); ++i) {
+      const auto own = path_means(pixels, all.subspan(i * pixels.sums(), pixels.sums()));
+      means.insert(means.end(), own.begin(), own.end());
+    }
+    return means;
+  });
+}
+
+SensorResult sensor_result(const DatasetTable& table, const Pixels& pixels, const RenderJob& job,
+                           const RenderedPicture& all, const GroupedSums& sums) {
+  SensorResult result{.picture = {.bins = own_part(all.bins, pixels, pixels.bins.count),
+                                  .steady = own_part(all.steady, pixels, 1),
+                                  .before = own_part(all.before, pixels, 1),
+                                  .after = own_part(all.after, pixels, 1)},
+                      .mean = steady_mean(job, sums, pixels, 1)};
+  const bool has_total = has_row(table, "total");
+  if (has_total) result.total = steady_mean(job, sums, pixels, pixels.of.area);
+  if (pixels.bins.count > 1) add_pulses(result, job, sums, pixels, has_total ? pixels.of.area : 1);
+  if (pixels.bins.moments) add_paths(result, sums, pixels);
+  return result;
+}
+
+void write_bins(const ResultGroup& root, const TimeBins& bins,
+                const std::optional<double>& length_unit) {
+  std::vector<double> paths;
+  for (int bin = 0; bin < bins.count; ++bin)
+    paths.push_back(bins.first + (bins.last - bins.first) * (bin + 0.5) / bins.count);
+  root.put("optical_path", paths);
+  if (length_unit)
+    root.put("time", column(paths, [&](double path) { return path * *length_unit / light_speed; }));
+}
+
+/// Of pairs: every first, and every second.
+void put_paths(const ResultGroup& group, const std::string& name, const Estimate& pairs) {
+  for (const bool square : {false, true}) {
+    Estimate one;
+    for (std::size_t i = square; i < pairs.value.size(); i += 2) append(one, part(pairs, i, 1));
+    group.put(name + (square ? "_path_square" : "_path"), one);
+  }
+}
+
+Estimate scaled(Estimate one, double factor) {
+  for (Complex& value : one.value) value *= factor;
+  for (double& error : one.error) error *= factor;
+  return one;
+}
+
+void write_gradients(const ResultGroup& group, const SensorPixels& pixels, bool has_total,
+                     const PowerGradients& gradients) {
+  group.put("image_gradient", gradients.image);
+  group.put("mean_gradient", gradients.mean);
+  if (has_total) group.put("total_gradient", scaled(gradients.mean, pixels.area));
+  if (!gradients.within.value.empty()) group.put("power_within_gradient", gradients.within);
+}
+
+void write_sensor(const ResultGroup& group, const SensorPixels& pixels,
+                  const SensorResult& result) {
+  for (const auto& [name, middles] : pixels.axes) group.put(name, middles);
+  group.put("image", result.picture.steady);
+  group.put("mean", result.mean);
+  if (result.total) group.put("total", *result.total);
+  if (result.within) {
+    group.put("disk_radius", result.within->radii);
+    group.put("other_disk_radius", result.within->radii);
+    group.put("power_within", result.within->power);
+    group.put("power_within_covariance", result.within->covariance);
+  }
+  if (result.gradients) write_gradients(group, pixels, result.total.has_value(), *result.gradients);
+  if (!result.pulse.value.empty()) {
+    group.put("transient", result.picture.bins);
+    group.put("transient_before", result.picture.before);
+    group.put("transient_after", result.picture.after);
+    group.put("pulse", result.pulse);
+    group.put("pulse_before", result.pulse_before);
+    group.put("pulse_after", result.pulse_after);
+  }
+  if (result.paths.value.empty()) return;
+  put_paths(group, "image", result.pixel_paths);
+  put_paths(group, "mean", result.paths);
+}
+
+void write_counts(ResultFile& file, const RenderJob& job) {
+  if (!job.counts) return;
+  const ResultGroup root(file, render_table);
+  root.put("transport/flights", job.counts->flights);
+  root.put("transport/lost_flights", job.counts->lost_flights);
+  root.put("transport/joins", job.counts->joins);
+  root.put("transport/lost_values", job.counts->lost_values);
+  if (!has_trials(job)) return;
+  write_trials(file, job.counts->connections);
+  write_pairs(file, job.counts->connections);
+}
+
+}  // namespace
+
+RenderResult render_result(const RenderScene& scene, const RenderJob& job,
+                           const GroupedSums& sums) {
+  const RenderedPicture all = rendered_picture(job, sums);
+  RenderResult result;
+  std::size_t first = 0;
+  for (const Sensor& sensor : scene.sensors) {
+    const Pixels pixels{pixels_of(sensor), first, job.bins};
+    result.push_back(sensor_result(table_of(sensor), pixels, job, all, sums));
+    result.back().within = powers_within(
+        sensor, first, job.bins, sums,
+        [&](const GroupedSums& of, const Estimator& theta) { return job.estimate(of, theta); });
+    if (job.bins.derivatives > 0 || job.bins.by_field > 0)
+      result.back().gradients = power_gradients(sensor, first, job.bins, sums);
+    first += pixels.count();
+  }
+  return result;
+}
+
+void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& job,
+                  const RenderResult& result, const std::optional<double>& length_unit) {
+  const ResultGroup root(file, render_table);
+  if (length_unit) root.attribute("length_unit", *length_unit);
+  for (const Body& body : scene.stage.bodies)
+    if (const auto* level = std::get_if<LevelSurface>(&body.surface)) {
+      root.attribute("mesh_volume", level->meant_volume());
+      root.attribute("body_volume", level->volume());
+    }
+  if (const auto names = gradient_names(scene); !names.empty()) {
+    root.number("parameter", names.size());
+    root.attribute("parameter", "names", names);
+  }
+  if (job.bins.count > 1) write_bins(root, job.bins, length_unit);
+  for (std::size_t i = 0; i < result.size(); ++i)
+    write_sensor({file, table_of(scene.sensors[i]),
+                  result.size() > 1 ? "sensors/" + sensor_name(scene, i) : ""},
+                 pixels_of(scene.sensors[i]), result[i]);
+  write_counts(file, job);
+}
+
+bool has_trials(const RenderJob& job) {
+  return job.counts && job.counts->connections.pairs > 0;
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,281 @@
+#include "grin/render/pictures/render_job.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <sstream>
+#include <string>
+
+#include "core/numbers/control_variate.h"
+#include "core/numbers/mean_errors.h"
+#include "core/numbers/random.h"
+#include "grin/media/index/lanes.h"
+#include "grin/render/methods/method_choice.h"
+#include "grin/render/methods/photon_map.h"
+#include "grin/render/pictures/map_datasets.h"
+#include "grin/render/pictures/picture_errors.h"
+#include "grin/render/pictures/powers_within.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+/// So many that adding up the picture takes little of the time, and so few that a batch ends soon
+/// and the number of batches from which errors are trusted is soon there: long paths are fewer.
+/// A power of two: no rounding of the flights changes it.
+int paths_per_batch(const Tracer& tracer, bool scatters, double cost_of_flight, std::size_t sums) {
+  constexpr double most = 16384, flights_soon_made = 1024;
+  const double fewest = std::clamp(flights_soon_made / tracer.flights_per_pair, 1.0, 32.0);
+  const bool is_map = tracer.method == RenderMethod::photon_map;
+  const double most_flights = is_map ? 1 << 20 : 1 << 17;
+  const double paths =
+      is_map ? photon_paths_per_batch
+             : std::clamp(static_cast<double>(sums) / (16 * cost_of_flight), fewest, most);
+  const auto short_enough =
+      static_cast<std::size_t>(std::min(paths, most_flights / tracer.flights_per_pair));
+  const bool fills_lanes = tracer.method == RenderMethod::analog && scatters;
+  const double many = fills_lanes ? 4 * lanes / tracer.flights_per_pair : 1;
+  return static_cast<int>(
+      std::max(std::bit_floor(short_enough), std::bit_ceil(static_cast<std::size_t>(many))));
+}
+
+std::string described(const RenderScene& scene, const RenderRequest& request, RenderMethod method) {
+  std::string text = method_word(method);
+  if (!request.method && !scene.sensors.empty()) text += " (chosen by a pilot)";
+  if (!has_finite_variance(scene, method))
+    text += " (no finite variance with " +
+            std::string(method == RenderMethod::path ? "points, fibres or beams that are bent"
+                                                     : "a pinhole") +
+            ": errors are not to be trusted)";
+  return text + ": ";
+}
+
+/// From [pixel][sum] `count` values for each pixel: use(sums of the pixel, its values).
+template <class Use>
+Estimator for_each_pixel(std::size_t pictures, const TimeBins& bins, std::size_t count,
+                         const Use& use) {
+  const auto per_pixel = static_cast<std::size_t>(bins.sums());
+  return [=](double samples, std::span<const Complex> total) {
+    std::vector<Complex> values(pictures / per_pixel * count);
+    for (std::size_t pixel = 0; pixel < pictures / per_pixel; ++pixel)
+      use(samples, total.subspan(pixel * per_pixel, per_pixel),
+          std::span(values).subspan(pixel * count, count));
+    return values;
+  };
+}
+
+Estimator steady_picture(std::size_t pictures, const TimeBins& bins) {
+  return for_each_pixel(pictures, bins, 1,
+                        [parts = static_cast<std::size_t>(bins.parts())](
+                            double samples, std::span<const Complex> own, std::span<Complex> to) {
+                          for (const Complex part : own.first(parts)) to[0] += part / samples;
+                        });
+}
+
+/// `count` of the sums of each pixel.
+Estimator some_sums(const RenderJob& job, int first, int count) {
+  return for_each_pixel(
+      job.pictures, job.bins, static_cast<std::size_t>(count),
+      [first](double samples, std::span<const Complex> own, std::span<Complex> to) {
+        for (std::size_t i = 0; i < to.size(); ++i)
+          to[i] = own[static_cast<std::size_t>(first) + i] / samples;
+      });
+}
+
+std::string described_steps(const RenderScene& scene, const RenderPlan& plan) {
+  std::ostringstream text;
+  if (!plan.curved) return {};
+  text << (scene.leapfrogs ? "; leapfrog steps of " : "; steps of ") << scene.step;
+  if (scene.index) text << "; index " << scene.index->lowest << " to " << scene.index->highest;
+  return text.str();
+}
+
+/// Nothing of a single one.
+std::string described_sensors(const RenderScene& scene) {
+  std::string text;
+  if (scene.sensors.size() > 1)
+    for (std::size_t i = 0; i < scene.sensors.size(); ++i)
+      text += (i == 0 ? "; sensors " : ", ") + sensor_name(scene, i) + " (" +
+              table_of(scene.sensors[i]).name + ')';
+  return text;
+}
+
+std::string described_map(const RenderScene& scene) {
+  return scene.map ? "; a map of " + std::to_string(cells(*scene.map)) + " cells" : "";
+}
+
+/// To their ends, booking where their power went.
+bool walks_light(RenderMethod method) {
+  return method == RenderMethod::light || method == RenderMethod::bidirectional ||
+         method == RenderMethod::analog;
+}
+
+/// A map alone asks for no picture.
+Tracer tracer_of(const Tracers& tracers, const RenderScene& scene, const RenderRequest& request) {
+  if (scene.sensors.empty()) return tracers.make(RenderMethod::light);
+  return request.method ? tracers.make(*request.method) : best_tracer(tracers);
+}
+
+/// Groups, where pixels have neighbours to be judged with.
+double few_of(const std::vector<SensorEnd>& sensors) {
+  constexpr int many = 25;  // as bound_errors() looks at
+  const bool have_neighbours = std::ranges::all_of(
+      sensors, [](const SensorEnd& sensor) { return sensor.pixels().count() >= many; });
+  return have_neighbours ? few_of_pixels : few_of_values;
+}
+
+using Estimating = std::function<Estimate(const GroupedSums&, const Estimator&)>;
+
+/// Infinite in the dark, which is no knowledge of it.
+double error_of_light(const Estimate& light) {
+  const bool is_lit = std::ranges::any_of(light.value, [](Complex x) { return x.real() > 0; });
+  return is_lit ? relative_error(light) : std::numeric_limits<double>::infinity();
+}
+
+/// That of the sensor where it is largest: units of sensors differ.
+double largest_error(const Transport& transport, const std::vector<Sensor>& kinds,
+                     const TimeBins& bins, const Estimate& picture, const GroupedSums& sums,
+                     const Estimating& estimate) {
+  double largest = 0;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < kinds.size(); ++i) {
+    const PixelGrid pixels = transport.sensors[i].pixels();
+    const auto count = static_cast<std::size_t>(pixels.count());
+    if (const auto powers = powers_within(kinds[i], first, bins, sums, estimate)) {
+      largest = std::max(largest, largest_error(*powers, transport.lights.power()));
+    } else {
+      Estimate own = part(picture, first, count);
+      bound_errors(own, pixels);
+      largest = std::max(largest, error_of_light(own));
+    }
+    first += count;
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::string sensor_name(const RenderScene& scene, std::size_t sensor) {
+  return scene.sensor_names.empty() ? std::to_string(sensor + 1) : scene.sensor_names[sensor];
+}
+
+std::string method_word(RenderMethod method) {
+  return method_words().at(static_cast<std::size_t>(method));
+}
+
+std::vector<std::string> method_words() {
+  return {"path", "light", "bidirectional", "photon_map", "analog"};
+}
+
+namespace {
+
+void check_analog(const RenderScene& scene) {
+  if (!can_be_analog(scene))
+    throw InputError("method", method_word(RenderMethod::analog),
+                     "is of sensors that light can hit");
+}
+
+}  // namespace
+
+void check(const RenderScene& scene, const RenderRequest& request) {
+  check(scene.stage);
+  if (scene.sensors.empty() && request.method.value_or(RenderMethod::light) != RenderMethod::light)
+    throw InputError("method", method_word(*request.method),
+                     "must be light or auto for a map without a sensor");
+  const auto transport =
+      transport_of(scene, request, request.method.value_or(RenderMethod::bidirectional));
+  check_path_lengths(scene.stage, transport->max_scatterings);
+  if (request.method == RenderMethod::analog) check_analog(scene);
+  if (scene.bins.derivatives > 0 && request.method != RenderMethod::analog)
+    throw InputError("gradient: needs method = analog");
+  if (!scene.parameters.empty() && request.method != RenderMethod::analog)
+    throw InputError("gradient_by: needs method = analog");
+  if (scene.random_phase) make_ray_field(scene.field)->frozen(0);
+}
+
+RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std::uint64_t seed) {
+  check(scene, request);
+  const Tracers tracers(scene, request);
+  const Tracer tracer = tracer_of(tracers, scene, request);
+  const MapKernel map = tracers.map_kernel();
+
+  RenderJob job;
+  const int pixels = tracer.transport->pixels();
+  job.bins = scene.bins;
+  job.plan = described(scene, request, tracer.method) + tracers.plan().describe() +
+             described_steps(scene, tracers.plan()) + described_sensors(scene) +
+             described_map(scene) + (tracers.walks() ? "" : "; rays of beams alone");
+  job.pictures = static_cast<std::size_t>(pixels) * scene.bins.sums();
+  const bool books = walks_light(tracer.method) && pixels > 0;
+  job.has_energy = books || map;
+  job.has_drift = books && tracers.has_drift();
+  job.batches.size =
+      job.first_of_map() + (map ? sums_per_cell * cells(*scene.map) : 0) + (job.has_drift ? 1 : 0);
+  const int paths =
+      paths_per_batch(tracer, tracers.plan().scatters, tracers.cost_of_flight(), job.batches.size);
+  job.batches.samples_per_batch = paths;
+  if (tracer.method == RenderMethod::analog) job.batches.trusted_batches = 64;  // no path is strong
+  const auto counts = std::make_shared<TransportCounts>();
+  job.counts = counts;
+  const auto counting = std::make_shared<std::mutex>();
+  job.batches.run = [=, bins = scene.bins, pictures = job.pictures, has_energy = job.has_energy,
+                     has_drift = job.has_drift, first_of_map = job.first_of_map()](
+                        std::uint64_t number, std::span<Complex> sums) {
+    Film film(pixels, bins, sums.first(pictures));
+    RandomStream random(seed, static_cast<std::uint64_t>(Stream::render), number);
+    TransportCounts of_batch;
+    EnergyBalance of_map;
+    if (pixels > 0) tracer.add(paths, random, film, of_batch);
+    if (has_drift) sums.back() += film.drift;
+    if (map) {
+      RandomStream own(seed, static_cast<std::uint64_t>(Stream::light_map), number);
+      map(paths, own, sums.subspan(first_of_map), of_map, of_batch);
+    }
+    if (has_energy)
+      (books ? film.energy : of_map).add_to(sums.subspan(pictures, EnergyBalance::size));
+    const std::lock_guard lock(*counting);
+    *counts += of_batch;
+  };
+  job.few_of_pictures = few_of(tracer.transport->sensors);
+  const EntrySums steady_sums{static_cast<std::size_t>(pixels),
+                              static_cast<std::size_t>(scene.bins.sums()),
+                              static_cast<std::size_t>(scene.bins.parts())};
+  job.batches.relative_error = [=, kinds = scene.sensors, bins = scene.bins, cells = scene.map,
+                                steady = steady_picture(job.pictures, scene.bins),
+                                has_drift = job.has_drift, few = job.few_of_pictures,
+                                first_of_map = job.first_of_map()](const GroupedSums& sums) {
+    const Estimate picture = has_drift ? controlled_jackknife(sums, steady, sums.size() - 1, few)
+                                       : jackknife(sums, steady_sums, few);
+    const auto estimate = [&](const GroupedSums& of, const Estimator& theta) {
+      return has_drift ? controlled_jackknife(of, theta, of.size() - 1, few_of_values)
+                       : jackknife(of, theta, few_of_values);
+    };
+    const double of_pictures =
+        largest_error(*tracer.transport, kinds, bins, picture, sums, estimate);
+    return cells ? std::max(of_pictures, error_of_light(fluence(sums, first_of_map, *cells)))
+                 : of_pictures;
+  };
+  return job;
+}
+
+Estimate RenderJob::estimate(const GroupedSums& sums, const Estimator& theta, double few) const {
+  return has_drift ? controlled_jackknife(sums, theta, sums.size() - 1, few)
+                   : jackknife(sums, theta, few);
+}
+
+RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {
+  const TimeBins& bins = job.bins;
+  const auto estimate = [&](const Estimator& theta) {
+    return job.estimate(sums, theta, job.few_of_pictures);
+  };
+  RenderedPicture picture{.bins = estimate(some_sums(job, bins.count > 1 ? 1 : 0, bins.count)),
+                          .steady = estimate(steady_picture(job.pictures, bins))};
+  if (bins.count == 1) return picture;
+  picture.before = estimate(some_sums(job, 0, 1));
+  picture.after = estimate(some_sums(job, bins.count + 1, 1));
+  return picture;
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/run/runner.h"
+#include "grin/render/methods/render_scene.h"
+#include "grin/render/pictures/picture_errors.h"
+#include "grin/render/transport/transport_counts.h"
+
+namespace flatspeckle::grin {
+
+/// samples: light paths and as many paths of each sensor. Sums of a batch, imaginary part 0:
+/// [pixel][TimeBins::sums] with the pixels of one sensor after the other; then [fate], where light
+/// paths are walked to their ends; then those of a map (MapKernel), and last a control variate
+/// (DepthImportance::Drift).
+struct RenderJob {
+  BatchJob batches;
+  TimeBins bins;
+  std::size_t pictures = 0;  ///< sums of the pixels
+  bool has_energy = false;   ///< sums by Fate
+  bool has_drift = false;    ///< the last of the sums
+  std::string plan;          ///< the method, what is left out and what is not
+  std::size_t first_of_map() const { return pictures + (has_energy ? EnergyBalance::size : 0); }
+  /// Of pictures: jackknife(), with the control variate where there is one; what fewer than so many
+  /// groups make up is marked.
+  Estimate estimate(const GroupedSums& sums, const Estimator& theta,
+                    double few = few_of_values) const;
+  double few_of_pictures = few_of_values;
+  /// Of all batches that have run here.
+  std::shared_ptr<const TransportCounts> counts;
+};
+
+/// Throws InputError for lights and sensors that do not fit the stage, for media in which paths do
+/// not end in time, and for a random phase of a field without sound.
+void check(const RenderScene& scene, const RenderRequest& request);
+
+/// Checks the same, then walks a few paths to plan. Throws InputError.
+RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std::uint64_t seed);
+
+/// Value and standard error of [pixel][bin], of what is before and after all bins where there are
+/// several, and of the sum of all; of all sensors.
+struct RenderedPicture {
+  Estimate bins, steady, before = {}, after = {};
+};
+RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums);
+
+}  // namespace flatspeckle::grin

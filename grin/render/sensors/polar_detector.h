@@ -1,0 +1,62 @@
+#pragma once
+
+#include <numbers>
+#include <optional>
+
+#include "grin/render/endpoints/boundary_patch.h"
+#include "grin/render/sensors/pixel_rings.h"
+#include "grin/render/sensors/sensor_kind.h"
+
+namespace flatspeckle::grin {
+
+class PolarDetectorEnd;
+
+/// All light that leaves the stage through its boundary, by polar angle from `axis`: power per
+/// solid angle averaged over rings of the angle.
+struct PolarDetector {
+  using End = PolarDetectorEnd;
+  Vec3 axis;
+  double half_angle;  ///< up to pi
+  int rings;
+};
+
+extern const DatasetTable polar_table;
+inline const DatasetTable& table_of(const PolarDetector&) {
+  return polar_table;
+}
+PixelRings picture_of(const PolarDetector& detector);
+
+/// W = 1 / ring's solid angle.
+class PolarDetectorEnd {
+ public:
+  /// Throws InputError.
+  PolarDetectorEnd(const PolarDetector& detector, const Stage& stage);
+
+  PixelGrid pixels() const { return rings_.grid(); }
+  EndPosition sample_position(double stratum, RandomStream& random) const;
+  EndDirection sample_direction(const EndPosition& at, double stratum, RandomStream& random) const;
+  EndDirection towards(const EndPosition& at, const Vec3& direction) const;
+  std::optional<EndPosition> position_at(const Vec3& x) const;
+
+ private:
+  EndDirection along(const EndPosition& at, const Vec3& direction, int ring) const;
+  EndPosition on_boundary(const BoundaryPoint& at) const;
+
+  Vec3 axis_;
+  PixelRings rings_;
+  BoundaryPatch boundary_;
+  Regions regions_;
+};
+
+struct PolarValues {
+  using Sensor = PolarDetector;
+  static constexpr const char* word = "polar";
+  std::vector<double> sensor_direction{0, 0, 1};
+  std::vector<double> largest_angle{std::numbers::pi / 2};
+  std::vector<std::int64_t> rings{};
+};
+
+void add_keys(Keys& keys, PolarValues& values);
+PolarDetector make_sensor(const OneSensor& of, const PolarValues& values);
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,227 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "grin/media/scattering/start_directions.h"
+#include "grin/render/specular/legs.h"
+
+namespace flatspeckle::grin {
+
+/// What random rays look for.
+enum class Seek {
+  strongest,    ///< light goes where most of it goes
+  reflections,  ///< and ways with many reflections as often
+};
+
+/// Rays from a point, in a space without collisions, that are refracted or reflected at surfaces of
+/// bodies: what searches for ways of light are made of. A leg goes from one of these places to the
+/// next, through surfaces where the index does not jump.
+class PassageWalk {
+ public:
+  /// Refers to the legs.
+  PassageWalk(const Legs& legs, const PathPoint& from, Seek seek)
+      : legs_(legs), from_(from), seeks_reflections_(seek == Seek::reflections) {
+    aim_at_bodies();
+  }
+
+  /// A random direction: towards a body from outside of all, towards those that lie over the part
+  /// or anywhere from inside of one, and then as `start` says about `chord`. Ways with many
+  /// reflections begin close together at a body's rim.
+  Vec3 start_direction(const Vec3& chord, const StartDirections& start,
+                       RandomStream& random) const {
+    if (cones_.empty() || (!is_outside_ && random.uniform() < 0.5))
+      return start.sample(chord, random);
+    const Cone& cone = cones_[pick(random)];
+    const double u = random.uniform();
+    const double inside = seeks_reflections_ && random.uniform() < 0.5 ? 1 - u * u * u : u;
+    return random_turn(cone.axis, cone.one_minus_cosine * inside, random);
+  }
+
+  /// A ray starts outside of all bodies, towards one.
+  bool aims_at_bodies() const { return is_outside_; }
+
+  /// The start of a ray's last leg.
+  struct Head {
+    Part part;
+    RayState ray;
+    double chance = 1;              ///< Fresnel's, that light takes the passages so far
+    int hollows = 0;                ///< of these, at surfaces that are not convex
+    Vec3 first_met = Vec3::Zero();  ///< where it is refracted or reflected first
+  };
+  /// Through the passages given, with a tangent where that is not null; nothing where no ray goes.
+  std::optional<Head> follow(const Vec3& direction, const Passages& passages, RayTangent* tangent,
+                             RandomStream& random) const {
+    Head head{from_.part, legs_.start(from_, direction)};
+    for (int i = 0; i < passages.count; ++i) {
+      const auto met =
+          to_jump(head.part, head.ray, tangent, random, [](Part, const RayState&, double) {});
+      if (!met) return std::nullopt;
+      if (i == 0) head.first_met = head.ray.x;
+      const RayJump jump = legs_.jump(head.part, *met, head.ray);
+      const bool reflects = passages.reflects(i);
+      head.chance *= jump.chance(reflects);
+      head.hollows += jump.is_hollow();
+      if (!(head.chance > 0)) return std::nullopt;
+      jump.pass(reflects, head.ray, tangent);
+      if (!reflects) head.part = met->beyond;
+    }
+    return head;
+  }
+
+  /// Refracted wherever that can be, else reflected. Calls at_leg(passages so far, part, ray) at
+  /// the start of each leg.
+  template <class AtLeg>
+  void refracted(const Vec3& direction, RandomStream& random, const AtLeg& at_leg) const {
+    walk(direction, random, at_leg,
+         [](const Head&, const Passages&, const Jump& jump, double) -> std::optional<bool> {
+           return jump.of_ray.is_total();
+         });
+  }
+  /// The same, refracted or reflected at random; who seeks reflections is told both.
+  template <class AtLeg>
+  void at_random(const Vec3& direction, RandomStream& random, const AtLeg& at_leg) const {
+    walk(direction, random, at_leg,
+         [&](const Head& head, const Passages& met, const Jump& jump,
+             double depth) -> std::optional<bool> {
+           const bool goes_on = met.count < free_passages || random.uniform() < std::exp(-depth);
+           if (!goes_on) return std::nullopt;
+           const double chance = chance_to_reflect(jump.of_ray.reflectance());
+           const bool reflects = random.uniform() < chance;
+           if (seeks_reflections_ && chance >= faintest && !jump.of_ray.is_total())
+             step(!reflects, jump, head, met, at_leg);
+           return reflects;
+         });
+  }
+
+  /// Calls use(part, start, arc length) for the stretches of a way of this arc length in all.
+  template <class Use>
+  void for_each_leg(const Vec3& direction, const Passages& passages, double arc_length,
+                    RandomStream& random, const Use& use) const {
+    RayState ray = legs_.start(from_, direction);
+    Part part = from_.part;
+    for (int i = 0; i < passages.count; ++i) {
+      const auto met = to_jump(part, ray, nullptr, random, use);
+      if (!met) return;
+      const bool reflects = passages.reflects(i);
+      legs_.jump(part, *met, ray).pass(reflects, ray);
+      if (!reflects) part = met->beyond;
+    }
+    last_leg(part, ray, arc_length, random, use);
+  }
+
+ private:
+  static constexpr int free_passages = 3;   // then rays lose at roulette by extinction
+  static constexpr double faintest = 1e-6;  // reflectance where the index jumps at all
+
+  /// Directions in which a body may lie.
+  struct Cone {
+    Vec3 axis;
+    double one_minus_cosine;
+  };
+  void aim_at_bodies() {
+    const Regions& regions = legs_.regions();
+    is_outside_ = from_.part == around && regions.parts() > 1;
+    for (Part body = from_.part + 1; body < regions.parts(); ++body) {
+      const Surface& surface = regions.surface(body);
+      const auto [low, high] = bounds(surface);
+      const Sphere* sphere = std::get_if<Sphere>(&surface);
+      const double radius = sphere ? sphere->radius : (high - low).norm() / 2;
+      const Vec3 to_centre = (low + high) / 2 - from_.x;
+      const double distance = to_centre.norm();
+      if (distance > radius)
+        cones_.push_back(
+            {to_centre / distance, 1 - std::sqrt(1 - radius / distance * (radius / distance))});
+      else
+        is_outside_ = false;
+    }
+  }
+  std::size_t pick(RandomStream& random) const {
+    if (cones_.size() == 1) return 0;
+    const auto count = static_cast<double>(cones_.size());
+    return std::min(static_cast<std::size_t>(random.uniform() * count), cones_.size() - 1);
+  }
+
+  /// On to where the index jumps at a surface that can be refracted through; use(part, start, arc
+  /// length) for what is on the way.
+  template <class Use>
+  std::optional<Meeting> to_jump(Part& part, RayState& ray, RayTangent* tangent,
+                                 RandomStream& random, const Use& use) const {
+    for (int stretch = 0; stretch < legs_.regions().most_legs(); ++stretch) {
+      const RayState start = ray;
+      const auto met = legs_.to_surface(part, ray, tangent, random);
+      if (!met) return std::nullopt;
+      use(part, start, ray.arc_length - start.arc_length);
+      if (!legs_.are_alike(part, met->beyond)) return met;
+      part = met->beyond;
+    }
+    return std::nullopt;
+  }
+  /// From a state on, until the way has this arc length.
+  template <class Use>
+  void last_leg(Part part, RayState ray, double arc_length, RandomStream& random,
+                const Use& use) const {
+    for (int stretch = 0; stretch < legs_.regions().most_legs() && !legs_.is_alone(part);
+         ++stretch) {
+      const RayState start = ray;
+      const auto met = legs_.to_surface(part, ray, nullptr, random);
+      if (!met || ray.arc_length >= arc_length || !legs_.are_alike(part, met->beyond))
+        return use(part, start, arc_length - start.arc_length);
+      use(part, start, ray.arc_length - start.arc_length);
+      part = met->beyond;
+    }
+    use(part, ray, arc_length - ray.arc_length);
+  }
+
+  struct Jump {
+    RayJump of_ray;
+    Part beyond;
+  };
+  /// decide(head, passages, jump, optical depth of the leg): whether it reflects; nothing to end.
+  template <class AtLeg, class Decide>
+  void walk(const Vec3& direction, RandomStream& random, const AtLeg& at_leg,
+            const Decide& decide) const {
+    Head head{from_.part, legs_.start(from_, direction)};
+    Passages met;
+    at_leg(met, head.part, head.ray);
+    while (met.count < Passages::most) {
+      double depth = 0;
+      const auto pass = [&](Part part, const RayState&, double length) {
+        depth += legs_.extinction(part) * length;
+      };
+      const auto at = to_jump(head.part, head.ray, nullptr, random, pass);
+      if (!at) return;
+      const Jump jump{legs_.jump(head.part, *at, head.ray), at->beyond};
+      const auto reflects = decide(head, met, jump, depth);
+      if (!reflects) return;
+      std::tie(head, met) = step(*reflects, jump, head, met, at_leg);
+    }
+  }
+  /// Through or off the surface, to the start of the next leg.
+  template <class AtLeg>
+  static std::pair<Head, Passages> step(bool reflects, const Jump& jump, Head head, Passages met,
+                                        const AtLeg& at_leg) {
+    met.add(reflects);
+    jump.of_ray.pass(reflects, head.ray);
+    if (!reflects) head.part = jump.beyond;
+    at_leg(met, head.part, head.ray);
+    return {head, met};
+  }
+  /// Faint reflections are worth a look; none where the index hardly jumps.
+  double chance_to_reflect(double reflectance) const {
+    if (reflectance < faintest || reflectance >= 1) return reflectance;
+    return std::clamp(seeks_reflections_ ? std::sqrt(reflectance) : reflectance, 0.1, 0.9);
+  }
+
+  const Legs& legs_;
+  PathPoint from_;
+  bool seeks_reflections_;
+  bool is_outside_ = false;
+  std::vector<Cone> cones_;
+};
+
+}  // namespace flatspeckle::grin

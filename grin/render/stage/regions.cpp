@@ -1,0 +1,55 @@
+#include "grin/render/stage/regions.h"
+
+#include <cmath>
+
+#include "core/error.h"
+#include "grin/media/geometry/vector_values.h"
+
+namespace flatspeckle::grin {
+
+Regions::Regions(const Stage& stage) {
+  for (Part part = around; part < stage.parts(); ++part) surfaces_.push_back(stage.surface(part));
+  if (stage.bodies.empty()) return;
+  for (const Surface& surface : surfaces_)
+    if (std::holds_alternative<LevelSurface>(surface)) most_legs_ = 10000;
+  const auto [low, high] = bounds(stage.boundary);
+  touching_ = 1e-9 * (high - low).norm();
+}
+
+Part Regions::at(const Vec3& x) const {
+  for (Part part = parts() - 1; part > around; --part)
+    if (distance(surfaces_[part], x) < 0) return part;
+  return around;
+}
+
+bool Regions::goes_into(Part body, const Vec3& x, const Vec3& d) const {
+  const double outside = distance(surfaces_[body], x);
+  if (std::abs(outside) > touching_) return outside < 0;
+  return normal(surfaces_[body], x).dot(d) < 0;
+}
+
+double mean_density(const Stage& stage, Part part) {
+  constexpr int points = 32;  // along an axis
+  const ScatteringMedium& medium = stage.medium_in(part);
+  if (!medium.density) return 1;
+  const Regions regions(stage);
+  const auto [low, high] = bounds(stage.surface(part));
+  double sum = 0;
+  int inside = 0;
+  for (int point = 0; point < points * points * points; ++point) {
+    const Vec3 at(point / points / points, point / points % points, point % points);
+    const Vec3 share = (at + Vec3::Constant(0.5)) / points;
+    const Vec3 x = low + share.cwiseProduct(high - low);
+    if (regions.at(x) != part || distance(stage.boundary, x) > 0) continue;
+    sum += (*medium.density)(x);
+    ++inside;
+  }
+  return inside > 0 ? sum / inside : 1;
+}
+
+void require_in_stage(const Stage& stage, const Vec3& x) {
+  if (!(distance(stage.boundary, x) <= 1e-9 * x.norm()))
+    throw InputError("sensor_at", listed(x), "must be inside the stage");
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,134 @@
+#include "grin/render/stage/stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/error.h"
+#include "grin/render/stage/regions.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+Box bounds(const Sphere& s) {
+  const Vec3 half = Vec3::Constant(s.radius);
+  return {s.centre - half, s.centre + half};
+}
+Box bounds(const Box& b) {
+  return b;
+}
+Box bounds(const Lens& lens) {
+  return lens.bounds();
+}
+Box bounds(const LevelSurface& level) {
+  return level.bounds();
+}
+Box bounds(const Plane&) {
+  throw InputError("a plane is no boundary of a stage or body: it is not closed");
+}
+
+/// Of a path from the middle: diffusion, or what absorption and roulette leave of it.
+double most_scatterings(const ScatteringMedium& medium, const Surface& within, double density) {
+  const auto [low, high] = bounds(within);
+  const double depth = medium.mu_s * density * (high - low).minCoeff() / 2;
+  return std::min(1.5 * depth * depth * (1 - medium.phase.mean_cosine()),
+                  4 / (1 - medium.albedo()));
+}
+
+void check_path_lengths(const ScatteringMedium& medium, const Surface& within, double density,
+                        const std::string& prefix) {
+  constexpr double most = 1e8;
+  const double scatterings = most_scatterings(medium, within, density);
+  if (scatterings <= most) return;
+  std::ostringstream text;
+  text << "is too dense: light from the middle would scatter some " << scatterings
+       << " times, and paths of more than " << most
+       << " do not end in time; max_scatterings cuts them short";
+  throw InputError(prefix + "mu_s", medium.mu_s, text.str());
+}
+
+/// Flights through a density grid go from one tentative collision to the next, as many where the
+/// grid is thin or ends.
+void check_flights(const ScatteringMedium& medium, const Surface& within,
+                   const std::string& prefix) {
+  if (!medium.density) return;
+  constexpr double most = 1e6;
+  const auto [low, high] = bounds(within);
+  const double collisions = medium.mu_t() * medium.density->largest() * (high - low).norm();
+  if (collisions <= most) return;
+  std::ostringstream text;
+  text << "is too dense: a flight through its density grid might meet " << collisions
+       << " tentative collisions, and more than " << most << " do not end in time";
+  const bool scatters = medium.mu_s >= medium.mu_a;
+  throw InputError(prefix + (scatters ? "mu_s" : "mu_a"), scatters ? medium.mu_s : medium.mu_a,
+                   text.str());
+}
+
+ScatteringMedium without_scattering(ScatteringMedium medium) {
+  medium.mu_a = medium.mu_t();
+  medium.mu_s = 0;
+  return medium;
+}
+
+}  // namespace
+
+Box bounds(const Surface& surface) {
+  return std::visit([](const auto& s) { return bounds(s); }, surface);
+}
+
+bool lies_in(const Surface& inner, const Surface& outer) {
+  const auto [outer_low, outer_high] = bounds(outer);
+  const double rounding = 1e-9 * (outer_high - outer_low).norm();
+  if (const Sphere* sphere = std::get_if<Sphere>(&inner))
+    return distance(outer, sphere->centre) <= rounding - sphere->radius;
+  const auto [low, high] = bounds(inner);
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 x(corner & 1 ? low[0] : high[0], corner & 2 ? low[1] : high[1],
+                 corner & 4 ? low[2] : high[2]);
+    if (!(distance(outer, x) <= rounding)) return false;
+  }
+  return true;
+}
+
+Part Stage::field_part() const {
+  for (Part part = 1; part < parts(); ++part)
+    if (!bodies[part - 1].excess) return part;
+  return around;
+}
+
+bool Stage::absorbs() const {
+  return medium.mu_a > 0 || std::any_of(bodies.begin(), bodies.end(),
+                                        [](const Body& body) { return body.medium.mu_a > 0; });
+}
+
+Stage without_scattering(const Stage& stage) {
+  Stage black = stage;
+  black.medium = without_scattering(stage.medium);
+  for (Body& body : black.bodies) body.medium = without_scattering(body.medium);
+  return black;
+}
+
+void check(const Stage& stage) {
+  bounds(stage.boundary);
+  check_flights(stage.medium, stage.boundary, "");
+  for (Part part = 1; part < stage.parts(); ++part) {
+    const Body& body = stage.bodies[part - 1];
+    check_flights(body.medium, body.surface, body.keys);
+    if (!lies_in(body.surface, stage.boundary))
+      throw InputError(
+          "body: must be inside of the stage; of luneburg without one the ball, or the stage "
+          "inside of it");
+    if (!body.excess && part != stage.field_part())
+      throw InputError("body: only one of them may be filled by the index field");
+  }
+}
+
+void check_path_lengths(const Stage& stage, int max_scatterings) {
+  if (max_scatterings <= 100'000'000) return;
+  for (Part part = around; part < stage.parts(); ++part)
+    check_path_lengths(stage.medium_in(part), stage.surface(part), mean_density(stage, part),
+                       part == around ? "" : stage.bodies[part - 1].keys);
+}
+
+}  // namespace flatspeckle::grin

@@ -1,0 +1,189 @@
+#include "grin/render/transport/depth_importance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "grin/media/scattering/diffusion_rate.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+using std::numbers::pi;
+
+constexpr double largest_log = 600;  // exp of it is finite
+constexpr double thick = 8;          // mean free paths
+
+bool is_in_closed_form(const Surface& surface) {
+  return std::holds_alternative<Box>(surface) || std::holds_alternative<Sphere>(surface);
+}
+
+/// Diffuse light that goes along a box leaves through its sides.
+double leak_rate(const ScatteringMedium& medium, double density, const Surface& within,
+                 const Vec3& direction) {
+  const auto* box = std::get_if<Box>(&within);
+  if (!box || !(medium.mu_s > 0)) return 0;
+  constexpr double extrapolation = 0.7104;  // Milne
+  const double transport =
+      1 / (density * (medium.mu_t() - medium.mu_s * medium.phase.mean_cosine()));
+  double square = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double width = box->high[axis] - box->low[axis] + 2 * extrapolation * transport;
+    square += (1 - direction[axis] * direction[axis]) * pi * pi / (width * width);
+  }
+  return std::sqrt(square);
+}
+
+double diffuse_rate(const ScatteringMedium& medium, double density) {
+  if (!(medium.mu_s > 0)) return density * medium.mu_a;
+  const double g = medium.phase.mean_cosine();
+  return density * medium.mu_t() * diffusion_rate(medium.albedo(), g, 3);
+}
+
+/// Of directions from a point next to an area detector a path draws those that it accepts evenly; a
+/// join draws places evenly on what it sees of them, which are hardly ever near.
+double joined_share(const Sensor& sensor, double extinction) {
+  const auto* detector = std::get_if<AreaDetector>(&sensor);
+  if (!detector) return 1;
+  const double slope = std::tan(std::min(detector->acceptance, 1.57)) / extinction;
+  const double area = std::min(detector->width * detector->height, pi * slope * slope);
+  return std::min(1.0, 4 * pi / (extinction * extinction * area));
+}
+
+/// Places where light begins, the same ones always.
+std::vector<PathPoint> starts_of(const Lights& lights) {
+  constexpr int count = 64;
+  struct {
+    double index(const PathPoint&) const { return 1; }
+  } space;
+  RandomStream random(0, static_cast<std::uint64_t>(Stream::render), ~std::uint64_t{2});
+  std::vector<PathPoint> starts;
+  for (int i = 0; i < count; ++i) starts.push_back(lights.sample_position(space, random).point);
+  return starts;
+}
+
+}  // namespace
+
+std::optional<DepthImportance> DepthImportance::of(const Stage& stage, const Lights& lights,
+                                                   const std::vector<Sensor>& sensors) {
+  if (!is_in_closed_form(stage.boundary)) return std::nullopt;
+  if (stage.bodies.size() > 1) return std::nullopt;
+  if (stage.parts() > 1 && !is_in_closed_form(stage.surface(1))) return std::nullopt;
+  DepthImportance found(stage, lights, sensors);
+  if (!found.is_thick_) return std::nullopt;
+  return found;
+}
+
+DepthImportance::DepthImportance(const Stage& stage, const Lights& lights,
+                                 const std::vector<Sensor>& sensors)
+    : boundary_(stage.boundary) {
+  if (stage.parts() > 1) body_ = stage.surface(1);
+  for (Part part = around; part < stage.parts(); ++part)
+    extinction_[part] = mean_density(stage, part) * stage.medium_in(part).mu_t();
+  const std::vector<PathPoint> starts = starts_of(lights);
+  for (const Sensor& sensor : sensors) {
+    Destination to{.place = NearestPlace(sensor, boundary_)};
+    const Vec3 direction = way(starts[0], to).direction;
+    to.decay = decay(stage, direction);
+    find_shares(to, starts);
+    if (!body_) to.joined = joined_share(sensor, extinction_[0]);
+    most_joins_ = std::max(most_joins_, to.joined);
+    const auto* camera = std::get_if<Camera>(&sensor);
+    if (camera && camera->lens_radius == 0) inner_.push_back(camera->x);
+    destinations_.push_back(to);
+  }
+  find_drift(stage, starts[0]);
+}
+
+DepthImportance::ByPart DepthImportance::decay(const Stage& stage, const Vec3& direction) const {
+  ByPart found = {};
+  for (Part part = around; part < stage.parts(); ++part) {
+    const ScatteringMedium& medium = stage.medium_in(part);
+    const double density = mean_density(stage, part);
+    found[part] = std::hypot(diffuse_rate(medium, density),
+                             leak_rate(medium, density, stage.surface(part), direction));
+  }
+  return found;
+}
+
+/// From the start that is nearest.
+void DepthImportance::find_shares(Destination& to, const std::vector<PathPoint>& starts) {
+  constexpr double worthwhile = 2;
+  double depth = no_way, direct = no_way;
+  for (const PathPoint& start : starts) {
+    const Way there = way(start, to);
+    depth = std::min(depth, there.along(to.decay));
+    direct = std::min(direct, there.along(extinction_));
+  }
+  to.is_deep = depth > worthwhile;
+  to.log_share = depth - std::log(std::max(3.0, depth / 4));
+  favours_deep_ |= to.is_deep;
+  is_thick_ |= direct > thick;
+}
+
+/// To the sensor that is deepest.
+void DepthImportance::find_drift(const Stage& stage, const PathPoint& start) {
+  const ScatteringMedium& medium = stage.medium;
+  const bool is_known = std::holds_alternative<IsotropicPhase>(medium.phase.which) ||
+                        std::holds_alternative<HgPhase>(medium.phase.which);
+  if (body_ || medium.density || !(medium.mu_s > 0) || !is_known) return;
+  double deepest = 0;
+  Vec3 axis = Vec3::Zero();
+  for (const Destination& to : destinations_) {
+    const Way there = way(start, to);
+    if (there.length[0] <= deepest) continue;
+    deepest = there.length[0];
+    axis = there.direction;
+  }
+  const SlowMode mode(medium.albedo(), medium.phase.mean_cosine());
+  constexpr double most_kappa = 0.95, most_growth = 300;  // psi is smooth; exp of it is finite
+  if (mode.kappa() > most_kappa || mode.kappa() * medium.mu_t() * deepest > most_growth) return;
+  drift_ = Drift{mode, axis, start.x, medium.mu_t(), medium.albedo()};
+}
+
+DepthImportance::Way DepthImportance::way(const PathPoint& p, const Destination& to) const {
+  const Vec3 chord = to.place(p.x) - p.x;
+  const double length = chord.norm();
+  if (!(length > 0)) return {Vec3::Zero()};
+  Way found{chord / length, {length, 0}};
+  if (!body_) return found;
+  const bool inside = p.part != around;
+  const double in = inside ? 0 : std::min(length, way_in(*body_, p.x, found.direction));
+  const double within = way_out(*body_, p.x + in * found.direction, found.direction);
+  found.length[1] = std::min(length - in, within);
+  found.length[0] = length - found.length[1];
+  return found;
+}
+
+DepthImportance::Outlook DepthImportance::outlook(const PathPoint& p) const {
+  double most = -largest_log;
+  Vec3 rise = Vec3::Zero();
+  if (!favours_deep_) return {1, rise};
+  for (const Destination& to : destinations_) {
+    if (!to.is_deep) continue;
+    const Way there = way(p, to);
+    const double log_worth = to.log_share - there.along(to.decay);
+    if (log_worth < most) continue;
+    most = log_worth;
+    rise = to.decay[p.part] * there.direction;
+  }
+  return {most > 0 ? std::exp(std::min(most, largest_log)) : 1, rise};
+}
+
+double DepthImportance::clearance(const PathPoint& p) const {
+  if (p.part != around) return -distance(*body_, p.x);
+  if (body_) return 0;
+  double least = -distance(boundary_, p.x);
+  for (const Vec3& sensor : inner_) least = std::min(least, (sensor - p.x).norm());
+  return least;
+}
+
+double DepthImportance::chance_to_join(const PathPoint& p) const {
+  const double depth = extinction_[p.part] * clearance(p);
+  const double beyond = 1 + std::max(0.0, depth / 2 - 1) / 8;
+  const double square = beyond * beyond, fourth = square * square;
+  return 1 / (fourth * fourth);
+}
+
+}  // namespace flatspeckle::grin

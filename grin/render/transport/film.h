@@ -1,0 +1,89 @@
+#pragma once
+
+#include <span>
+
+#include "core/numbers/complex.h"
+#include "grin/render/transport/energy_balance.h"
+
+namespace flatspeckle::grin {
+
+/// What is kept of a pixel's light: by optical path, in equal bins, beside them what is before the
+/// first and beyond the last, so that the sum of all is the steady picture; moments of it; and
+/// derivatives by parameters of the medium (path_score.h) and of the field (moving_paths.h).
+struct TimeBins {
+  double first = 0, last = 0;  ///< edges
+  int count = 1;               ///< 1: steady state
+  bool moments = false;        ///< also value times path, and times its square
+  int derivatives = 0;         ///< by so many parameters of the medium
+  int by_field = 0;            ///< and so many sums of those by parameters of the field
+
+  bool keeps_paths() const { return count > 1 || moments; }
+  /// Sums of a pixel: [before, bins, beyond] or one, then the moments.
+  int parts() const { return count > 1 ? count + 2 : 1; }
+  int first_derivative() const { return parts() + (moments ? 2 : 0); }
+  int first_by_field() const { return first_derivative() + derivatives; }
+  int sums() const { return first_by_field() + by_field; }
+};
+
+/// Sums of a batch: [pixel][TimeBins::sums].
+class Film {
+ public:
+  Film(int pixels, const TimeBins& bins, std::span<Complex> sums);
+
+  void add(int pixel, double value, double optical_path) {
+    Complex* const own = sums_.data() + static_cast<std::size_t>(pixel) * per_pixel_;
+    if (bins_.count > 1)
+      add_to_bins(own, value, optical_path);
+    else
+      own[0] += value;
+    if (!bins_.moments) return;
+    own[bins_.parts()] += value * optical_path;
+    own[bins_.parts() + 1] += value * optical_path * optical_path;
+  }
+  /// Steady state.
+  void add(int pixel, double value) {
+    sums_[static_cast<std::size_t>(pixel) * per_pixel_] += value;
+  }
+
+  bool has_derivatives() const { return bins_.derivatives > 0; }
+  void add_derivative(int pixel, int parameter, double value) {
+    Complex* const own = sums_.data() + static_cast<std::size_t>(pixel) * per_pixel_;
+    own[bins_.first_derivative() + parameter] += value;
+  }
+  void add_by_field(int pixel, int number, double value) {
+    Complex* const own = sums_.data() + static_cast<std::size_t>(pixel) * per_pixel_;
+    own[bins_.first_by_field() + number] += value;
+  }
+
+  EnergyBalance energy;  ///< of light paths that are walked to their ends
+  double drift = 0;      ///< of the same (DepthImportance::Drift)
+
+ private:
+  /// A contribution within the edges is shared between the two bins whose centres are next to it
+  /// (linear splat), which keeps its optical path between the first and the last centre.
+  void add_to_bins(Complex* own, double value, double optical_path) const {
+    // bin centres are the whole numbers
+    const double at = (optical_path - bins_.first) * bins_per_length_ + 0.5;
+    if (!(optical_path >= bins_.first)) {
+      own[0] += value;
+    } else if (!(optical_path <= bins_.last)) {
+      own[bins_.count + 1] += value;
+    } else if (!(at > 1)) {
+      own[1] += value;
+    } else if (at >= bins_.count) {
+      own[bins_.count] += value;
+    } else {
+      const int before = static_cast<int>(at);
+      const double later = value * (at - before);
+      own[before] += value - later;
+      own[before + 1] += later;
+    }
+  }
+
+  std::span<Complex> sums_;
+  TimeBins bins_;
+  int per_pixel_;
+  double bins_per_length_;
+};
+
+}  // namespace flatspeckle::grin

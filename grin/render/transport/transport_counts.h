@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "core/run/interrupt.h"
+#include "grin/rays/connections/connection.h"
+#include "grin/render/transport/film.h"
+
+namespace flatspeckle::grin {
+
+/// What light paths cost.
+struct TransportCounts {
+  std::uint64_t flights = 0, lost_flights = 0;
+  std::uint64_t light_collisions = 0;          ///< of paths from lights
+  std::uint64_t joins_weighed = 0, joins = 0;  ///< considered; asked of space
+  std::uint64_t lost_values = 0;               ///< not finite; left out
+  ConnectionStatistics connections = {};
+
+  /// Of a flight that has ended. Throws Interrupted, now and then, once a signal has come.
+  void add_flight(bool is_lost) {
+    constexpr std::uint64_t between_looks = 256;
+    if (++flights % between_looks == 0) stop_if_interrupted();
+    lost_flights += is_lost;
+  }
+
+  TransportCounts& operator+=(const TransportCounts& other) {
+    flights += other.flights;
+    lost_flights += other.lost_flights;
+    light_collisions += other.light_collisions;
+    joins_weighed += other.joins_weighed;
+    joins += other.joins;
+    lost_values += other.lost_values;
+    connections += other.connections;
+    return *this;
+  }
+};
+
+/// Adds to a pixel of a film, if there is one (-1: none) and the value is finite.
+inline void deposit(Film& film, TransportCounts& counts, int pixel, double value,
+                    double optical_path) {
+  if (pixel < 0 || value == 0) return;
+  if (!std::isfinite(value)) {
+    ++counts.lost_values;
+    return;
+  }
+  film.add(pixel, value, optical_path);
+}
+/// Likewise to a sum of derivatives by the field.
+inline void deposit_by_field(Film& film, TransportCounts& counts, int pixel, int number,
+                             double value) {
+  if (std::isfinite(value))
+    film.add_by_field(pixel, number, value);
+  else
+    ++counts.lost_values;
+}
+
+}  // namespace flatspeckle::grin

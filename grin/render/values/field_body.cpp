@@ -1,0 +1,119 @@
+#include "grin/render/values/field_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "grin/media/geometry/vector_values.h"
+#include "grin/rays/surfaces/lens_values.h"
+#include "grin/rays/surfaces/mesh_surface.h"
+#include "grin/rays/surfaces/stl_file.h"
+#include "grin/render/stage/stage.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+IndexRange index_range(const SceneField& field, const Surface& region, const std::string& name) {
+  constexpr int nodes = 33;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const Box box = bounds(region);
+  const bool is_same_along_z =  // where it is in the region at one z or at all
+      std::holds_alternative<Box>(region) && field.axis == Vec3::UnitZ() &&
+      (field.symmetry == Symmetry::guide || field.symmetry == Symmetry::round_guide);
+  IndexRange range{infinity, -infinity};
+  std::visit(
+      [&](const auto& medium) {
+        for (int node = 0; node < nodes * nodes * nodes; node += is_same_along_z ? nodes : 1) {
+          const Vec3 share = Vec3(node / nodes / nodes, node / nodes % nodes, node % nodes);
+          const Vec3 x = box.low + (box.high - box.low).cwiseProduct(share) / (nodes - 1);
+          if (distance(region, x) > 0) continue;
+          const double n = index(medium, x);
+          if (!(n > 0 && std::isfinite(n)))
+            throw InputError("index at " + listed(x), n, "must be positive in all of the " + name);
+          range = {std::min(range.lowest, n), std::max(range.highest, n)};
+        }
+      },
+      field.field);
+  return range;
+}
+
+}  // namespace
+
+void add_body_keys(Keys& keys, FieldBodyValues& values) {
+  keys.add("body_box", values.body_box,
+           "x y z x y z of two corners: the index field fills this body alone")
+      .each_of(6, "two opposite corners, the low one first");
+  keys.add("body_sphere", values.body_sphere,
+           "x y z radius: the same with a sphere; luneburg in a larger stage needs none")
+      .each_of(4, "centre and radius");
+  keys.add("body_lens", values.body_lens,
+           std::string(lens_words) + ": the same with a lens of spherical faces about an axis " +
+               "along z: front vertex, radius, radii of curvature (positive where the centre is " +
+               "at larger z; 0: plane); a rod, where both are 0")
+      .each_of(lens_numbers, lens_words);
+  keys.add("body_mesh", values.body_mesh,
+           "STL file, binary or text: the same with a closed surface of triangles, in place of "
+           "which a smooth one is taken")
+      .file();
+  keys.add("body_mesh_spacing", values.body_mesh_spacing,
+           "Of the grid of distances from the mesh that the smooth surface comes from; its edges "
+           "are rounded over one (default: the longest side / 64, or finer down to / 256 where its "
+           "volume would be off by 1 %)")
+      .positive()
+      .unit("length")
+      .only_of("body_mesh");
+}
+
+void add_index_around(Keys& keys, FieldBodyValues& values) {
+  keys.add("index_around", values.index_around, "Index around the body").positive();
+}
+
+std::optional<Surface> one_surface(const std::string& name, const std::string& keys,
+                                   const std::vector<Surface>& given) {
+  if (given.size() > 1) throw InputError(keys + ": give one " + name);
+  if (given.empty()) return std::nullopt;
+  return given.front();
+}
+
+namespace {
+
+LevelSurface mesh_body(const Keys& keys, const FieldBodyValues& values, const std::string& file,
+                       const Surface* room) {
+  const TriangleMesh mesh = read_stl(keys.name(values.body_mesh), file);
+  const Box box = bounds(mesh);
+  if (room && !lies_in(box, *room))
+    throw InputError(keys.name(values.body_mesh) + ": from " + listed(box.low) + " to " +
+                     listed(box.high) + ", must be inside of the stage");
+  const std::string name = keys.name(values.body_mesh_spacing);
+  const std::optional<double>& spacing = keys.read(values.body_mesh_spacing);
+  return spacing ? mesh_surface(mesh, *spacing, name) : mesh_surface(mesh, name);
+}
+
+}  // namespace
+
+std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& values,
+                                  const Surface* room) {
+  std::vector<Surface> given;
+  for (const Box& box : boxes_of(keys, values.body_box)) given.push_back(box);
+  for (const Sphere& sphere : spheres_of(keys, values.body_sphere)) given.push_back(sphere);
+  for (const Lens& lens : lenses_of(keys, values.body_lens)) given.push_back(lens);
+  const std::string& file = keys.read(values.body_mesh);
+  const auto body = one_surface("body", body_key_names, given);
+  if (file.empty()) return body;
+  if (body) throw InputError(std::string(body_key_names) + ": give one body");
+  return mesh_body(keys, values, file, room);
+}
+
+IndexRange check_field(const SceneField& field, const Surface& region, const std::string& name) {
+  if (field.grid && !lies_in(region, *field.grid))
+    throw InputError("grid: ends inside of the " + name + ", and light needs a field in all of it");
+  return index_range(field, region, name);
+}
+
+void check_rim(const SceneField& field, const Surface& body) {
+  if (field.rim && !lies_in(body, *field.rim))
+    throw InputError("body: must be inside of the rim of luneburg");
+}
+
+}  // namespace flatspeckle::grin

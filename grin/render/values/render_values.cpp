@@ -1,0 +1,291 @@
+#include "grin/render/values/render_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/keys/number_text.h"
+#include "grin/render/sensors/sensor_edges.h"
+#include "grin/render/transport/path_score.h"
+#include "grin/render/values/field_parameters.h"
+#include "grin/render/values/step_choice.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+constexpr const char* chosen = "auto";
+
+std::vector<std::string> words_for_methods() {
+  std::vector<std::string> words = method_words();
+  words.insert(words.begin(), chosen);
+  return words;
+}
+
+TimeBins time_bins(const Keys& keys, const RenderValues& values) {
+  constexpr double most = 100'000;
+  const auto& bins = keys.read(values.path_bins);
+  const bool moments = keys.read(values.path_moments);
+  if (bins.empty()) return {.moments = moments};
+  const auto refuse = [&](const std::string& accepted) {
+    throw InputError("path_bins", number_text(bins), accepted);
+  };
+  if (!(bins[0] >= 0 && bins[1] > bins[0])) refuse("must go from a length to a larger one");
+  if (!(bins[2] >= 2 && bins[2] <= most && bins[2] == std::floor(bins[2])))
+    refuse("must have a whole count from 2 to 100000");
+  return {bins[0], bins[1], static_cast<int>(bins[2]), moments};
+}
+
+constexpr double most_sums = 1 << 23;  // of which 16 groups are 2 GiB
+
+void check_size(const std::vector<Sensor>& sensors, const TimeBins& bins) {
+  double size = 0;
+  for (const Sensor& sensor : sensors)
+    size += static_cast<double>(pixels_of(sensor).grid.count()) * bins.sums();
+  if (size > most_sums) throw InputError("pixels x path_bins", size, "must be at most 8388608");
+}
+
+/// Checked, as many as the axes of the map.
+template <std::size_t axes>
+std::array<int, axes> map_counts(const std::vector<std::int64_t>& cells, const std::string& names) {
+  double product = 1;
+  for (const auto count : cells) product *= static_cast<double>(count);
+  if (cells.size() != axes)
+    throw InputError("map_cells", number_text(std::vector<double>(cells.begin(), cells.end())),
+                     "must be counts along " + names);
+  if (product > most_sums / 4)
+    throw InputError("map_cells", product, "must be at most 2097152 cells");
+  std::array<int, axes> counts{};
+  std::transform(cells.begin(), cells.end(), counts.begin(),
+                 [](std::int64_t count) { return static_cast<int>(count); });
+  return counts;
+}
+
+BoxCells box_cells(const Keys& keys, const RenderValues& values) {
+  const Box box = boxes_of(keys, values.map_box).front();
+  return {box, map_counts<3>(keys.required(values.map_cells), "x, y and z")};
+}
+
+RingCells ring_cells(const Keys& keys, const RenderValues& values) {
+  const auto& given = keys.read(values.map_cylinder);
+  const Vec3 from(given[0], given[1], given[2]), to(given[3], given[4], given[5]);
+  if (!(given[6] > 0 && (to - from).norm() > 0))
+    throw InputError("map_cylinder", number_text(given),
+                     "must have two ends apart and a positive radius");
+  return {from, to, given[6], map_counts<2>(keys.required(values.map_cells), "radius and axis")};
+}
+
+/// Throws InputError for a map that no light of the stage reaches.
+template <class Cells>
+Cells within(const Cells& cells, const Box& stage, const std::string& key) {
+  const Box box = cells.bounds();
+  if (are_apart(box, stage))
+    throw InputError(key + ": the map, from " + listed(box.low) + " to " + listed(box.high) +
+                     ", is outside of the stage");
+  return cells;
+}
+
+std::optional<LightMap> light_map(const Keys& keys, const RenderValues& values, const Box& stage) {
+  const bool has_box = !values.map_box.empty(), has_cylinder = !values.map_cylinder.empty();
+  if (has_box && has_cylinder) throw InputError("map_box, map_cylinder: give one");
+  if (has_box) return within(box_cells(keys, values), stage, "map_box");
+  if (has_cylinder) return within(ring_cells(keys, values), stage, "map_cylinder");
+  return std::nullopt;
+}
+
+/// Sound so faint that it bends no rays is none.
+AnyIndexField without_silence(const SceneField& field, const Stage& stage) {
+  if (!bends_nothing(field, stage)) return field.field;
+  return std::visit(
+      [](const auto& of) -> AnyIndexField {
+        if constexpr (requires { of.amplitude(); })
+          return Homogeneous{of.background()};
+        else
+          return of;
+      },
+      field.field);
+}
+
+bool has_sound(const AnyIndexField& field) {
+  return std::visit(
+      [](const auto& of) {
+        if constexpr (requires { of.amplitude(); })
+          return of.amplitude() != 0;
+        else
+          return false;
+      },
+      field);
+}
+
+StepChoice steps_of(const Keys& keys, const RenderValues& values, const SceneField& field,
+                    const Stage& stage, double size) {
+  constexpr double most_steps = 1e5;
+  if (!(field.scale > 0)) return {size};
+  const auto& given = keys.read(values.step);
+  const double longest = longest_step(field, stage);
+  if (given && *given > longest)
+    throw InputError("step", *given,
+                     "must be at most " + number_text(longest) + ": the field varies over " +
+                         number_text(field.scale));
+  const StepChoice steps =
+      given ? StepChoice{*given} : chosen_steps(field, stage, keys.read(values.random_phase));
+  if (!(steps.step * most_steps >= size))
+    throw InputError("step", steps.step,
+                     "must be at least 1e-5 of the stage's size: " + number_text(size));
+  return steps;
+}
+
+double max_length_of(const Keys& keys, const RenderValues& values, double scale, double size) {
+  const double usual = 10 * size;
+  return scale > 0 ? keys.read(values.max_length).value_or(usual) : usual;
+}
+
+/// By the parameters of the one medium.
+void add_derivatives(RenderScene& scene) {
+  const auto refuse = [](const std::string& why) { throw InputError("gradient: " + why); };
+  if (!scene.stage.bodies.empty()) refuse("the stage must have no bodies, but one medium alone");
+  const ScatteringMedium& medium = scene.stage.medium;
+  if (medium.density) refuse("the medium must be uniform, without density");
+  if (!(medium.mu_t() > 0)) refuse("there is no medium; mu_s or mu_a must be above 0");
+  scene.bins.derivatives = static_cast<int>(parameters_of(medium).size());
+}
+
+/// By numbers of the field.
+void add_motion(const RenderValues& values, const FieldUse& use, RenderScene& scene) {
+  const auto refuse = [](const std::string& why) { throw InputError("gradient_by: " + why); };
+  if (scene.is_silent || std::holds_alternative<Homogeneous>(scene.field))
+    refuse("the field must bend rays, which sound of no amplitude does not");
+  if (scene.random_phase) refuse("the sound must be of one phase, without random_phase");
+  if (!scene.stage.bodies.empty()) refuse("the stage must have no bodies, but one medium alone");
+  if (scene.stage.medium.density) refuse("the medium must be uniform, without density");
+  const auto* box = std::get_if<Box>(&scene.stage.boundary);
+  if (!box) refuse("the stage must be a box");
+  for (const Sensor& sensor : scene.sensors) SensorEdges(sensor, *box, 0);
+  scene.parameters = field_parameters(values.field, values.gradient_by, use);
+  scene.bins.by_field = static_cast<int>(scene.parameters.size()) * edge_widths;
+}
+
+void add_map_keys(Keys& keys, RenderValues& values) {
+  keys.group("Map of the fluence rate and of absorbed power");
+  keys.add("map_box", values.map_box, "x y z x y z of two corners: cells of this box")
+      .exactly(6, "two opposite corners, the low one first")
+      .unit("length");
+  keys.add("map_cylinder", values.map_cylinder,
+           "x y z x y z radius: rings about the axis from the first point to the second")
+      .exactly(7, "two points and a radius")
+      .unit("length");
+  keys.add("map_cells", values.map_cells,
+           "Counts: along x, y and z of a box; along the radius and the axis of a cylinder")
+      .from(1, 1 << 21)
+      .only_of("a map (map_box, map_cylinder)");
+}
+
+}  // namespace
+
+void add_keys(Keys& keys, RenderValues& values) {
+  add_keys(keys, values.field);
+  keys.group("Rays", "a field that bends rays");
+  keys.add("random_phase", values.random_phase, "Each path meets the sound at a phase of its own")
+      .only_of("ultrasound, focused_sound");
+  keys.add("step", values.step,
+           "Equal steps of rays, length at index 1 (default: chosen by a pilot)")
+      .positive()
+      .unit("length");
+  keys.add("max_length", values.max_length,
+           "Arc length of one flight between scatterings, at the most (default: 10 times the "
+           "stage's size)")
+      .positive()
+      .unit("length");
+  add_keys(keys, values.stage);
+  add_keys(keys, values.lights);
+  add_keys(keys, values.sensors);
+  keys.group("Picture");
+  keys.add("path_bins", values.path_bins,
+           "first last count: also pictures by optical path, in equal bins of it, shared between "
+           "the two nearest middles")
+      .exactly(3, "three numbers: first last count");
+  keys.add("path_moments", values.path_moments,
+           "Also the mean optical path of the light in each pixel, and the mean of its square");
+  keys.add("gradient", values.gradient,
+           "Also derivatives of pictures and powers by mu_s, mu_a and g (method = analog)");
+  keys.add(
+      "gradient_by", values.gradient_by,
+      "Also derivatives by numbers of the index field: amplitude, frequency, transducer.2, the "
+      "third of its numbers (method = analog)");
+  keys.add("length_unit", values.length_unit,
+           "What lengths are in, um or 1e-6, for frequency of sound and the times of path_bins")
+      .positive()
+      .unit("m");
+  add_map_keys(keys, values);
+}
+
+void add_keys(Keys& keys, RenderRequestValues& values) {
+  keys.group("Method");
+  keys.add("method", values.method,
+           "Path tracing is from the sensor; light tracing is best for powers on large areas; "
+           "analog: light paths that are joined to nothing; auto: chosen by a pilot")
+      .one_of(words_for_methods());
+  keys.add("photon_radius", values.photon_radius,
+           "Radius of the estimate (default: chosen from the scene)")
+      .positive()
+      .unit("length")
+      .only_of("photon_map");
+  keys.add("max_scatterings", values.max_scatterings,
+           "Paths of more scatterings are left out; 0: no limit")
+      .from(0, std::numeric_limits<int>::max());
+}
+
+RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
+  const bool any_phase = keys.read(values.random_phase);
+  const auto [stage, field, index, use] =
+      make_stage(keys, values.stage, values.field, any_phase, keys.read(values.length_unit));
+  const Box box = bounds(stage.boundary);
+  const double size = (box.high - box.low).norm();
+  const AnyIndexField heard = without_silence(field, stage);
+  const StepChoice steps = steps_of(keys, values, field, stage, size);
+  RenderScene scene{.field = heard,
+                    .step = steps.step,
+                    .max_length = max_length_of(keys, values, field.scale, size),
+                    .random_phase = any_phase && heard.index() == field.field.index(),
+                    .stage = stage,
+                    .lights = make_lights(keys, values.lights),
+                    .sensors = make_sensors(keys, values.sensors),
+                    .sensor_names = make_sensor_names(keys, values.sensors),
+                    .bins = time_bins(keys, values),
+                    .map = light_map(keys, values, box),
+                    .length_unit = keys.read(values.length_unit),
+                    .leapfrogs = steps.leapfrogs,
+                    .index = index,
+                    .is_silent = has_sound(field.field) && heard.index() != field.field.index()};
+  if (keys.read(values.gradient)) add_derivatives(scene);
+  if (!keys.read(values.gradient_by).empty()) add_motion(values, use, scene);
+  check_size(scene.sensors, scene.bins);
+  if (scene.sensors.empty() && !scene.map)
+    throw InputError("sensor", "none", "wants a map (map_box, map_cylinder)");
+  return scene;
+}
+
+RenderScene make_render_scene(const RenderValues& values) {
+  return made_of(values, [](const Keys& keys, const RenderValues& all) {
+    return make_render_scene(keys, all);
+  });
+}
+
+RenderRequest make_render_request(const Keys& keys, const RenderRequestValues& values) {
+  RenderRequest request{.max_scatterings = keys.read(values.max_scatterings)};
+  const auto words = method_words();
+  if (const auto& method = keys.read(values.method); method != chosen)
+    request.method =
+        static_cast<RenderMethod>(std::find(words.begin(), words.end(), method) - words.begin());
+  if (request.method == RenderMethod::photon_map)
+    request.photon_radius = keys.read(values.photon_radius).value_or(0);
+  return request;
+}
+
+RenderRequest make_render_request(const RenderRequestValues& values) {
+  return made_of(values, [](const Keys& keys, const RenderRequestValues& all) {
+    return make_render_request(keys, all);
+  });
+}
+
+}  // namespace flatspeckle::grin

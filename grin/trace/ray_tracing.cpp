@@ -1,0 +1,313 @@
+#include "grin/trace/ray_tracing.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+
+#include "core/run/parallel.h"
+#include "grin/rays/marching/lane_pool.h"
+#include "grin/rays/surfaces/interface.h"
+#include "grin/render/curved/ray_field.h"
+#include "grin/render/stage/regions.h"
+#include "grin/trace/ray_bodies.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+std::string name(std::size_t ray) {
+  return "ray " + std::to_string(ray);
+}
+
+void check_start(const SceneField& scene, const Stage& stage, const RayStops& stops,
+                 std::size_t number, const RayStart& start) {
+  const auto refuse = [&](const std::string& where) {
+    throw InputError(name(number) + " starts at " + listed(start.x) + ": " + where);
+  };
+  if (scene.grid && scene.grid->distance(start.x) > 0) refuse("outside of the grid");
+  if (!(index_at(scene, stage, start.x) > 0)) refuse("the field has no index above 0 there");
+  for (const auto& surface : stops.surfaces)
+    if (const auto* plane = std::get_if<Plane>(&surface);
+        plane && plane->distance(start.x) > stops.location)
+      refuse("behind stop_plane = " + listed(plane->point) + ' ' + listed(plane->outwards));
+}
+
+class BundleTracer {
+ public:
+  BundleTracer(const SceneField& scene, const Stage& stage, const RayStops& stops,
+               const RaySteps& steps, std::size_t path_points)
+      : scene_(scene),
+        stage_(stage),
+        regions_(stage),
+        stops_(stops),
+        steps_(steps),
+        path_points_(path_points),
+        surfaces_(stops.surfaces),
+        inside_(make_ray_field(scene.field)),
+        outside_(
+            std::visit([](const auto& field) { return make_ray_field(field); }, scene.outside)) {
+    for (const Body& body : stage.bodies) surfaces_.push_back(body.surface);
+    if (scene.grid) surfaces_.push_back(*scene.grid);
+    if (scene.rim) surfaces_.push_back(*scene.rim);
+    for (Part part = around; part < stage.parts(); ++part)
+      plain_.push_back(part == stage.field_part()
+                           ? nullptr
+                           : make_ray_field(Homogeneous{stage.excess_in(part)}));
+  }
+
+  /// Rays of equal steps whose ways are not kept may go side by side.
+  bool has_lanes() const {
+    return inside_->has_lanes() && stage_.bodies.empty() && !steps_.tolerance && path_points_ == 0;
+  }
+
+  TracedRay trace(std::size_t number, const RayStart& start) const {
+    Going going(*this, number, start);
+    going.log.start(going.ray);
+    return finish(going, follow(going));
+  }
+  /// Rays [first, last).
+  void trace_in_lanes(std::span<const RayStart> starts, std::size_t first, std::size_t last,
+                      std::vector<TracedRay>& rays) const {
+    InLanes bundle(*this, starts, first, last, rays);
+    LanePool(bundle).run();
+  }
+
+ private:
+  struct Going {
+    Going(const BundleTracer& tracer, std::size_t number_of_ray, const RayStart& start)
+        : number(number_of_ray),
+          log(tracer.steps_, tracer.path_points_ > 0),
+          part(tracer.part_at(start)),
+          ray{start.x, (1 + tracer.excess(part, start.x, start.direction)) * start.direction},
+          first(tracer.invariants(ray)) {}
+
+    std::size_t number;
+    RayLog log;
+    Part part;
+    RayState ray;
+    double transmittance = 1;
+    RayInvariants first;
+    std::uint64_t steps = 0;
+  };
+
+  /// LanePool's work.
+  class InLanes {
+   public:
+    InLanes(const BundleTracer& tracer, std::span<const RayStart> starts, std::size_t first,
+            std::size_t last, std::vector<TracedRay>& rays)
+        : tracer_(tracer), starts_(starts), next_(first), last_(last), rays_(rays) {}
+
+    bool begin(int lane, RayState& ray) {
+      while (next_ < last_) {
+        const std::size_t number = next_++;
+        auto& going = going_[lane].emplace(tracer_, number, starts_[number]);
+        if (tracer_.comes_inside(going)) {
+          watch_[lane].emplace(tracer_.surfaces_, tracer_.limits(going), going.ray);
+          ray = going.ray;
+          return true;
+        }
+        rays_[number] = tracer_.trace(number, starts_[number]);
+      }
+      return false;
+    }
+    void go(RayLanes& rays, const double*, int steps) const {
+      std::fill_n(rays.step, lanes, tracer_.steps_.longest);
+      tracer_.inside_->follow_lanes(tracer_.steps_.integrator, steps, rays);
+    }
+    double clearance(int lane, const RayState& ray) const { return watch_[lane]->clearance(ray); }
+    bool passed(int lane, const RayLanes&, double) {
+      going_[lane]->steps += steps_at_once;
+      return true;
+    }
+
+    bool careful(int lane, RayState& ray, double& index_mismatch) {
+      Going& going = *going_[lane];
+      going.ray = ray;
+      going.log.met(index_mismatch);
+      TraceLimits few = tracer_.limits(going);
+      few.max_steps = steps_at_once;
+      TraceEnd end = tracer_.inside_->follow(tracer_.surfaces_, few, going.log, going.ray);
+      going.steps += static_cast<std::uint64_t>(end.steps);
+      if (end.stop == Stop::steps && going.steps < most_steps) {
+        ray = going.ray;
+        index_mismatch = going.log.index_mismatch();
+        return true;
+      }
+      end.steps = static_cast<long>(going.steps);
+      if (!tracer_.has_ended(going, end)) end = tracer_.follow(going);
+      rays_[going.number] = tracer_.finish(going, end);
+      return false;
+    }
+
+   private:
+    static constexpr int steps_at_once = LanePool<InLanes>::steps_at_once;
+    static_assert(steps_at_once == RayLog::steps_unseen);
+
+    const BundleTracer& tracer_;
+    std::span<const RayStart> starts_;
+    std::size_t next_, last_;
+    std::vector<TracedRay>& rays_;
+    std::array<std::optional<Going>, lanes> going_;
+    std::array<std::optional<Watch>, lanes> watch_;
+  };
+
+  static constexpr std::uint64_t most_steps = TraceLimits{}.max_steps;
+
+  int number_of_stops() const { return static_cast<int>(stops_.surfaces.size()); }
+  RayInvariants invariants(const RayState& ray) const {
+    return ray_invariants(*inside_, ray, scene_.centre, scene_.axis);
+  }
+  TraceLimits limits(const Going& going) const {
+    return {stops_.max_length - going.ray.arc_length, stops_.location};
+  }
+
+  TracedRay finish(const Going& going, const TraceEnd& end) const {
+    TracedRay traced{.steps = going.steps,
+                     .end = going.ray,
+                     .index_mismatch = going.log.index_mismatch(),
+                     .first = going.first,
+                     .last = invariants(going.ray)};
+    traced.status = end.stop == Stop::length          ? RayStatus::length
+                    : end.surface < number_of_stops() ? RayStatus::surface
+                                                      : RayStatus::edge_of_grid;
+    const bool is_stop = traced.status == RayStatus::surface;
+    traced.surface = static_cast<std::uint64_t>(is_stop ? end.surface : number_of_stops());
+    traced.transmittance = going.transmittance;
+    traced.end_slope = field_of(going.part, going.ray).gradient(going.ray.x).gradient.norm();
+    if (path_points_ > 0) traced.path = going.log.path().points(path_points_);
+    return traced;
+  }
+
+  /// From rim to rim and from body to body, until the ray ends.
+  TraceEnd follow(Going& going) const {
+    constexpr int most_seams = 100'000;
+    if (leaves_grid(going.ray)) return {.stop = Stop::surface, .surface = number_of_stops()};
+    for (int i = 0; i < most_seams; ++i) {
+      const TraceEnd end = follow_part(going);
+      if (has_ended(going, end)) return end;
+      if (is_body(end.surface)) cross(going, end.surface - number_of_stops() + 1);
+    }
+    throw InputError("max_length", stops_.max_length,
+                     name(going.number) + " meets the rim, or bodies, too often");
+  }
+  TraceEnd follow_part(Going& going) const {
+    const double before = going.ray.arc_length;
+    const TraceEnd end =
+        field_of(going.part, going.ray).follow(surfaces_, limits(going), going.log, going.ray);
+    going.steps += static_cast<std::uint64_t>(end.steps);
+    const double mu_t = stage_.medium_in(going.part).mu_t();
+    going.transmittance *= std::exp(-mu_t * (going.ray.arc_length - before));
+    return end;
+  }
+  /// Not at the rim or a body.
+  bool has_ended(const Going& going, const TraceEnd& end) const {
+    if (end.stop == Stop::lost || end.stop == Stop::steps) throw lost(going, end);
+    const bool at_rim = scene_.rim && end.surface + 1 == static_cast<int>(surfaces_.size());
+    return end.stop == Stop::length || !(at_rim || is_body(end.surface));
+  }
+  bool is_body(int surface) const {
+    const int body = surface - number_of_stops();
+    return body >= 0 && body < static_cast<int>(stage_.bodies.size());
+  }
+
+  /// A body's surface, where the index jumps unless what is seen there is covered by another.
+  void cross(Going& going, Part body) const {
+    RayState& ray = going.ray;
+    const Part to = regions_.beyond(going.part, body, ray.x, ray.v.normalized());
+    if (to == going.part) return;
+    const Interface face(ray.v, normal(regions_.surface(body), ray.x),
+                         excess(going.part, ray.x, ray.v), excess(to, ray.x, ray.v));
+    if (const auto refracted = face.refracted()) {
+      going.transmittance *= 1 - face.reflectance();
+      going.part = to;
+      ray.v = *refracted;
+    } else {
+      ray.v = face.reflected();
+    }
+    going.log.start(ray);
+  }
+  double excess(Part part, const Vec3& x, const Vec3& towards) const {
+    return field_of(part, {x, towards}).excess(x);
+  }
+  const RayField& field_of(Part part, const RayState& ray) const {
+    if (plain_[part]) return *plain_[part];
+    return is_outside(ray) ? *outside_ : *inside_;
+  }
+  /// On a body's surface, that which the ray goes into.
+  Part part_at(const RayStart& start) const {
+    for (Part part = regions_.parts() - 1; part > around; --part) {
+      const double outside = distance(regions_.surface(part), start.x);
+      if (outside < -stops_.location) return part;
+      if (outside > stops_.location) continue;
+      if (normal(regions_.surface(part), start.x).dot(start.direction) < 0) return part;
+    }
+    return around;
+  }
+  /// Where it was outside of the rim, in one way.
+  bool comes_inside(Going& going) const {
+    if (leaves_grid(going.ray)) return false;
+    if (!is_outside(going.ray)) return true;
+    const TraceEnd end = outside_->follow(surfaces_, limits(going), going.log, going.ray);
+    going.steps += static_cast<std::uint64_t>(end.steps);
+    return !has_ended(going, end) && !is_outside(going.ray);
+  }
+
+  /// From its edge.
+  bool leaves_grid(const RayState& ray) const {
+    return scene_.grid && scene_.grid->distance(ray.x) >= -stops_.location &&
+           ray.v.dot(scene_.grid->normal(ray.x)) >= 0;
+  }
+
+  bool is_outside(const RayState& ray) const {
+    if (!scene_.rim) return false;
+    const double distance = scene_.rim->distance(ray.x);
+    if (std::abs(distance) > stops_.location) return distance > 0;
+    return ray.v.dot(scene_.rim->normal(ray.x)) >= 0;
+  }
+
+  InputError lost(const Going& going, const TraceEnd& end) const {
+    const std::string ray = name(going.number);
+    if (end.stop == Stop::steps)
+      return InputError(
+          "max_length", stops_.max_length,
+          ray + " takes more than " + std::to_string(most_steps) + " steps; they may be longer");
+    const Vec3& x = going.ray.x;
+    const std::string where = x.allFinite() ? ", near " + listed(x) : "";
+    return InputError(
+        ray + " comes to where the index is not above 0, or changes too fast for the tolerance" +
+        where);
+  }
+
+  const SceneField& scene_;
+  const Stage& stage_;
+  Regions regions_;
+  const RayStops& stops_;
+  const RaySteps& steps_;
+  std::size_t path_points_;
+  std::vector<Surface> surfaces_;
+  std::unique_ptr<const RayField> inside_, outside_;    ///< of the rim
+  std::vector<std::unique_ptr<const RayField>> plain_;  ///< of each part but that of the field
+};
+
+}  // namespace
+
+std::vector<TracedRay> trace_rays(const SceneField& scene, const Stage& stage,
+                                  const RayStops& stops, const RaySteps& steps,
+                                  const std::vector<RayStart>& starts, std::size_t path_points) {
+  for (std::size_t i = 0; i < starts.size(); ++i) check_start(scene, stage, stops, i, starts[i]);
+  std::vector<TracedRay> rays(starts.size());
+  const BundleTracer tracer(scene, stage, stops, steps, path_points);
+  if (!tracer.has_lanes()) {
+    parallel_for(starts.size(), [&](std::size_t i) { rays[i] = tracer.trace(i, starts[i]); });
+    return rays;
+  }
+  constexpr std::size_t at_once = 16 * lanes;
+  parallel_for((starts.size() + at_once - 1) / at_once, [&](std::size_t i) {
+    const std::size_t last = std::min(starts.size(), (i + 1) * at_once);
+    tracer.trace_in_lanes(starts, i * at_once, last, rays);
+  });
+  return rays;
+}
+
+}  // namespace flatspeckle::grin

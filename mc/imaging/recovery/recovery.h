@@ -1,0 +1,29 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mc/imaging/recovery/camera_noise.h"
+#include "mc/imaging/recovery/frame_statistics.h"
+#include "mc/imaging/recovery/sparse_search.h"
+
+namespace flatspeckle::mc {
+
+/// What is looked for in a frame, and what is known of its camera.
+struct RecoveryTask {
+  CameraNoise noise;
+  std::size_t lags = 0;          ///< pixels: longer distances are not looked for
+  std::size_t points = 0;        ///< that are looked for; 0: none
+  double resolution_grains = 1;  ///< least distance of points
+  double memory_range = 0;       ///< as that of SparseTask
+};
+
+struct Recovered {
+  FrameStatistics statistics;
+  SparseFit fit;  ///< in pixels
+};
+
+/// Of frames of one object, whose autocorrelations are averaged.
+Recovered recovered(std::span<const std::vector<double>> frames, const RecoveryTask& task);
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,71 @@
+#include "mc/imaging/recovery/recovery_datasets.h"
+
+namespace flatspeckle::mc {
+
+const DatasetTable recovery_table{
+    .name = "recover",
+    .rows = {
+        {"frame", Data::numbers, "", "1", "number of the frame, or of several by the key average"},
+        {"frame_name", Data::text, "frame", "", "its column, of several frames the first's"},
+        {"lag", Data::numbers, "", "1", "pixels"},
+        {"sought", Data::numbers, "", "1", "number of the point that was looked for"},
+        {"autocorrelation", Data::real, "frame lag", "1",
+         "<dI dI'> / <I>^2 of the frame without its envelope"},
+        {"contrast", Data::real, "frame", "1", "standard deviation over mean, without envelope"},
+        {"grains", Data::real, "frame", "1", "independent speckle grains in the frame"},
+        {"noise", Data::real, "frame", "1", "standard deviation of the autocorrelation"},
+        {"found_x", Data::real, "frame sought", "1", "pixels from the first, mirrored or not"},
+        {"found_brightness", Data::real, "frame sought", "1",
+         "relative, mean 1; 0 where nothing was found"},
+        {"explained", Data::real, "frame", "1",
+         "how well the brightness fits the peaks of all pairs, at most 1"},
+        {"shift", Data::scale, "", "1", "pixels from the reference"},
+        {"picture", Data::real, "frame shift", "1", "frames divided by their reference"},
+        {"iteration", Data::numbers, "", "1", "number of the step (richardson_lucy)"},
+        {"residual", Data::real, "frame iteration", "1",
+         "rms of what the frame differs by from picture and reference, over its mean"},
+        {"phased_picture", Data::real, "frame lag", "1",
+         "object by phase retrieval, shifted and mirrored or not; the sum is 1"},
+        {"phase_iteration", Data::numbers, "", "1", "number of the step of phase retrieval"},
+        {"phase_residual", Data::real, "frame phase_iteration", "1",
+         "rms of the amplitudes that positive objects within the lags lack, over theirs"}}};
+
+void write_recovery(ResultFile& file, const std::vector<std::string>& names,
+                    const RecoveryTask& task, const std::vector<Recovered>& all) {
+  const ResultGroup root(file, recovery_table);
+  root.number("frame", all.size());
+  root.put("frame_name", names);
+  root.number("lag", task.lags);
+  write_statistics(root, all);
+  constexpr double in_pixels = 1;
+  write_points(root, all, task.points, in_pixels);
+  root.put("explained", column(all, [](const Recovered& one) { return one.fit.explained; }));
+}
+
+void write_deconvolved(ResultFile& file, const RecoveryTask& task,
+                       const std::vector<Deconvolved>& all) {
+  const ResultGroup root(file, recovery_table);
+  std::vector<double> shifts;
+  for (std::size_t p = 0; p < 2 * task.lags - 1; ++p)
+    shifts.push_back(static_cast<double>(p) - static_cast<double>(task.lags - 1));
+  root.put("shift", shifts);
+  root.put("picture",
+           of_each(all, shifts.size(), [](const Deconvolved& one) { return one.picture; }));
+  const std::size_t steps = all.front().residual.size();
+  if (steps == 0) return;
+  root.number("iteration", steps);
+  root.put("residual", of_each(all, steps, [](const Deconvolved& one) { return one.residual; }));
+}
+
+void write_phased(ResultFile& file, const RecoveryTask& task,
+                  const std::vector<PhasedPicture>& all) {
+  const ResultGroup root(file, recovery_table);
+  root.put("phased_picture",
+           of_each(all, task.lags, [](const PhasedPicture& one) { return one.picture; }));
+  const std::size_t steps = all.front().residual.size();
+  root.number("phase_iteration", steps);
+  root.put("phase_residual",
+           of_each(all, steps, [](const PhasedPicture& one) { return one.residual; }));
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,80 @@
+#include "mc/imaging/unmixing/nonnegative_factors.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// By frame and source: how bright each source is in each frame, as the pixels have it that are
+/// farthest from all mixtures of those before. Dim pixels, which noise rules, are not asked.
+MatrixXd purest_pixels(const MatrixXd& frames, Index sources) {
+  const VectorXd light = frames.rowwise().sum();
+  MatrixXd left = frames;
+  for (Index p = 0; p < left.rows(); ++p)
+    left.row(p) *= light[p] > light.mean() / 2 ? 1 / light[p] : 0;
+  MatrixXd pure(frames.cols(), sources);
+  for (Index s = 0; s < sources; ++s) {
+    Index pixel = 0;
+    left.rowwise().squaredNorm().maxCoeff(&pixel);
+    pure.col(s) = frames.row(pixel).cwiseMax(0.0);
+    const VectorXd along = left.row(pixel).normalized();
+    left -= (left * along) * along.transpose();
+  }
+  return pure;
+}
+
+/// The least squares of frames - factor * other^T, column by column: with = frames * other, square
+/// = other^T * other.
+void improve(MatrixXd& factor, const MatrixXd& with, const MatrixXd& square) {
+  constexpr int sweeps = 3;
+  constexpr double least = 1e-12;  // a column of zeros would never come back
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (Index s = 0; s < factor.cols(); ++s) {
+      const VectorXd step = with.col(s) - factor * square.col(s);
+      factor.col(s) = (factor.col(s) + step / std::max(square(s, s), least)).cwiseMax(least);
+    }
+}
+
+/// |frames - pattern * brightness^T|^2 from products that are at hand.
+double squared_difference(double all, const MatrixXd& brightness, const MatrixXd& with,
+                          const MatrixXd& square) {
+  const double product = brightness.cwiseProduct(with).sum(),
+               own = (brightness.transpose() * brightness).cwiseProduct(square).sum();
+  return std::max(all - 2 * product + own, 0.0);
+}
+
+}  // namespace
+
+NonnegativeFactors nonnegative_factors(const MatrixXd& frames, const FactorTask& task) {
+  const auto sources = static_cast<Index>(task.sources);
+  NonnegativeFactors found;
+  found.brightness = purest_pixels(frames, sources);
+  found.pattern = MatrixXd::Ones(frames.rows(), sources);
+  const double all = frames.squaredNorm();
+  double last = all;
+  for (int i = 0; i < task.iterations; ++i) {
+    improve(found.pattern, frames * found.brightness,
+            found.brightness.transpose() * found.brightness);
+    const MatrixXd with = frames.transpose() * found.pattern,
+                   square = found.pattern.transpose() * found.pattern;
+    improve(found.brightness, with, square);
+    const double left = squared_difference(all, found.brightness, with, square);
+    found.residual = all > 0 ? std::sqrt(left / all) : 0;
+    if (last - left <= task.settled * left) break;
+    last = left;
+  }
+  for (Index s = 0; s < sources; ++s) {
+    const double mean = found.pattern.col(s).mean();
+    found.pattern.col(s) /= mean;
+    found.brightness.col(s) *= mean;
+  }
+  return found;
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,129 @@
+#include "mc/paths/bent/linear_medium.h"
+
+#include <cmath>
+#include <limits>
+
+#include "core/error.h"
+#include "core/keys/number_text.h"
+#include "mc/paths/bent/bent_chords.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+/// Where a ray touches the caustic of all rays through its beginning.
+double until_caustic(Vec2 v, Vec2 force) {
+  const double against = -dot(force, v);
+  return against > 0 ? dot(v, v) / against : std::numeric_limits<double>::max();
+}
+
+class LinearPoint : public Wavefront {
+ public:
+  LinearPoint(const LinearMedium& medium, Vec2 source) : medium_(medium), source_(source) {}
+
+  std::optional<Arrival> at(Vec2 x) const override {
+    const auto curve = medium_.curve(source_, x);
+    if (!curve) return std::nullopt;
+    return Arrival{curve->arrive, curve->path, 1 / std::sqrt(curve->spread), curve->inside,
+                   angle_of(curve->leave)};
+  }
+
+ private:
+  const LinearMedium& medium_;
+  Vec2 source_;
+};
+
+/// A plane wave where n^2 depends on z alone: v_x = sin(angle) everywhere.
+class StratifiedWave : public Wavefront {
+ public:
+  StratifiedWave(const LinearMedium& medium, double angle)
+      : medium_(medium),
+        sine_(std::sin(angle)),
+        cosine_(std::cos(angle)),
+        face_(cosine_ > 0 ? 0 : medium.domain().depth) {
+    const double other = medium.domain().depth - face_;
+    for (const double z : {face_, other})
+      if (!(vertical_square(z) > 1e-6)) refuse_turning(angle);
+  }
+
+  std::optional<Arrival> at(Vec2 x) const override {
+    const double before = std::sqrt(vertical_square(face_)), here = std::sqrt(vertical_square(x.z)),
+                 way = std::abs(x.z - face_), sigma = 2 * way / (before + here);
+    const double through =  // int v_z dz
+        2.0 / 3 * way * (before * before + before * here + here * here) / (before + here);
+    const Vec2 v{sine_, std::copysign(here, cosine_)};
+    const double n = length(v);
+    return Arrival{1 / n * v, sine_ * x.x + cosine_ * face_ + through,
+                   std::sqrt(std::abs(cosine_) / here), medium_.inside_until(x, -v, sigma),
+                   x.x - sine_ * sigma};
+  }
+
+ private:
+  double vertical_square(double z) const { return medium_.square({0, z}) - sine_ * sine_; }
+  [[noreturn]] void refuse_turning(double angle) const {
+    const double z = (sine_ * sine_ - medium_.square({0, 0})) / medium_.slope();
+    throw InputError(
+        "light or view of angle", angle,
+        "turns round at z = " + number_text(z) + ", where n^2 = sin^2: a caustic of the medium");
+  }
+
+  const LinearMedium& medium_;
+  double sine_, cosine_, face_;
+};
+
+}  // namespace
+
+Vec2 LinearMedium::velocity(Vec2 x, Vec2 w) const {
+  return std::sqrt(std::max(square(x), 0.0)) * w;
+}
+
+double LinearMedium::inside_until(Vec2 x, Vec2 v, double sigma) const {
+  return BentChords(domain_, x, v, force_, sigma).length();
+}
+
+/// What leaves a slab does not come back: outside the index is that of the face.
+double LinearMedium::end_of(Vec2 x, Vec2 v) const {
+  const double caustic = until_caustic(v, force_);
+  if (domain_.kind == Domain::Kind::box) return caustic;
+  const BentChords chords(domain_, x, v, force_, caustic);
+  return chords.begin() == chords.end() ? 0 : chords.begin()->leave;
+}
+
+double LinearMedium::inside(Vec2 x, Vec2 w) const {
+  const Vec2 v = velocity(x, w);
+  return inside_until(x, v, end_of(x, v));
+}
+
+std::optional<RayPlace> LinearMedium::flown(Vec2 x, Vec2 w, double sigma) const {
+  const Vec2 v = velocity(x, w);
+  const double end = end_of(x, v), s = BentChords(domain_, x, v, force_, end).at(sigma);
+  if (!(s < end)) return std::nullopt;
+  const Vec2 later = v + s * force_;
+  return RayPlace{x + s * v + s * s / 2 * force_, 1 / length(later) * later};
+}
+
+std::optional<RayCurve> LinearMedium::curve(Vec2 from, Vec2 to) const {
+  const Vec2 way = to - from;
+  const double r2 = dot(way, way), a2 = dot(field_.slope, field_.slope);
+  const double mean = (square(from) + square(to)) / 2, root = mean * mean - a2 * r2 / 4;
+  if (!(root > 0)) return std::nullopt;
+  const double sigma = std::sqrt(2 * r2 / (mean + std::sqrt(root)));
+  const Vec2 half = sigma / 2 * force_, straight = 1 / sigma * way, v = straight - half,
+             later = straight + half;
+  return RayCurve{1 / length(v) * v, 1 / length(later) * later,
+                  sigma * (mean - dot(force_, force_) * sigma * sigma / 6), sigma * dot(v, later),
+                  inside_until(from, v, sigma)};
+}
+
+std::shared_ptr<const Wavefront> LinearMedium::wave_from_point(Vec2 source) const {
+  return std::make_shared<LinearPoint>(*this, source);
+}
+
+std::shared_ptr<const Wavefront> LinearMedium::wave_from_afar(double angle) const {
+  if (field_.slope.x != 0)
+    throw InputError("index_slope", field_.slope.x,
+                     "plane waves and far views need a slope along z alone");
+  return std::make_shared<StratifiedWave>(*this, angle);
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,236 @@
+#include "mc/paths/dynamics/brownian.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <memory>
+#include <type_traits>
+
+#include "core/error.h"
+#include "core/numbers/phasor.h"
+#include "mc/paths/estimators/path_ends.h"
+#include "mc/paths/estimators/scored_paths.h"
+#include "mc/paths/estimators/single_scattering.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using Values = std::vector<Complex>;
+
+/// Sum of 1 - cos over the inner scatterers of a path.
+struct TurnTally {
+  using Factor = double;  ///< what motion leaves of a covariance
+  double turn = 0;
+
+  void flight(Vec2, const SpaceDirection&, double) {}
+  void scattering(Vec2, const SpaceDirection& from, const SpaceDirection& to) {
+    turn += one_minus_cosine(from, to);
+  }
+};
+
+/// The same times the diffusion there, and sum of (from - to).velocity.
+struct FlowTally {
+  using Factor = Complex;
+  const LocalMotion* motion = nullptr;
+  double turn = 0, slip = 0;
+
+  void flight(Vec2, const SpaceDirection&, double) {}
+  void scattering(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) {
+    turn += motion->diffusion(x) * one_minus_cosine(from, to);
+    slip += dot(Vec2(from) - Vec2(to), motion->velocity(x));
+  }
+};
+
+/// A e of some ends, what a turn towards each adds to a path's tally and how it decays,
+/// [delay][end].
+template <typename Tally>
+struct Decaying {
+  Values value;
+  std::vector<Tally> tally;
+  std::vector<typename Tally::Factor> decay;
+
+  Decaying(std::size_t ends, std::size_t delays, const Tally& none)
+      : value(ends), tally(ends, none), decay(ends * delays) {}
+};
+
+/// exp(-2 turn t - i k slip t) for every delay t, [delay][tally].
+class Decay {
+ public:
+  Decay(std::span<const double> delays, double k, std::size_t most)
+      : delays_(delays), k_(k), exponent_(delays.size() * most), phase_(exponent_.size()) {}
+
+  void find(const std::vector<TurnTally>& tallies, std::vector<double>& decay) {
+    fill(tallies, exponent_, [](const TurnTally& tally) { return -2 * tally.turn; });
+    damping(std::span(exponent_).first(decay.size()), decay);
+  }
+  void find(const std::vector<FlowTally>& tallies, std::vector<Complex>& decay) {
+    fill(tallies, exponent_, [](const FlowTally& tally) { return -2 * tally.turn; });
+    fill(tallies, phase_, [this](const FlowTally& tally) { return -k_ * tally.slip; });
+    damped_phasors(std::span(phase_).first(decay.size()), std::span(exponent_).first(decay.size()),
+                   decay);
+  }
+
+ private:
+  template <typename Tally, typename Rate>
+  void fill(const std::vector<Tally>& tallies, std::vector<double>& out, const Rate& rate) const {
+    for (std::size_t t = 0; t < delays_.size(); ++t)
+      for (std::size_t j = 0; j < tallies.size(); ++j)
+        out[t * tallies.size() + j] = delays_[t] * rate(tallies[j]);
+  }
+
+  std::span<const double> delays_;
+  double k_;
+  std::vector<double> exponent_, phase_;
+};
+
+/// Adds weight |f|^2 of every channel, then weight f(0) conj(f(t)) for every delay, of which
+/// without flow only the real part is not 0 in the mean. C14's F and R turn by other angles at the
+/// path's ends, so each has its own decay.
+template <typename Tally>
+class DelayScorer : public TallyScorer<Tally> {
+  using Factor = typename Tally::Factor;
+
+ public:
+  DelayScorer(const PathWalks& walks, std::span<const double> delays, const Tally& none,
+              std::span<Complex> sums)
+      : TallyScorer<Tally>(none),
+        channels_(walks.scene().request.channels),
+        scattering_(walks.scattering()),
+        delays_(delays),
+        sums_(sums),
+        ends_(walks, [&](std::size_t ends) { return Decaying<Tally>(ends, delays.size(), none); }),
+        inner_(1, delays.size(), none),
+        decay_(delays, walks.scene().k, std::max(ends_.lights().size(), ends_.views().size())) {}
+
+  /// B = 1 at x.
+  void single(Vec2 x, double weight) override {
+    EndFactors &lights = ends_.lights(), &views = ends_.views();
+    auto &light = ends_.light_last, &view = ends_.view_last;
+    lights.attenuate(x, light.value);
+    views.attenuate(x, view.value);
+    for (std::size_t c = 0; c < channels_.size(); ++c) {
+      const auto [i, v] = channels_[c];
+      const Vec2 from = -lights.direction(i), to = views.direction(v);
+      const double square =
+          std::norm(light.value[i] * view.value[v] * scattering_.amplitude(x, from, to));
+      sums_[c] += weight * square;
+      find_inner(turned(x, from, to));
+      for (std::size_t t = 0; t < delays_.size(); ++t)
+        sums_[(1 + t) * channels_.size() + c] += weight * square * inner_.decay[t];
+    }
+  }
+
+  void multiple(const Path& path) override {
+    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival,
+                            Decaying<Tally>& out) {
+      ends.attenuate(x, out.value);
+      scattering_.towards(x, arrival, ends.directions(), out.value);
+      for (std::size_t j = 0; j < ends.size(); ++j)
+        out.tally[j] = turned(x, arrival, ends.direction(j));
+      decay_.find(out.tally, out.decay);
+    });
+    find_inner(this->tally());
+    for (std::size_t c = 0; c < channels_.size(); ++c) score(c, path.weight);
+  }
+
+ private:
+  /// What one scatterer adds.
+  Tally turned(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) const {
+    Tally tally = this->none();
+    tally.scattering(x, from, to);
+    return tally;
+  }
+
+  void find_inner(const Tally& tally) {
+    inner_.tally[0] = tally;
+    decay_.find(inner_.tally, inner_.decay);
+  }
+
+  /// weight f conj(term), or its real part where that is all that counts.
+  static Factor with_field(double weight, Complex field, Complex term) {
+    const Complex both = weight * product_with_conjugate(field, term);
+    if constexpr (std::is_same_v<Factor, double>)
+      return both.real();
+    else
+      return both;
+  }
+
+  void score(std::size_t c, double weight) {
+    const auto &light_first = ends_.light_first, &light_last = ends_.light_last,
+               &view_first = ends_.view_first, &view_last = ends_.view_last;
+    const std::size_t lights = light_first.value.size(), views = view_first.value.size();
+    const auto [i, v] = channels_[c];
+    const Complex forward = product(light_first.value[i], view_last.value[v]);
+    Complex backward = 0;
+    if (ends_.reversed()) backward = product(light_last.value[i], view_first.value[v]);
+    const Complex field = forward + backward;
+    const Factor with_forward = with_field(weight, field, forward),
+                 with_backward = with_field(weight, field, backward);
+    sums_[c] += std::real(with_forward + with_backward);
+    for (std::size_t t = 0; t < delays_.size(); ++t) {
+      const std::size_t light = t * lights + i, view = t * views + v;
+      Factor sum = with_forward * light_first.decay[light] * view_last.decay[view];
+      if (ends_.reversed()) sum += with_backward * light_last.decay[light] * view_first.decay[view];
+      sums_[(1 + t) * channels_.size() + c] += inner_.decay[t] * sum;
+    }
+  }
+
+  const std::vector<Channel>& channels_;
+  const EndScattering& scattering_;
+  std::span<const double> delays_;
+  std::span<Complex> sums_;
+  PathEnds<Decaying<Tally>> ends_;
+  Decaying<Tally> inner_;  ///< of the inner scatterers, or the only one
+  Decay decay_;
+};
+
+/// Of paths of one scatterer, in a medium that is the same everywhere; shear is a slope of the
+/// phase along z.
+Values single_covariances(const PathWalks& walks, const std::vector<double>& delays,
+                          const Motion& motion) {
+  const Scene& scene = walks.scene();
+  Values all = single_scattering(scene, walks.scattering());
+  const std::size_t channels = all.size();
+  for (const double delay : delays) {
+    for (std::size_t c = 0; c < channels; ++c) {
+      const auto [light, view] = scene.request.channels[c];
+      const Vec2 from = direction(scene.request.lights[light].angle),
+                 to = direction(scene.request.views[view].angle), turn = from - to;
+      const double slope = -scene.k * delay * turn.x * motion.shear;
+      const Complex value =
+          slope == 0 ? all[c]
+                     : scene.medium.mu_s * std::norm(walks.scattering().amplitude({}, from, to)) *
+                           attenuated_wave_integral(scene.domain, scene.medium.mu_t, {0, slope},
+                                                    {-from, to, -from, to});
+      all.push_back(value *
+                    std::polar(std::exp(-2 * delay * motion.diffusion * dot(turn, turn) / 2),
+                               -scene.k * delay * dot(turn, motion.velocity)));
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
+                  std::uint64_t seed, const Motion& motion) {
+  if (scene.request.kind != CovarianceRequest::Kind::intensity)
+    throw InputError("delays: needs covariance = intensity");
+  check_delays(scene, delays);
+  const auto scorer = [=, local = LocalMotion(scene, motion), flows = !motion.only_diffuses(scene)](
+                          const PathWalks& walks,
+                          std::span<Complex> sums) -> std::unique_ptr<PathScorer> {
+    if (flows)
+      return std::make_unique<DelayScorer<FlowTally>>(walks, delays, FlowTally{&local}, sums);
+    return std::make_unique<DelayScorer<TurnTally>>(walks, delays, TurnTally{}, sums);
+  };
+  const auto single = [=](const PathWalks& walks) {
+    return single_covariances(walks, delays, motion);
+  };
+  PathJob job = path_job({1 + delays.size(), scorer, single}, scene, plan, seed);
+  job.field.batches.relative_error = relative_error_of(job.all);
+  return job;
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,144 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "core/numbers/complex.h"
+#include "core/numbers/random.h"
+#include "flatland/media/domain.h"
+#include "flatland/media/medium.h"
+#include "grin/media/scattering/phase_function.h"
+
+namespace flatspeckle::mc {
+
+/// A list of unit vectors and their angles (C2), in arrays that vectorise.
+struct Directions {
+  std::vector<double> x, z, angle;
+
+  explicit Directions(std::size_t size = 0) : x(size), z(size), angle(size) {}
+  std::size_t size() const { return x.size(); }
+  Vec2 operator[](std::size_t i) const { return {x[i], z[i]}; }
+  void set(std::size_t i, Vec2 w, double its_angle) {
+    x[i] = w.x, z[i] = w.z, angle[i] = its_angle;
+  }
+};
+
+/// 1 - cos of the angle between unit vectors, without cancellation.
+inline double one_minus_cosine(Vec2 from, Vec2 to) {
+  const Vec2 step = to - from;
+  return dot(step, step) / 2;
+}
+
+/// w turned from +z towards +x by the angle of the unit vector `turn`.
+inline Vec2 turned(Vec2 w, Vec2 turn) {
+  return {w.x * turn.z + w.z * turn.x, w.z * turn.z - w.x * turn.x};
+}
+
+/// The direction at twice the angle of (a, b), both measured from the second axis.
+inline Vec2 doubled_angle(double a, double b) {
+  const double per_square = 1 / (a * a + b * b);
+  return {2 * a * b * per_square, (b * b - a * a) * per_square};
+}
+
+/// Uniform in the unit disk without its centre; its angle needs no trigonometry.
+inline Vec2 sample_disk(RandomStream& random) {
+  while (true) {
+    const Vec2 point{2 * random.uniform() - 1, 2 * random.uniform() - 1};
+    if (const double square = dot(point, point); square <= 1 && square > 0) return point;
+  }
+}
+
+/// What happens at a scatterer, in the three forms that a plan picks from. amplitude() is A of C14
+/// divided by sqrt(sigma_s), so that |amplitude|^2 is the phase function; towards() multiplies
+/// out[j] by the amplitude from one direction to each of many; sample() draws a new direction from
+/// the phase function. In space there is a fourth (space_scattering.h), with directions of its own.
+
+struct IsotropicScattering {
+  using Direction = Vec2;
+  static constexpr grin::Isotropic<2> phase{};
+
+  double density(Vec2, Vec2) const { return phase.value; }
+  double amplitude(Vec2, Vec2) const { return std::sqrt(phase.value); }
+  void towards(Vec2, const Directions&, std::span<Complex> out) const {
+    const double a = std::sqrt(phase.value);
+    for (Complex& value : out) value *= a;
+  }
+  Vec2 sample(Vec2 from, RandomStream& random) const {
+    const Vec2 uniform = sample_disk(random);
+    return turned(from, doubled_angle(uniform.x, uniform.z));
+  }
+};
+
+struct HenyeyGreensteinScattering {
+  using Direction = Vec2;
+  grin::HenyeyGreenstein<2> phase;
+
+  double density(Vec2 from, Vec2 to) const {
+    return phase.density_beside(one_minus_cosine(from, to));
+  }
+  double amplitude(Vec2 from, Vec2 to) const { return std::sqrt(density(from, to)); }
+  void towards(Vec2 from, const Directions& to, std::span<Complex> out) const {
+    constexpr std::size_t most = 128;  // amplitudes alone are a loop of vectors
+    std::array<double, most> amplitudes;
+    for (std::size_t begin = 0; begin < out.size(); begin += most) {
+      const std::size_t count = std::min(most, out.size() - begin);
+      for (std::size_t j = 0; j < count; ++j) amplitudes[j] = amplitude(from, to[begin + j]);
+      for (std::size_t j = 0; j < count; ++j) out[begin + j] *= amplitudes[j];
+    }
+  }
+  /// tan(theta/2) = (1-g)/(1+g) tan(half) of a uniform half angle (C22).
+  Vec2 sample(Vec2 from, RandomStream& random) const {
+    const Vec2 uniform = sample_disk(random);
+    return turned(from, doubled_angle((1 - phase.g) * uniform.x, (1 + phase.g) * uniform.z));
+  }
+};
+
+/// The complex amplitude of a circular scatterer, with the structure factor of its medium (C16), or
+/// the root of a phase function of the bulk, tabulated and linear between the nodes.
+class TabulatedScattering {
+ public:
+  using Direction = Vec2;
+
+  TabulatedScattering(const BulkMedium& medium, double k)
+      : intervals_(4096 *
+                   (medium.phase.density ? 16 : std::max<std::size_t>(medium.t_matrix.size(), 2))),
+        amplitude_(normalised_amplitudes(medium, k, intervals_)),
+        phase_([this](double angle) { return std::norm(at(angle)); }, intervals_) {}
+
+  double density(Vec2 from, Vec2 to) const { return phase_.density(angle_between(from, to)); }
+  Complex amplitude(Vec2 from, Vec2 to) const { return at(angle_between(from, to)); }
+  void towards(Vec2 from, const Directions& to, std::span<Complex> out) const {
+    const double angle = angle_of(from);
+    for (std::size_t j = 0; j < out.size(); ++j) out[j] = product(out[j], at(to.angle[j] - angle));
+  }
+  Vec2 sample(Vec2 from, RandomStream& random) const {
+    return turned(from, direction(phase_.sample(random.uniform())));
+  }
+
+ private:
+  static double angle_between(Vec2 from, Vec2 to) {
+    return std::atan2(from.z * to.x - from.x * to.z, dot(from, to));
+  }
+
+  /// Angles up to some turns.
+  Complex at(double angle) const {
+    const double turns = std::abs(angle) / (2 * std::numbers::pi);
+    const int nearest = (static_cast<int>(2 * turns) + 1) / 2;
+    const double part = std::abs(turns - nearest);
+    const double position = 2 * part * static_cast<double>(intervals_);
+    const std::size_t i = std::min(static_cast<std::size_t>(position), intervals_ - 1);
+    const double t = position - static_cast<double>(i);
+    return (1 - t) * amplitude_[i] + t * amplitude_[i + 1];
+  }
+
+  std::size_t intervals_;
+  std::vector<Complex> amplitude_;  ///< at angles 0 .. pi; even in the angle
+  grin::TabulatedPhaseFunction phase_;
+};
+
+}  // namespace flatspeckle::mc

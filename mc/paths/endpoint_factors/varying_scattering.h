@@ -1,0 +1,67 @@
+#pragma once
+
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "flatland/scene/scene.h"
+#include "mc/paths/endpoint_factors/scattering.h"
+
+namespace flatspeckle::mc {
+
+/// Scattering in any of the forms of scattering.h.
+class AnyScattering {
+ public:
+  using Direction = Vec2;
+  using Form = std::variant<IsotropicScattering, HenyeyGreensteinScattering, TabulatedScattering>;
+
+  explicit AnyScattering(Form form) : form_(std::move(form)) {}
+
+  double density(Vec2 from, Vec2 to) const {
+    return std::visit([&](const auto& form) { return form.density(from, to); }, form_);
+  }
+  Complex amplitude(Vec2 from, Vec2 to) const {
+    return std::visit([&](const auto& form) { return Complex(form.amplitude(from, to)); }, form_);
+  }
+  void towards(Vec2 from, const Directions& to, std::span<Complex> out) const {
+    std::visit([&](const auto& form) { form.towards(from, to, out); }, form_);
+  }
+  Vec2 sample(Vec2 from, RandomStream& random) const {
+    return std::visit([&](const auto& form) { return form.sample(from, random); }, form_);
+  }
+
+ private:
+  Form form_;
+};
+
+/// That of a medium that varies: each material has its own.
+class VaryingScattering {
+ public:
+  using Direction = Vec2;
+
+  /// forms: of the profile's materials.
+  VaryingScattering(const MediumProfile& profile, std::vector<AnyScattering> forms)
+      : profile_(profile), forms_(std::move(forms)) {}
+
+  const AnyScattering& at(Vec2 x) const { return forms_[profile_.material_at(x)]; }
+
+ private:
+  const MediumProfile& profile_;
+  std::vector<AnyScattering> forms_;
+};
+
+/// What scatters at a place: the same everywhere, unless the medium varies.
+template <typename Scattering>
+const Scattering& local(const Scattering& scattering, Vec2) {
+  return scattering;
+}
+inline const AnyScattering& local(const VaryingScattering& scattering, Vec2 x) {
+  return scattering.at(x);
+}
+
+template <typename Scattering>
+constexpr bool varies = false;
+template <>
+inline constexpr bool varies<VaryingScattering> = true;
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "core/run/parallel.h"
+#include "flatland/scene/scene.h"
+#include "mc/paths/endpoint_factors/end_scattering.h"
+
+namespace flatspeckle::mc {
+
+/// int dx exp(i kappa.x - mu_t/2 sum_j d(x, u_j)) over a box, or over the depth of a slab at x = 0,
+/// where d is the distance to the edge along a unit vector: exact in depth, by Gauss-Legendre
+/// quadrature across, cut where the integrand has kinks. Relative to the area about 1e-9.
+Complex attenuated_wave_integral(const Domain& domain, double mu_t, Vec2 kappa,
+                                 const std::array<Vec2, 4>& towards);
+
+/// A plane wave seen in a far view, at a wavenumber; unit vectors.
+struct FarField {
+  double k = 0;
+  Vec2 light, view;
+
+  FarField() = default;
+  /// Of a channel of the scene.
+  FarField(const Scene& scene, std::size_t channel) : k(scene.k) {
+    const Channel c = scene.request.channels[channel];
+    light = direction(scene.request.lights[c.light].angle);
+    view = direction(scene.request.views[c.view].angle);
+  }
+};
+
+/// The part B = 1 of the covariance of two fields (conventions, C14).
+Complex single_scattering(const Scene& scene, const EndScattering& scattering, const FarField& a,
+                          const FarField& b);
+
+/// Calls f with the number of each entry, in parallel where there are many: of some ten
+/// microseconds to a millisecond each.
+template <typename F>
+void for_entries(std::size_t entries, F f) {
+  constexpr std::size_t many = 100;
+  parallel_for(entries, entries > many, f);
+}
+
+/// The same per entry of the request: far lights and views only. What no path has to sample.
+std::vector<Complex> single_scattering(const Scene& scene, const EndScattering& scattering);
+
+}  // namespace flatspeckle::mc

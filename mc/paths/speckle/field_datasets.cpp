@@ -1,0 +1,151 @@
+#include "mc/paths/speckle/field_datasets.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/result/result_group.h"
+#include "flatland/scene/scene_datasets.h"
+#include "mc/paths/speckle/field_statistics.h"
+
+namespace flatspeckle::mc {
+
+const DatasetTable field_table{
+    .name = "field",
+    .rows = {{"realization", Data::numbers, "", "1", "number of the field"},
+             {"tilt", Data::real, "light_angle", "rad", "rotation of the light"},
+             {"tilt_q", Data::real, "light_angle", "1/length", "transverse wavenumber of the tilt"},
+             {"field", Data::complex, "realization light_angle VIEW", "FIELD",
+              "speckle field without its mean"},
+             {"intensity", Data::estimate, "light_angle VIEW", "COVARIANCE",
+              "variance of the field"},
+             {"contrast", Data::estimate, "light_angle VIEW", "1",
+              "standard deviation over mean of the intensity"},
+             {"mean_contrast", Data::estimate, "", "1", "contrast of I / <I> over all channels"},
+             {"circularity", Data::complex_estimate, "", "1", "<u u> / <I> over all channels"},
+             {"intensity_bin", Data::scale, "", "1",
+              "lower edge of a bin of intensity over its mean; the last bin is open"},
+             {"histogram", Data::estimate, "intensity_bin", "1", "values in the bin"},
+             {"histogram_expected", Data::real, "intensity_bin", "1",
+              "values in the bin by the exponential law"},
+             {"view_lag", Data::scale, "", "LAG",
+              "difference of the sines of two views, or distance of two sensors"},
+             {"intensity_autocorrelation", Data::estimate, "view_lag", "1",
+              "<I I'> / (<I> <I'>) - 1 over the first light's views"},
+             {"grain_width", Data::estimate, "", "LAG",
+              "full width of intensity_autocorrelation at half its maximum: the size of a speckle"},
+             {"siegert", Data::estimate, "view_lag", "1",
+              "|<u u'*>|^2 / (<I> <I'>) over the same views, from light paths"}},
+    .attributes = {{"field", "method", "text",
+                    "paths or covariance: what the fields were drawn from"},
+                   {"field", "paths_per_field", "uint64", "by paths"},
+                   {"field", "excess_kurtosis", "float64",
+                    "by paths: E|u|^4/(E|u|^2)^2 - 2 to expect"},
+                   {"field", "covariance_paths", "uint64", "from the covariance: paths in it"},
+                   {"field", "paths_cost", "float64", "complex multiply-adds by paths"},
+                   {"field", "covariance_cost", "float64",
+                    "the same from the covariance, where it fits into memory"}},
+    .roles = {{"LAG", {"1", "length"}}}};
+
+namespace {
+
+std::vector<double> steps(std::size_t count, double step) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) values.push_back(step * static_cast<double>(i));
+  return values;
+}
+
+void write_field_axes(ResultFile& file, const Scene& scene, const std::vector<double>& tilts) {
+  const auto lights = scene.request.lights.angles();
+  const ResultGroup root(file, field_table);
+  ResultGroup(file, axes_table).put("light_angle", lights);
+  write_view_axis(file, scene.request.views);
+  bind_units(file, scene);
+  if (tilts.empty()) return;
+  std::vector<double> q;
+  for (std::size_t t = 0; t < tilts.size(); ++t)
+    q.push_back(scene.k * (std::sin(lights[t]) - std::sin(lights[t] - tilts[t])));
+  root.put("tilt", tilts);
+  root.put("tilt_q", q);
+}
+
+/// In chunks of about a mebibyte.
+void write_field(ResultFile& file, const Scene& scene, const DrawnFields& drawn) {
+  const std::size_t lights = scene.request.lights.size(), views = scene.request.views.size(),
+                    channels = lights * views, realizations = drawn.field.size() / channels;
+  constexpr std::size_t chunk_values = std::size_t{1} << 16;
+  const std::size_t at_once = std::clamp<std::size_t>(chunk_values / channels, 1, realizations),
+                    chunk_lights = std::clamp<std::size_t>(chunk_values / views, 1, lights);
+  const ResultGroup root(file, field_table);
+  root.number("realization", realizations);
+  root.begin("field", {at_once, chunk_lights, std::min(views, chunk_values)});
+  for (std::size_t first = 0; first < realizations; first += at_once) {
+    const std::size_t count = std::min(at_once, realizations - first);
+    file.write_block("field", std::span(drawn.field).subspan(first * channels, count * channels),
+                     {first, 0, 0}, {count, lights, views});
+  }
+}
+
+void write_plan(const ResultGroup& root, const DrawingPlan& plan) {
+  const bool by_paths = plan.method == FieldMethod::paths;
+  root.attribute("field", "method", std::string(by_paths ? "paths" : "covariance"));
+  if (by_paths) {
+    root.attribute("field", "paths_per_field", plan.paths_per_field);
+    root.attribute("field", "excess_kurtosis", plan.excess);
+  } else {
+    root.attribute("field", "covariance_paths", plan.covariance_paths);
+  }
+  root.attribute("field", "paths_cost", plan.paths_cost);
+  if (std::isfinite(plan.covariance_cost))
+    root.attribute("field", "covariance_cost", plan.covariance_cost);
+}
+
+/// Counts, in bins [intensity_bin, intensity_bin + 1/4) of |u|^2 / <|u|^2>; the last one is open.
+/// Their errors are at least that of one count.
+void write_histogram(const ResultGroup& root, const FieldStatistics& statistics) {
+  const double values = statistics.values();
+  Estimate counts = statistics.histogram();
+  for (Complex& count : counts.value) count *= values;
+  for (double& error : counts.error) error = std::max(1.0, error * values);
+  root.put("intensity_bin", steps(FieldStatistics::bins, FieldStatistics::bin_width));
+  root.put("histogram", counts);
+  root.put("histogram_expected", column(FieldStatistics::exponential_law(),
+                                        [&](double share) { return share * values; }));
+}
+
+}  // namespace
+
+FieldSummary write_fields(ResultFile& file, const Scene& scene, const std::vector<double>& tilts,
+                          const DrawnFields& drawn) {
+  const auto& views = scene.request.views;
+  const std::size_t channels = scene.request.channels.size();
+  const auto step = equal_step(views);
+  FieldStatistics statistics(real_parts(drawn.intensity.value), views.size(), step.has_value());
+  for (std::size_t first = 0; first < drawn.field.size(); first += channels)
+    statistics.add(std::span(drawn.field).subspan(first, channels));
+
+  write_field_axes(file, scene, tilts);
+  write_field(file, scene, drawn);
+  const ResultGroup root(file, field_table);
+  write_plan(root, drawn.plan);
+  FieldSummary summary{statistics.mean_contrast(), statistics.circularity(),
+                       step ? statistics.autocorrelation() : Estimate{},
+                       step ? statistics.grain_width() : std::nullopt};
+  if (summary.grain_width) {
+    summary.grain_width->value.front() *= *step;
+    summary.grain_width->error.front() *= *step;
+  }
+  root.put("intensity", drawn.intensity);
+  root.put("contrast", statistics.contrast());
+  root.put("mean_contrast", summary.mean_contrast);
+  root.put("circularity", summary.circularity);
+  write_histogram(root, statistics);
+  if (!step) return summary;
+  file.bind("LAG", {views.front().near ? "length" : "1"});
+  root.put("view_lag", steps(views.size(), *step));
+  root.put("intensity_autocorrelation", summary.autocorrelation);
+  if (summary.grain_width) root.put("grain_width", *summary.grain_width);
+  if (!drawn.siegert.value.empty()) root.put("siegert", drawn.siegert);
+  return summary;
+}
+
+}  // namespace flatspeckle::mc

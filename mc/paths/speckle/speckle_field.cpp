@@ -1,0 +1,104 @@
+#include "mc/paths/speckle/speckle_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "core/numbers/blas.h"
+#include "flatland/request/triangle.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+/// E|z|^2 = 1, E[z^2] = 0 (Box and Muller).
+Complex circular_gaussian(RandomStream& random) {
+  const double radius = std::sqrt(-std::log(random.uniform()));
+  return std::polar(radius, 2 * std::numbers::pi * random.uniform());
+}
+
+RandomStream stream_of(std::uint64_t seed, std::uint64_t number) {
+  return {seed, static_cast<std::uint64_t>(Stream::fields), number};
+}
+
+}  // namespace
+
+CovarianceRequest field_request(Lights lights, std::vector<View> views) {
+  CovarianceRequest request = intensity_request(std::move(lights), std::move(views));
+  request.kind = CovarianceRequest::Kind::full;
+  request.entries.clear();
+  return request;
+}
+
+Plan plan_for_fields(Plan plan) {
+  plan.phases = true;
+  plan.sampled_single = plan.single_roulette = true;
+  return plan;
+}
+
+FieldDraw fields_by_paths(const Scene& scene, const Plan& general, std::uint64_t seed,
+                          std::uint64_t paths) {
+  Plan plan = plan_for_fields(general);
+  plan.paths_per_batch = paths;
+  return [batches = path_batches(scene, plan, seed), seed, paths](
+             std::uint64_t number, std::span<Complex> field, std::span<double> intensity) {
+    std::fill(field.begin(), field.end(), 0);
+    std::fill(intensity.begin(), intensity.end(), 0);
+    FieldAccumulator accumulator(stream_of(seed, number), field, intensity);
+    batches(number, accumulator);
+    const double per_path = 1 / static_cast<double>(paths), amplitude = std::sqrt(per_path);
+    for (Complex& u : field) u *= amplitude;
+    for (double& value : intensity) value *= per_path;
+  };
+}
+
+CovarianceFactor::CovarianceFactor(std::size_t channels, std::span<const Complex> lower)
+    : scale_(channels) {
+  if (channels == 0) return;
+  blas_single_thread();
+  const auto entry = [&](std::size_t a, std::size_t b) { return lower[triangle_entry(a, b)]; };
+  for (std::size_t a = 0; a < channels; ++a)
+    scale_[a] = std::sqrt(std::max(entry(a, a).real(), 0.0));
+  std::vector<Complex> matrix(channels * channels);
+  for (std::size_t a = 0; a < channels; ++a)
+    for (std::size_t b = 0; b <= a; ++b)
+      if (const double unit = scale_[a] * scale_[b]; unit > 0)
+        matrix[a + b * channels] = entry(a, b) / unit;
+
+  const auto n = static_cast<lapack_int>(channels);
+  std::vector<lapack_int> row(channels);  // 1-based: where row i of the factor belongs
+  lapack_int rank = 0;
+  constexpr double rounding = -1;  // tolerance: n x epsilon x largest diagonal element
+  LAPACKE_zpstrf(LAPACK_COL_MAJOR, 'L', n, matrix.data(), n, row.data(), &rank, rounding);
+  rank_ = static_cast<std::size_t>(rank);
+  factor_.resize(channels * rank_);
+  for (std::size_t k = 0; k < rank_; ++k) {
+    for (std::size_t i = k; i < channels; ++i) {
+      const auto to = static_cast<std::size_t>(row[i] - 1);
+      factor_[to + k * channels] = scale_[to] * matrix[i + k * channels];
+    }
+  }
+}
+
+/// Not by zgemv: that of OpenBLAS 0.3.21 reads beyond the end of a matrix (its issue 4013).
+void CovarianceFactor::apply(std::span<const Complex> noise, std::span<Complex> out) const {
+  std::fill(out.begin(), out.end(), 0);
+  for (std::size_t k = 0; k < rank_; ++k) {
+    const Complex* const column = factor_.data() + k * channels();
+    for (std::size_t c = 0; c < channels(); ++c) out[c] += product(column[c], noise[k]);
+  }
+}
+
+FieldDraw fields_from_covariance(CovarianceFactor factor, std::uint64_t seed) {
+  const auto shared = std::make_shared<const CovarianceFactor>(std::move(factor));
+  return
+      [shared, seed](std::uint64_t number, std::span<Complex> field, std::span<double> intensity) {
+        RandomStream random = stream_of(seed, number);
+        std::vector<Complex> noise(shared->rank());
+        for (Complex& z : noise) z = circular_gaussian(random);
+        shared->apply(noise, field);
+        for (std::size_t c = 0; c < intensity.size(); ++c) intensity[c] = shared->variance(c);
+      };
+}
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,175 @@
+#include "mc/paths/walk/importance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <set>
+#include <type_traits>
+
+#include "core/numbers/log_sinh.h"
+#include "grin/media/scattering/diffusion_rate.h"
+#include "grin/media/scattering/phase_function.h"
+#include "mc/paths/endpoint_factors/space_scattering.h"
+#include "mc/paths/walk/representatives.h"
+#include "mc/theory/diffusion.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using std::numbers::pi;
+
+constexpr int nodes = 512;  ///< of the table of importance
+
+/// log [sinh(a) / sinh(b)], 0 < a <= b.
+double log_sinh_ratio(double a, double b) {
+  return a - b + std::log(std::expm1(-2 * a) / std::expm1(-2 * b));
+}
+
+/// exp(-x), more or less and in a third of the time.
+double about_exp(double x) {
+  const double square = (1 + x / 8) * (1 + x / 8), fourth = square * square;
+  return 1 / (fourth * fourth);
+}
+
+/// Where the lights are first scattered.
+std::set<double> first_depths(const Scene& scene) {
+  const double depth = scene.domain.depth,
+               shallow = std::min(scene.medium.mean_free_path(), depth / 2);
+  std::set<double> depths;
+  for (const Light& light : scene.request.lights) {
+    if (light.kind == Light::Kind::point)
+      depths.insert(std::clamp(light.point.z, shallow, depth - shallow));
+    else
+      depths.insert(std::cos(light.angle) > 0 ? shallow : depth - shallow);
+  }
+  return depths;
+}
+
+/// Depths that light has to reach for the views to see it.
+std::set<double> view_depths(const Scene& scene) {
+  std::set<double> depths;
+  const double depth = scene.domain.depth;
+  for (const View& view : scene.request.views) {
+    const double there = std::cos(view.angle) > 0 ? depth : 0;
+    depths.insert(view.near ? std::clamp(view.point.z, 0.0, depth) : there);
+  }
+  return depths;
+}
+
+}  // namespace
+
+DiffusionImportance::DiffusionImportance(const Scene& scene) : step_(scene.domain.depth / nodes) {
+  const double depth = scene.domain.depth;
+  const auto& medium = scene.medium;
+  const double beyond = extrapolation_length(medium);
+  double rate = grin::diffusion_rate(medium.albedo, medium.g, medium.dimension) * medium.mu_t;
+  if (scene.domain.kind == Domain::Kind::box)  // what leaves by the sides is lost as well
+    rate = std::hypot(rate, pi / (scene.domain.width + 2 * beyond));
+  rate = std::max(rate, 1e-8 / depth);
+  // Of light from z at a depth, or beyond an edge.
+  const auto log_reaching = [&](double z, double there) {
+    const double way = z < there ? z : depth - z, whole = z < there ? there : depth - there;
+    return log_sinh_ratio(rate * (way + beyond), rate * (whole + beyond));
+  };
+  const auto firsts = first_depths(scene);
+  const auto log_usual = [&](double there) {  // of the light that reaches best
+    double best = -std::numeric_limits<double>::infinity();
+    for (double first : firsts) best = std::max(best, log_reaching(first, there));
+    return best;
+  };
+  const auto destinations = view_depths(scene);
+  for (int i = 0; i <= nodes; ++i) {
+    std::vector<double> logs;
+    for (double there : destinations)
+      logs.push_back(log_reaching(depth * i / nodes, there) - log_usual(there));
+    const double largest = *std::max_element(logs.begin(), logs.end());
+    double worth = 0;
+    for (double log : logs) worth += std::exp(log - largest);
+    log_worth_.push_back(largest + std::log(worth / static_cast<double>(logs.size())));
+  }
+  // Green's function of the slab, its faces moved outwards; the diffusion constant is the transport
+  // mean free path over the dimension.
+  const auto log_scatterings = [&](double first, double z) {
+    const double low = std::min(first, z), high = depth - std::max(first, z);
+    return log_sinh(rate * (low + beyond)) + log_sinh(rate * (high + beyond)) -
+           log_sinh(rate * (depth + 2 * beyond)) +
+           std::log(medium.dimension * medium.mu_s * step_ /
+                    (rate * medium.transport_mean_free_path()));
+  };
+  for (double first : firsts)
+    for (int i = 0; i < nodes; ++i) {
+      const double z = depth * (i + 0.5) / nodes,
+                   growth = log_worth(z) - std::max(log_worth(first), 0.0);
+      scatterings_ +=
+          std::exp(log_scatterings(first, z) + growth) / static_cast<double>(firsts.size());
+    }
+  constexpr double steep = 5, decay_lengths = 3.5;  // measured: where splitting begins to gain
+  dies_out_ = rate * (depth + 2 * beyond) > decay_lengths;
+  steep_ = *std::max_element(log_worth_.begin(), log_worth_.end()) > steep;
+}
+
+double DiffusionImportance::log_worth(double z) const {
+  const double position = z / step_;
+  const std::size_t i = interval(z);
+  const double t = position - static_cast<double>(i);
+  return (1 - t) * log_worth_[i] + t * log_worth_[i + 1];
+}
+
+double DiffusionImportance::slope(double z) const {
+  if (!steep_) return 0;
+  const std::size_t i = interval(z);
+  return (log_worth_[i + 1] - log_worth_[i]) / step_;
+}
+
+double DiffusionImportance::rise() const {
+  constexpr double worthwhile = 1;
+  const double whole = log_worth_.back() - log_worth_.front();
+  return std::abs(whole) > worthwhile ? whole / (step_ * nodes) : 0;
+}
+
+std::size_t DiffusionImportance::interval(double z) const {
+  return std::min(static_cast<std::size_t>(z / step_), log_worth_.size() - 2);
+}
+
+ExpectedContribution::ExpectedContribution(const Scene& scene, const std::vector<End>& ends)
+    : domain_(scene.domain), extinction_(scene), g_(scene.medium.g) {
+  always_ = std::any_of(ends.begin(), ends.end(), [](const End& end) { return end.near; });
+  if (always_) return;
+  constexpr std::size_t few = 16;
+  double spacing = std::max(0.5 * (1 - std::abs(g_)), 0.05);
+  const auto choose = [&] {
+    std::vector<Vec2> chosen;  // lights that go where the light leaves, backwards
+    for (const End& end : ends)
+      if (chosen.size() <= few && !reached(scene, -end.towards, chosen, spacing))
+        chosen.push_back(-end.towards);
+    return chosen;
+  };
+  auto chosen = choose();
+  for (; chosen.size() > few && spacing < pi; chosen = choose()) spacing *= 1.5;
+  // No sharper than the representatives are spaced.
+  g_ = std::copysign(std::min(std::abs(g_), std::max(0.0, 1 - spacing)), g_);
+  for (Vec2 w : chosen) towards_.push_back(-w);
+}
+
+template <typename Direction>
+double ExpectedContribution::operator()(Vec2 x, const Direction& arrival) const {
+  if (always_) return 1;
+  constexpr int dimension = std::is_same_v<Direction, Vec2> ? 2 : 3;
+  const grin::HenyeyGreenstein<dimension> lobe{g_};
+  double largest = 0.01;  // what no representative sees must not wait for one in a million
+  for (Vec2 w : towards_) {
+    double value = about_exp(extinction_.optical_depth(x, w, domain_.distance_to_edge(x, w)));
+    if (g_ != 0)
+      value *= lobe.density_beside(one_minus_cosine(arrival, Direction(w))) /
+               grin::Isotropic<dimension>::value;
+    largest = std::max(largest, value);
+  }
+  return largest;
+}
+
+template double ExpectedContribution::operator()(Vec2, const Vec2&) const;
+template double ExpectedContribution::operator()(Vec2, const SpaceDirection&) const;
+
+}  // namespace flatspeckle::mc

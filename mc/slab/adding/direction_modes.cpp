@@ -1,0 +1,170 @@
+#include "mc/slab/adding/direction_modes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "mc/slab/adding/plane.h"
+#include "mc/slab/adding/space.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+template <typename Number>
+void add(PairWavesOf<Number>& waves, const PairWaveOf<Number>& wave) {
+  waves.top.push_back(wave.top);
+  waves.bottom.push_back(wave.bottom);
+}
+
+double norm(const Rows& rows) {
+  return rows.norm();
+}
+double norm(const Dual<Rows>& rows) {
+  return rows.value.norm() + rows.slope.norm();
+}
+
+}  // namespace
+
+template <typename Geometry, typename Number>
+DirectionModesOf<Geometry, Number>::DirectionModesOf(const Slab& slab, const Discrete& discrete,
+                                                     int highest, const Momentum& momentum,
+                                                     const Pairs& lights, const Pairs& views)
+    : slab_(slab),
+      discrete_(discrete),
+      highest_(highest),
+      q_(Geometry::size(momentum, slab.k / slab.mu_t)) {
+  for (std::size_t layer = 0; layer < slab.layers.size(); ++layer)
+    ends_.push_back(ends(layer, momentum, lights, views));
+}
+
+template <typename Geometry, typename Number>
+double DirectionModesOf<Geometry, Number>::q(std::size_t layer) const {
+  return q_ * (slab_.mu_t / slab_.layers[layer].mu_t);
+}
+
+/// What pairs feed, and what views collect: waves of lights and of views turned round; shares of
+/// mu_t.
+template <typename Geometry, typename Number>
+EndWavesOf<Number> DirectionModesOf<Geometry, Number>::ends(std::size_t layer,
+                                                            const Momentum& momentum,
+                                                            const Pairs& lights,
+                                                            const Pairs& views) const {
+  const double k = slab_.k / slab_.layers[layer].mu_t;
+  const auto fed = [&](const Pairs& pairs) {
+    return Geometry::template fed<Number>(discrete_.layers()[layer], momentum, highest_, pairs);
+  };
+  const Waves of_lights = fed(lights), seen = views == lights ? of_lights : fed(views);
+  EndWavesOf<Number> found{of_lights, {{}, {}, seen.up, seen.down}};
+  for (const auto& pair : lights) add(found.lights, pair_wave(k, pair, slab_.departure));
+  for (const auto& pair : views)
+    add(found.views, pair_wave(k, turned_round(pair), slab_.departure));
+  return found;
+}
+
+template <typename Geometry, typename Number>
+auto DirectionModesOf<Geometry, Number>::parts() const -> std::vector<Part> {
+  std::vector<Part> list;
+  if (q_ == 0) {
+    for (int f = 0; f <= Geometry::families * highest_; ++f)
+      list.push_back({{f}, mode(f) % 2 == 0});
+    return list;
+  }
+  for (int first = 0; first < Geometry::families; ++first) {  // of cosines, of sines
+    Part part{{}, 0};
+    for (const int parity : {0, 1}) {
+      for (int m = first; m <= highest_; ++m)
+        if (m % 2 == parity) part.functions.push_back(first * highest_ + m);
+      if (parity == 0) part.even = static_cast<int>(part.functions.size());
+    }
+    if (!part.functions.empty()) list.push_back(part);
+  }
+  return list;
+}
+
+template <typename Geometry, typename Number>
+auto DirectionModesOf<Geometry, Number>::layers(const Part& part) const -> std::vector<Layer> {
+  std::vector<Layer> list;
+  if (is_dark(part, &EndWavesOf<Number>::lights) || is_dark(part, &EndWavesOf<Number>::views))
+    return list;
+  for (std::size_t layer = 0; layer < slab_.layers.size(); ++layer)
+    list.push_back({transport(layer, part), slab_.optical_depth(slab_.layers[layer]),
+                    part_of(ends_[layer].lights, part), part_of(ends_[layer].views, part)});
+  return list;
+}
+
+template <typename Geometry, typename Number>
+bool DirectionModesOf<Geometry, Number>::is_dark(const Part& part,
+                                                 Waves EndWavesOf<Number>::*waves) const {
+  constexpr double rounding = 1e-13;
+  double within = 0, all = 0;
+  for (const auto& ends : ends_) {
+    const Waves own = part_of(ends.*waves, part);
+    within += norm(own.down) + norm(own.up);
+    all += norm((ends.*waves).down) + norm((ends.*waves).up);
+  }
+  return within < rounding * all;
+}
+
+template <typename Geometry, typename Number>
+TransportOperatorOf<Number> DirectionModesOf<Geometry, Number>::transport(std::size_t layer,
+                                                                          const Part& part) const {
+  const AngularGrid& grid = discrete_.grid();
+  const double extinction =
+      std::abs(value_of(slab_.departure.extinction(slab_.k / slab_.layers[layer].mu_t)));
+  return {block(layer, part, &Scattering::difference), block(layer, part, &Scattering::sum),
+          part.even * grid.size(),
+          (extinction + std::abs(q(layer))) /
+              *std::min_element(grid.cosine().begin(), grid.cosine().end())};
+}
+
+template <typename Geometry, typename Number>
+MatrixOf<Number> DirectionModesOf<Geometry, Number>::block(
+    std::size_t layer, const Part& part, MatrixOf<Real> Scattering::*scattering) const {
+  const AngularGrid& grid = discrete_.grid();
+  const Eigen::Index n = grid.size(), count = std::ssize(part.functions);
+  const Eigen::ArrayXd momentum = q(layer) * grid.angle().array().sin() / grid.cosine().array();
+  Matrix extinction = Matrix::Zero(count * n, count * n), across = extinction;
+  for (Eigen::Index a = 0; a < count; ++a) {
+    const int m = mode(part.functions[a]);
+    extinction.block(a * n, a * n, n, n) = grid.cosine().cwiseInverse().asDiagonal();
+    for (Eigen::Index b = 0; b < count; ++b) {
+      const int other = mode(part.functions[b]);
+      if (std::abs(other - m) != 1) continue;
+      const double coupling = (m - other) * Geometry::coupling(std::min(m, other));
+      across.block(a * n, b * n, n, n) = (coupling * momentum).matrix().asDiagonal();
+    }
+  }
+  const auto scattered = each_part<Real>([&](const auto& of) {
+    Matrix all = Matrix::Zero(count * n, count * n);
+    for (Eigen::Index a = 0; a < count; ++a)
+      all.block(a * n, a * n, n, n) =
+          of(discrete_.layers()[layer].of_mode(mode(part.functions[a])).*scattering);
+    return all;
+  });
+  const Departure<Number>& departure = slab_.departure;
+  return times(departure.extinction(slab_.k / slab_.layers[layer].mu_t), extinction) - scattered +
+         times(departure.length, across);
+}
+
+template <typename Geometry, typename Number>
+auto DirectionModesOf<Geometry, Number>::part_of(const Waves& all, const Part& part) const
+    -> Waves {
+  const Eigen::Index n = discrete_.grid().size(), count = std::ssize(part.functions);
+  const auto taken = [&](const Rows& rows) {
+    Rows found(rows.rows(), count * n);
+    for (Eigen::Index a = 0; a < count; ++a)
+      found.middleCols(a * n, n) = rows.middleCols(part.functions[a] * n, n);
+    return found;
+  };
+  return {all.top, all.bottom, linear(taken, all.down), linear(taken, all.up)};
+}
+
+template class DirectionModesOf<Plane, double>;
+template class DirectionModesOf<Plane, Complex>;
+template class DirectionModesOf<Plane, Dual<double>>;
+template class DirectionModesOf<Space, double>;
+template class DirectionModesOf<Space, Complex>;
+template class DirectionModesOf<Space, Dual<double>>;
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,382 @@
+#include "mc/slab/adding/layer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/run/interrupt.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+/// tanh(sqrt(k)) / sqrt(k) by Lambert's continued fraction, to rounding within the unit circle (at
+/// its edge 4e-12).
+template <typename M>
+M tanh_ratio(const M& k) {
+  const M one = identity_like(k), k2 = product(k, k), k3 = product(k2, k);
+  return FactorsOf<M>(M(135135.0 * one + 62370.0 * k + 3150.0 * k2 + 28.0 * k3))
+      .before(M(135135.0 * one + 17325.0 * k + 378.0 * k2 + k3));
+}
+
+/// (1 + a)^-1 a
+template <typename M>
+M share(const M& a) {
+  return FactorsOf<M>(M(identity_like(a) + a)).before(a);
+}
+
+template <typename T>
+std::vector<T> joined(std::vector<T> list, const std::vector<T>& rest) {
+  list.insert(list.end(), rest.begin(), rest.end());
+  return list;
+}
+
+Rows joined(const Rows& upper, const Rows& lower) {
+  Rows both(upper.rows() + lower.rows(), upper.cols());
+  both.topRows(upper.rows()) = upper;
+  both.bottomRows(lower.rows()) = lower;
+  return both;
+}
+
+Dual<Rows> joined(const Dual<Rows>& upper, const Dual<Rows>& lower) {
+  return {joined(upper.value, lower.value), joined(upper.slope, lower.slope)};
+}
+
+void multiply(Rows& rows, Eigen::Index i, Eigen::Index j, Complex factor) {
+  rows(i, j) *= factor;
+}
+
+void multiply(Dual<Rows>& rows, Eigen::Index i, Eigen::Index j, const Dual<Complex>& factor) {
+  rows.slope(i, j) = factor.value * rows.slope(i, j) + factor.slope * rows.value(i, j);
+  rows.value(i, j) *= factor.value;
+}
+
+/// Radiance of both ways, in rows.
+template <typename R>
+struct BothWays {
+  R down, up;
+};
+
+/// The same as S and D.
+template <typename R>
+struct Mirrored {
+  R sum, difference;
+
+  BothWays<R> both_ways() const { return {0.5 * (sum + difference), 0.5 * (sum - difference)}; }
+};
+
+using flatspeckle::scaled;  // of one way's rows
+
+template <typename C, typename R>
+BothWays<R> scaled(const std::vector<C>& factor, const BothWays<R>& rows) {
+  return {scaled(factor, rows.down), scaled(factor, rows.up)};
+}
+
+template <typename Number, typename C>
+std::vector<C> times(const Number& factor, std::vector<C> list) {
+  for (C& value : list) value = factor * value;
+  return list;
+}
+
+/// exp(depth rate) of each.
+template <typename Number, typename C>
+std::vector<C> damping(std::vector<C> rates, const Number& depth) {
+  using std::exp;
+  for (C& rate : rates) rate = exp(depth * rate);
+  return rates;
+}
+
+/// int_0^1 exp(rate u) u^power du of powers 1 .. count: the last by its series, then downwards.
+template <typename C>
+std::vector<C> moments(const C& rate, int count) {
+  std::vector<C> moment(static_cast<std::size_t>(count));
+  constexpr int terms = 30;
+  const C start = exp(C{}), end = exp(rate);
+  C term = start;
+  for (int i = 0; i < terms; ++i) {
+    moment.back() += term / (i + count + 1.0);
+    term = term * rate / (i + 1.0);
+  }
+  for (std::size_t p = moment.size() - 1; p > 0; --p)
+    moment[p - 1] = (end - rate * moment[p]) / (static_cast<double>(p) + 1);
+  return moment;
+}
+
+/// Rows with the signs of all but the first `even` columns turned.
+template <typename R>
+R turned(const R& rows, Eigen::Index even) {
+  const auto turn = [even](Rows r) {
+    r.rightCols(r.cols() - even) = -r.rightCols(r.cols() - even);
+    return r;
+  };
+  return linear(turn, rows);
+}
+
+/// [view][light]; of the signs that rows have, one is turned back.
+template <typename R>
+R contracted(const R& views, const R& lights, Eigen::Index even) {
+  return product_transposed(turned(views, even), lights);
+}
+
+/// A layer or some of them by what they do to radiance from above and below, rows times these; what
+/// leaves of lights and, turned round, of views; and what views collect.
+template <typename Number>
+struct Sheet {
+  MatrixOf<Number> top, bottom;  ///< reflected
+  MatrixOf<Number> down, up;     ///< transmitted
+  BothWays<RowsOf<Number>> lights, views;
+  RowsOf<Number> collected;
+};
+
+/// A layer by what leaves it. Of equal radiance from above and below 1 - `equal` comes back, of
+/// opposite radiance `opposite` - 1: both small for a thin layer, so that albedo 1 balances to
+/// rounding of it; `transmitted` follows from them, and in the deep, where it is small, from
+/// itself. And what leaves of the lights and, turned round, of the views.
+template <typename Number>
+class Layer {
+ public:
+  using Operator = TransportOperatorOf<Number>;
+  using Waves = PairWavesOf<Number>;
+  using M = MatrixOf<Number>;
+  using R = RowsOf<Number>;
+  using C = ComplexOf<Number>;
+
+  Layer(const Operator& medium, RealOf<Number> depth, const Waves& lights, const Waves& views);
+  /// Puts another one on top.
+  void double_depth();
+  /// Whose lights and views have lost something before they enter.
+  Sheet<Number> sheet(const std::vector<C>& light_factors,
+                      const std::vector<C>& view_factors) const;
+  LayerResponseOf<Number> response() const {
+    return {of_lights(leaves_.up), of_lights(leaves_.down), collected_};
+  }
+
+ private:
+  void start_radiance(const Operator& medium);
+  M reflected() const { return 0.5 * (opposite_ - equal_); }
+  M rest() const { return identity_like(equal_) - 0.5 * (opposite_ + equal_); }
+  void start_pairs(const Operator& medium);
+  R collected_in_series(const std::vector<Mirrored<R>>& series) const;
+  std::vector<C> rates() const;
+  R of_lights(const R& rows) const {
+    return linear([this](const Rows& r) -> Rows { return r.topRows(lights_); }, rows);
+  }
+  R of_views(const R& rows) const {
+    return linear([this](const Rows& r) -> Rows { return r.bottomRows(r.rows() - lights_); }, rows);
+  }
+
+  RealOf<Number> depth_;
+  Eigen::Index lights_, even_;
+  Waves waves_;
+  M equal_, opposite_, transmitted_;
+  BothWays<R> leaves_;
+  R collected_;
+};
+
+template <typename Number>
+Layer<Number>::Layer(const Operator& medium, RealOf<Number> depth, const Waves& lights,
+                     const Waves& views)
+    : depth_(depth),
+      lights_(static_cast<Eigen::Index>(lights.top.size())),
+      even_(medium.even),
+      waves_{joined(lights.top, views.top), joined(lights.bottom, views.bottom),
+             joined(lights.down, views.down), joined(lights.up, views.up)} {
+  start_radiance(medium);
+  start_pairs(medium);
+}
+
+/// With D = m S at the top for equal and S = n D for opposite radiance from both sides,
+/// m = (d/2) y f, n = (d/2) f x, f = tanh_ratio(x y d^2/4).
+template <typename Number>
+void Layer<Number>::start_radiance(const Operator& medium) {
+  const RealOf<Number> half = depth_ / 2.0;
+  const M ratio = half * tanh_ratio(M(half * half * product(medium.x, medium.y)));
+  equal_ = 2.0 * share(product(medium.y, ratio));
+  opposite_ = 2.0 * share(product(ratio, medium.x));
+  transmitted_ = rest();
+}
+
+/// Power series in z of what lights feed into a layer that no radiance enters at the top; then
+/// radiance enters from below so that none enters there in sum.
+template <typename Number>
+void Layer<Number>::start_pairs(const Operator& medium) {
+  constexpr int terms = 30;
+  const auto start = damping(waves_.bottom, depth_);
+  Mirrored<R> fed{scaled(start, R(waves_.down - waves_.up)),
+                  scaled(start, R(waves_.down + waves_.up))},
+      sum{0.0 * fed.sum, 0.0 * fed.sum}, term = sum;
+  std::vector<Mirrored<R>> series;
+  for (int j = 0; j < terms; ++j) {
+    const RealOf<Number> step = depth_ / (j + 1.0);
+    const auto next = times(step, rates());
+    term = {step * (fed.sum - product(term.difference, medium.x)),
+            step * (fed.difference - product(term.sum, medium.y))};
+    fed = {scaled(next, fed.sum), scaled(next, fed.difference)};
+    sum.sum += term.sum;
+    sum.difference += term.difference;
+    series.push_back({of_lights(term.sum), of_lights(term.difference)});
+  }
+  const auto [down, up] = sum.both_ways();
+  leaves_ = {down - product(up, reflected()), -product(up, transmitted_)};
+  collected_ =
+      collected_in_series(series) - contracted(of_views(leaves_.down), of_lights(up), even_);
+}
+
+/// What views collect of the radiance sum_j series[j] (z / depth)^(j+1).
+template <typename Number>
+RowsOf<Number> Layer<Number>::collected_in_series(const std::vector<Mirrored<R>>& series) const {
+  const R sums = turned(R(0.5 * of_views(waves_.up + waves_.down)), even_),
+          differences = turned(R(0.5 * of_views(waves_.up - waves_.down)), even_);
+  const auto rate = times(depth_, rates()), start = damping(waves_.bottom, depth_);
+  std::vector<std::vector<C>> factors(series.size());
+  for (auto v = static_cast<std::size_t>(lights_); v < rate.size(); ++v) {
+    const auto moment = moments(rate[v], static_cast<int>(series.size()));
+    for (std::size_t j = 0; j < series.size(); ++j)
+      factors[j].push_back(depth_ * (start[v] * moment[j]));
+  }
+  R collected = 0.0 * product_transposed(sums, series.front().sum);
+  for (std::size_t j = 0; j < series.size(); ++j)
+    collected += scaled(factors[j], R(product_transposed(sums, series[j].sum) +
+                                      product_transposed(differences, series[j].difference)));
+  return collected;
+}
+
+/// Of waves along z from the bottom to the top.
+template <typename Number>
+std::vector<ComplexOf<Number>> Layer<Number>::rates() const {
+  std::vector<C> list;
+  for (std::size_t i = 0; i < waves_.top.size(); ++i)
+    list.push_back(waves_.top[i] - waves_.bottom[i]);
+  return list;
+}
+
+/// Of radiance between the halves: down = r lights' + reflected up, up likewise, so that their sum
+/// is (1 - r)^-1 times that of the lights, and their difference (1 + r)^-1 times.
+template <typename Number>
+void Layer<Number>::double_depth() {
+  const M reflects = reflected(), one = identity_like(reflects);
+  const FactorsOf<M> of_sums(M(one - reflects)), of_differences(M(one + reflects));
+  const auto upper = damping(waves_.bottom, depth_), lower = damping(waves_.top, depth_);
+  const BothWays<R> above = scaled(upper, leaves_), below = scaled(lower, leaves_);
+  const Mirrored<R> between{of_sums.after(above.down + below.up),
+                            of_differences.after(above.down - below.up)};
+  const auto [down, up] = between.both_ways();
+  const auto lights = static_cast<std::size_t>(lights_);
+  for (std::size_t l = 0; l < lights; ++l)
+    for (std::size_t v = lights; v < upper.size(); ++v)
+      multiply(collected_, static_cast<Eigen::Index>(v - lights), static_cast<Eigen::Index>(l),
+               upper[v] * upper[l] + lower[v] * lower[l]);
+  collected_ += contracted(of_views(above.down), of_lights(up), even_) +
+                contracted(of_views(below.up), of_lights(down), even_);
+  leaves_ = {below.down + product(down, transmitted_), above.up + product(up, transmitted_)};
+  const M by_sums = of_sums.before(transmitted_),
+          by_differences = of_differences.before(transmitted_);
+  equal_ += product(equal_, by_sums);
+  opposite_ += product(opposite_, by_differences);
+  const bool deep = value_of(depth_) > 1;
+  transmitted_ = deep ? M(0.5 * product(transmitted_, M(by_sums + by_differences))) : rest();
+  depth_ = 2.0 * depth_;
+}
+
+template <typename Number>
+Sheet<Number> Layer<Number>::sheet(const std::vector<C>& light_factors,
+                                   const std::vector<C>& view_factors) const {
+  R collected = scaled(view_factors, collected_);
+  for (std::size_t l = 0; l < light_factors.size(); ++l)
+    for (std::size_t v = 0; v < view_factors.size(); ++v)
+      multiply(collected, static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(l),
+               light_factors[l]);
+  const M back = reflected();
+  return {back,
+          back,
+          transmitted_,
+          transmitted_,
+          scaled(light_factors, BothWays<R>{of_lights(leaves_.down), of_lights(leaves_.up)}),
+          scaled(view_factors, BothWays<R>{of_views(leaves_.down), of_views(leaves_.up)}),
+          collected};
+}
+
+/// One above the other. even: rows whose sign is not turned.
+template <typename Number>
+Sheet<Number> stacked(const Sheet<Number>& above, const Sheet<Number>& below, Eigen::Index even) {
+  using M = MatrixOf<Number>;
+  using Ways = BothWays<RowsOf<Number>>;
+  const M one = identity_like(above.top);
+  const FactorsOf<M> of_down(M(one - product(below.top, above.bottom))),
+      of_up(M(one - product(above.bottom, below.top)));
+  const auto between = [&](const Ways& upper, const Ways& lower) {
+    return Ways{of_down.after(upper.down + product(lower.up, above.bottom)),
+                of_up.after(lower.up + product(upper.down, below.top))};
+  };
+  const auto leaving = [&](const Ways& upper, const Ways& lower, const Ways& middle) {
+    return Ways{lower.down + product(middle.down, below.down),
+                upper.up + product(middle.up, above.up)};
+  };
+  const Ways lights = between(above.lights, below.lights);
+  return {above.top + product(above.down, of_down.before(product(below.top, above.up))),
+          below.bottom + product(below.up, of_up.before(product(above.bottom, below.down))),
+          product(above.down, of_down.before(below.down)),
+          product(below.up, of_up.before(above.up)),
+          leaving(above.lights, below.lights, lights),
+          leaving(above.views, below.views, between(above.views, below.views)),
+          above.collected + below.collected + contracted(above.views.down, lights.up, even) +
+              contracted(below.views.up, lights.down, even)};
+}
+
+template <typename Number>
+double fastest_rate(const TransportOperatorOf<Number>& medium, const PairWavesOf<Number>& waves) {
+  double rate = medium.fastest;
+  for (std::size_t i = 0; i < waves.top.size(); ++i)
+    rate = std::max(rate, std::abs(value_of(waves.top[i] - waves.bottom[i])));
+  return rate;
+}
+
+template <typename Number>
+Layer<Number> doubled(const HomogeneousLayerOf<Number>& layer) {
+  const double rate =
+      std::max(fastest_rate(layer.medium, layer.lights), fastest_rate(layer.medium, layer.views));
+  const int doublings =
+      std::max(0, static_cast<int>(std::ceil(std::log2(value_of(layer.depth) * rate / 2))));
+  Layer<Number> part(layer.medium, std::ldexp(1.0, -doublings) * layer.depth, layer.lights,
+                     layer.views);
+  for (int i = 0; i < doublings; ++i) {
+    stop_if_interrupted();
+    part.double_depth();
+  }
+  return part;
+}
+
+/// Of each layer's lights or views.
+template <typename Number>
+auto entering(const std::vector<HomogeneousLayerOf<Number>>& layers,
+              PairWavesOf<Number> HomogeneousLayerOf<Number>::*waves) {
+  std::vector<std::vector<ComplexOf<Number>>> top, bottom;
+  for (const auto& layer : layers) {
+    top.push_back(times(layer.depth, (layer.*waves).top));
+    bottom.push_back(times(layer.depth, (layer.*waves).bottom));
+  }
+  return mc::entering(top, bottom);
+}
+
+}  // namespace
+
+template <typename Number>
+LayerResponseOf<Number> response_of(const std::vector<HomogeneousLayerOf<Number>>& layers) {
+  using One = HomogeneousLayerOf<Number>;
+  if (layers.size() == 1) return doubled(layers.front()).response();
+  const auto lights = entering(layers, &One::lights), views = entering(layers, &One::views);
+  std::optional<Sheet<Number>> all;
+  for (std::size_t l = 0; l < layers.size(); ++l) {
+    const auto sheet = doubled(layers[l]).sheet(lights[l], views[l]);
+    all = all ? stacked(*all, sheet, layers[l].medium.even) : sheet;
+  }
+  return {all->lights.up, all->lights.down, all->collected};
+}
+
+template LayerResponseOf<double> response_of(const std::vector<HomogeneousLayerOf<double>>&);
+template LayerResponseOf<Complex> response_of(const std::vector<HomogeneousLayerOf<Complex>>&);
+template LayerResponseOf<Dual<double>> response_of(
+    const std::vector<HomogeneousLayerOf<Dual<double>>>&);
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,78 @@
+#include "mc/slab/adding/ordinates.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mc/slab/adding/plane.h"
+#include "mc/slab/adding/space.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+/// sum over degrees l = first, first + 2, .. of weight moments[l] v_l v_l^T; integrals: of degrees
+/// m and more.
+template <typename Geometry>
+Matrix gram(const Matrix& integrals, const std::vector<double>& moments, int m, int first) {
+  const Eigen::Index n = integrals.rows(), degrees = std::ssize(moments) - first,
+                     count = std::max<Eigen::Index>((degrees + 1) / 2, 0);
+  if (count == 0) return Matrix::Zero(n, n);
+  Matrix taken(n, count), weighted(n, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto l = static_cast<int>(first + 2 * i);
+    taken.col(i) = integrals.col(l - m);
+    weighted.col(i) = Geometry::weight(l) * moments[static_cast<std::size_t>(l)] * taken.col(i);
+  }
+  return product(weighted, taken.transpose());
+}
+
+template <typename Geometry>
+Dual<Matrix> gram(const Matrix& integrals, const Dual<std::vector<double>>& moments, int m,
+                  int first) {
+  return {gram<Geometry>(integrals, moments.value, m, first),
+          gram<Geometry>(integrals, moments.slope, m, first)};
+}
+
+}  // namespace
+
+template <typename Geometry, typename Real>
+OrdinatesOf<Geometry, Real>::OrdinatesOf(const std::vector<Focus>& foci, int order, double fine,
+                                         const Law& law, Real albedo)
+    : grid_(foci, order, fine),
+      law_(law),
+      albedo_(albedo),
+      root_(Geometry::weights(grid_).cwiseProduct(grid_.cosine()).unaryExpr([](double square) {
+        return std::sqrt(square);
+      })) {}
+
+template <typename Geometry, typename Real>
+auto OrdinatesOf<Geometry, Real>::of_mode(int m) const -> const Scattering& {
+  const std::lock_guard lock(making_);
+  while (std::ssize(of_mode_) <= m)
+    of_mode_.push_back(scattering(static_cast<int>(of_mode_.size())));
+  return of_mode_[static_cast<std::size_t>(m)];
+}
+
+/// Backwards, theta -> pi - theta, functions of degree l have the sign (-1)^(l + m).
+template <typename Geometry, typename Real>
+auto OrdinatesOf<Geometry, Real>::scattering(int m) const -> Scattering {
+  const int last = degree(law_.moments());
+  const Matrix integrals = grid_.integrals_of(
+      std::max(last - m + 1, 0),
+      [&](const Eigen::VectorXd& angles) { return Geometry::functions(angles, m, last); });
+  const Eigen::VectorXd scale = root_.cwiseInverse();
+  const auto scaled = [&](const Matrix& a) -> Matrix {
+    return scale.asDiagonal() * a * scale.asDiagonal();
+  };
+  const auto of_degrees = [&](int first) -> MatrixOf<Real> {
+    return albedo_ * linear(scaled, gram<Geometry>(integrals, law_.moments(), m, first));
+  };
+  return {of_degrees(m + 1), of_degrees(m)};
+}
+
+template class OrdinatesOf<Plane, double>;
+template class OrdinatesOf<Plane, Dual<double>>;
+template class OrdinatesOf<Space, double>;
+template class OrdinatesOf<Space, Dual<double>>;
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,184 @@
+#include "mc/slab/adding/plane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+#include "flatland/scene/frequency_shift.h"
+#include "mc/slab/adding/ordinates.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using std::numbers::pi;
+
+/// The angle in the first quadrant that has the same |sin|.
+double folded(double angle) {
+  const double from_z = std::abs(std::remainder(angle, 2 * pi));
+  return std::min(from_z, pi - from_z);
+}
+
+void add(std::vector<Focus>& foci, double angle, double width) {
+  constexpr double too_wide = 0.4;  // for any panel to be split
+  if (width < too_wide) foci.push_back({angle, width});
+}
+
+}  // namespace
+
+double Plane::matched(const Pair& lights, const Pair& views, double shift) {
+  return matched_view(lights.first, views.first, lights.second, views.second, shift);
+}
+
+double Plane::momentum(const Pair& lights, double k, double mu_t, double shift) {
+  constexpr double same_momentum = 1e-12;  // of k
+  const double unit = same_momentum * k / mu_t,
+               q = k / mu_t * (std::sin(lights.first) - (1 + shift) * std::sin(lights.second));
+  return unit * std::round(q / unit);
+}
+
+Scene Plane::with_scatterer(Scene scene, const Scatterer& scatterer) {
+  scene.scatterer = scatterer;
+  scene.medium = bulk_medium(scatterer, scene.k, scene.medium.density);
+  return scene;
+}
+
+std::vector<Focus> light_foci(const Pair& lights, double width) {
+  std::vector<Focus> found;
+  for (const double angle : {lights.first, lights.second}) add(found, folded(angle), width);
+  return found;
+}
+
+Plane::Foci::Foci(const std::vector<Pair>& lights, double optical_depth, double width)
+    : optical_depth_(optical_depth), width_(width) {
+  std::vector<double> all;
+  for (const Pair& pair : lights)
+    for (const double angle : {pair.first, pair.second}) all.push_back(folded(angle));
+  std::sort(all.begin(), all.end());
+  for (const double angle : all)
+    if (centres_.empty() || angle - centres_.back() > width / 2) centres_.push_back(angle);
+}
+
+std::vector<Focus> Plane::Foci::of(const Pair& lights, Momentum q) const {
+  std::vector<Focus> found;
+  for (const double angle : {folded(lights.first), folded(lights.second)})
+    add(found, *std::prev(std::upper_bound(centres_.begin(), centres_.end(), angle)), width_);
+  // Uniform panels resolve the phase of some ten turns with fewer ordinates.
+  constexpr double many_turns = 150;
+  if (std::abs(q) * std::min(4.0, optical_depth_) > many_turns)
+    add(found, folded((lights.first + lights.second) / 2),
+        std::max(0.01, 1 / (std::abs(q) * std::min(1.0, optical_depth_))));
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+Matrix Plane::functions(const Eigen::VectorXd& angle, int m, int last) {
+  const Eigen::ArrayXd c = angle.array().cos(), s = angle.array().sin();
+  Eigen::ArrayXd cosine = Eigen::ArrayXd::Ones(angle.size()),
+                 sine = Eigen::ArrayXd::Zero(angle.size());
+  Matrix values(angle.size(), std::max(last - m + 1, 0));
+  for (int l = 0; l <= last; ++l) {
+    if (l >= m) values.col(l - m) = m == 0 ? cosine : sine;
+    const Eigen::ArrayXd next = c * cosine - s * sine;
+    sine = s * cosine + c * sine;
+    cosine = next;
+  }
+  return values;
+}
+
+double Plane::weight(int l) {
+  return (l == 0 ? 2 : 4) / pi;
+}
+
+template <typename Number>
+PairWavesOf<Number> Plane::fed(const OrdinatesOf<Plane, RealOf<Number>>& ordinates, Momentum, int,
+                               const std::vector<Pair>& pairs) {
+  const AngularGrid& grid = ordinates.grid();
+  const Eigen::Index n = grid.size();
+  const Eigen::VectorXd scale = ordinates.root().cwiseInverse();
+  /// Even and odd parts of what goes to the right and, mirrored, to the left.
+  const auto split = [&](const Eigen::VectorXcd& right, const Eigen::VectorXcd& left) {
+    constexpr double share = std::numbers::sqrt2 / 2;
+    Eigen::VectorXcd parts(2 * n);
+    for (Eigen::Index j = 0; j < n; ++j) {
+      parts[j] = share * (right[j] + left[j]);
+      parts[n + j] = Complex(0, share) * (right[j] - left[j]);
+    }
+    return parts;
+  };
+  /// Into directions turn + theta and turn - theta.
+  const auto into = [&](double turn) {
+    return each_part<Number>([&](const auto& part) {
+      Rows rows(std::ssize(pairs), 2 * n);
+      for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+        const Pair pair = pairs[static_cast<std::size_t>(i)];
+        const auto towards = [&](double sign) -> Eigen::VectorXcd {
+          return scale.asDiagonal() * grid.integrals([&](double theta) {
+            return part(ordinates.law().pair(pair.first, pair.second, turn + sign * theta));
+          });
+        };
+        rows.row(i) = turn == 0 ? split(towards(1), towards(-1)).transpose()
+                                : split(towards(-1), towards(1)).transpose();
+      }
+      return rows;
+    });
+  };
+  return {{}, {}, ordinates.albedo() * into(0), ordinates.albedo() * into(pi)};
+}
+
+template <typename Number>
+ComplexOf<Number> Plane::double_scattering(const DoubleScatteringOf<Number>& paths,
+                                           const AngularGrid& grid,
+                                           const std::vector<int>& functions,
+                                           const HomogeneousLayerOf<Number>& layer,
+                                           Eigen::Index light, Eigen::Index view) {
+  using C = ComplexOf<Number>;
+  const Eigen::Index n = grid.size();
+  C sum{};
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double cosine = grid.cosine()[j], sine = std::sin(grid.angle()[j]);
+    for (const bool down : {true, false}) {
+      const auto fed = [&](Eigen::Index i) {
+        return entry(down ? layer.lights.down : layer.lights.up, light, i);
+      };
+      const auto collected = [&](Eigen::Index i) {
+        return entry(down ? layer.views.up : layer.views.down, view, i);
+      };
+      const auto along = [&](double sign) {
+        return cosine * paths.along(sign * sine, cosine, down);
+      };
+      const C first = fed(j) * collected(j);
+      if (functions.size() == 1) {
+        sum += (functions.front() == 0 ? first : -first) * along(1);
+        continue;
+      }
+      const C second = fed(n + j) * collected(n + j),
+              mixed = Complex(0, 1) * (fed(j) * collected(n + j) + fed(n + j) * collected(j));
+      sum += (first - second - mixed) / 2.0 * along(1) + (first - second + mixed) / 2.0 * along(-1);
+    }
+  }
+  return sum;
+}
+
+template PairWavesOf<double> Plane::fed<double>(const OrdinatesOf<Plane, double>&, Momentum, int,
+                                                const std::vector<Pair>&);
+template PairWavesOf<Complex> Plane::fed<Complex>(const OrdinatesOf<Plane, double>&, Momentum, int,
+                                                  const std::vector<Pair>&);
+template PairWavesOf<Dual<double>> Plane::fed<Dual<double>>(const OrdinatesOf<Plane, Dual<double>>&,
+                                                            Momentum, int,
+                                                            const std::vector<Pair>&);
+template Complex Plane::double_scattering<double>(const DoubleScatteringOf<double>&,
+                                                  const AngularGrid&, const std::vector<int>&,
+                                                  const HomogeneousLayerOf<double>&, Eigen::Index,
+                                                  Eigen::Index);
+template Complex Plane::double_scattering<Complex>(const DoubleScatteringOf<Complex>&,
+                                                   const AngularGrid&, const std::vector<int>&,
+                                                   const HomogeneousLayerOf<Complex>&, Eigen::Index,
+                                                   Eigen::Index);
+template Dual<Complex> Plane::double_scattering<Dual<double>>(
+    const DoubleScatteringOf<Dual<double>>&, const AngularGrid&, const std::vector<int>&,
+    const HomogeneousLayerOf<Dual<double>>&, Eigen::Index, Eigen::Index);
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <vector>
+
+#include "flatland/scene/scene.h"
+#include "mc/slab/adding/angular_grid.h"
+#include "mc/slab/adding/double_scattering.h"
+#include "mc/slab/adding/layer.h"
+#include "mc/slab/adding/scattering_law.h"
+
+namespace flatspeckle::mc {
+
+template <typename Geometry, typename Real>
+class OrdinatesOf;
+
+/// What slabs in the plane have of their own (slab.h). Directions are angles; functions of
+/// direction are even or odd in them.
+struct Plane {
+  using Direction = double;
+  using Law = ScatteringLaw;
+  using Momentum = double;  ///< per mu_t
+
+  static Direction direction(double angle) { return angle; }
+  /// The second view, turned (slab.h).
+  static Direction matched(const Pair& lights, const Pair& views, double shift);
+  /// Transverse (C35). shift: Departure's.
+  static Momentum momentum(const Pair& lights, double k, double mu_t, double shift);
+  static double size(Momentum momentum, double) { return momentum; }
+
+  static Law law(const Scene& scene, double delay = 0) { return ScatteringLaw(scene, delay); }
+  /// The scene with other scatterers at the same density.
+  static Scene with_scatterer(Scene scene, const Scatterer& scatterer);
+  /// One scattering from lights to views.
+  template <typename L>
+  static auto turned(const L& law, const Pair& lights, const Pair& views) {
+    return law.pair(lights.first - views.first, lights.second - views.second, 0.0);
+  }
+
+  /// Foci of pairs of lights. Lights that are near to each other, in units of what the phase
+  /// function resolves, have one, so that their pairs share a grid.
+  class Foci {
+   public:
+    Foci(const std::vector<Pair>& lights, double optical_depth, double width);
+    std::vector<Focus> of(const Pair& lights, Momentum q) const;
+
+   private:
+    double optical_depth_, width_;
+    std::vector<double> centres_;
+  };
+
+  static constexpr int families = 1;     ///< cosines alone
+  static constexpr int first_modes = 1;  ///< the highest; there are no more
+  static constexpr bool refines_modes = false;
+  static constexpr int flux_modes = 1;  ///< the highest that carries power
+  /// Of the momentum between mode m and the next.
+  static double coupling(int) { return 1; }
+  /// Ordinates of both ways, per one of the grid.
+  static int ordinates(std::size_t) { return 2; }
+
+  /// cos(l theta) of m = 0, sin(l theta) of m = 1, [angle][l - m], l = m .. last.
+  static Matrix functions(const Eigen::VectorXd& angle, int m, int last);
+  /// Of a moment in the scattering between such functions.
+  static double weight(int l);
+  static Eigen::VectorXd weights(const AngularGrid& grid) { return grid.weight(); }
+  /// What pairs scatter into directions down and up, a row each, function by function.
+  template <typename Number>
+  static PairWavesOf<Number> fed(const OrdinatesOf<Plane, RealOf<Number>>& ordinates, Momentum,
+                                 int highest, const std::vector<Pair>& pairs);
+
+  /// Paths of two scatterings are integrals over one direction, exact where forward peaks, or the
+  /// phase of a large transverse momentum, ask for many ordinates.
+  static constexpr bool has_double_scattering = true;
+  /// What ordinates make of these paths, of one light and one view by number; functions: of waves.
+  template <typename Number>
+  static ComplexOf<Number> double_scattering(const DoubleScatteringOf<Number>& paths,
+                                             const AngularGrid& grid,
+                                             const std::vector<int>& functions,
+                                             const HomogeneousLayerOf<Number>& layer,
+                                             Eigen::Index light, Eigen::Index view);
+};
+
+/// Where radiance of two lights changes within a phase function's width; none if that is wide.
+std::vector<Focus> light_foci(const Pair& lights, double width);
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,109 @@
+#include "mc/slab/adding/scattering_law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fftw3.h>
+#include <numbers>
+
+#include "core/numbers/fourier.h"
+#include "mc/jobs/bulk_parameter.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using std::numbers::pi;
+
+/// int p cos(m theta) over the circle, m = 0 .. intervals, by the trapezoidal rule.
+std::vector<double> cosine_modes(const std::function<double(double)>& p, int intervals) {
+  std::vector<double> line(static_cast<std::size_t>(intervals) + 1);
+  for (int i = 0; i <= intervals; ++i) line[i] = p(pi * i / intervals) * pi / intervals;
+  fftw_plan plan;
+  {
+    const std::lock_guard lock(fourier_planning());
+    plan = fftw_plan_r2r_1d(intervals + 1, line.data(), line.data(), FFTW_REDFT00,
+                            FFTW_ESTIMATE | FFTW_UNALIGNED);
+  }
+  fftw_execute(plan);
+  const std::lock_guard lock(fourier_planning());
+  fftw_destroy_plan(plan);
+  return line;
+}
+
+/// The modes above rounding, normalised; of a table with kinks the first 4096.
+std::vector<double> significant_modes(const std::function<double(double)>& p) {
+  constexpr double rounding = 1e-13;
+  constexpr int most = 4096;
+  for (int intervals = 64;; intervals *= 4) {
+    auto modes = cosine_modes(p, intervals);
+    for (auto mode = modes.rbegin(); mode != modes.rend(); ++mode) *mode /= modes.front();
+    const auto small = [&](double mode) { return std::abs(mode) < rounding; };
+    const auto end = std::find_if_not(modes.rbegin(), modes.rend(), small).base();
+    modes.erase(end, modes.end());
+    if (static_cast<int>(modes.size()) <= intervals / 2) return modes;
+    if (intervals < 4 * most) continue;
+    modes.resize(most);
+    return modes;
+  }
+}
+
+}  // namespace
+
+ScatteringLaw::ScatteringLaw(const Scene& scene, double delay) : delay_(delay) {
+  const Scatterer& scatterer = scene.scatterer;
+  if (scatterer.kind == Scatterer::Kind::hg)
+    density_ = [g = scatterer.g](double theta) { return henyey_greenstein(g, theta); };
+  else if (scatterer.kind == Scatterer::Kind::point)
+    density_ = [](double) { return 1 / (2 * pi); };
+  else if (scene.medium.phase.density)
+    density_ = scene.medium.phase.density;
+  else
+    tabulate(scene);
+  const auto p = [this](double theta) { return std::norm(amplitude(theta)); };
+  moments_ = significant_modes(p);
+  if (delay > 0) {
+    const auto decayed = [&](double theta) { return p(theta) * decay(theta); };
+    const int intervals = 4 * static_cast<int>(moments_.size() + 16);
+    const double share =
+        cosine_modes(decayed, intervals).front() / cosine_modes(p, intervals).front();
+    moments_ = significant_modes(decayed);
+    for (double& mode : moments_) mode *= share;
+  }
+  constexpr double moments_per_width = 30;  // g^m of Henyey-Greenstein is then 1e-13
+  width_ = std::min(pi, moments_per_width / static_cast<double>(moments_.size()));
+  const auto large = [](double mode) { return std::abs(mode) > 0.01; };
+  const auto lobes =
+      std::find_if(moments_.rbegin(), moments_.rend(), large).base() - moments_.begin();
+  if (!is_peaked()) least_order_ = static_cast<int>(std::min<std::ptrdiff_t>(lobes / 2, 16));
+}
+
+double ScatteringLaw::pair_slope(double g, double a, double b, double theta) const {
+  const auto by_g = [g](double angle) {
+    const double half = std::sin(angle / 2);
+    return henyey_greenstein_slope(g, 2 * half * half);
+  };
+  return (by_g(theta - a) + by_g(theta - b)) / 2;
+}
+
+void ScatteringLaw::tabulate(const Scene& scene) {
+  const std::size_t steps_per_order = 2048;
+  table_ = normalised_amplitudes(scene.medium, scene.k,
+                                 steps_per_order * (scene.medium.t_matrix.size() + 1));
+}
+
+/// From the table by Lagrange's cubic through the nearest nodes; A is even about both of its ends.
+Complex ScatteringLaw::amplitude(double angle) const {
+  const double theta = std::abs(angle - 2 * pi * std::rint(angle / (2 * pi)));
+  if (density_) return std::sqrt(density_(theta));
+  const auto last = static_cast<std::ptrdiff_t>(table_.size()) - 1;
+  const double position = theta / pi * static_cast<double>(last);
+  const auto i = std::min(static_cast<std::ptrdiff_t>(position), last - 1);
+  const double t = position - static_cast<double>(i);
+  const auto at = [&](std::ptrdiff_t node) {
+    return table_[static_cast<std::size_t>(node > last ? 2 * last - node : std::abs(node))];
+  };
+  return t * (t - 1) * ((2 - t) / 6 * at(i - 1) + (1 + t) / 6 * at(i + 2)) +
+         (1 + t) * (2 - t) / 2 * ((1 - t) * at(i) + t * at(i + 1));
+}
+
+}  // namespace flatspeckle::mc

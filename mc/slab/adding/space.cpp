@@ -1,0 +1,161 @@
+#include "mc/slab/adding/space.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mc/slab/adding/ordinates.h"
+
+namespace flatspeckle::mc {
+
+namespace {
+
+using std::numbers::pi;
+
+/// i^m
+Complex power_of_i(int m) {
+  constexpr Complex powers[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+  return powers[m % 4];
+}
+
+/// [azimuth][function]: normalised, times the step of the azimuth.
+Matrix azimuthal_functions(int steps, int highest) {
+  const double step = 2 * pi / steps;
+  Matrix values(steps, 2 * highest + 1);
+  for (int i = 0; i < steps; ++i) {
+    values(i, 0) = step / std::sqrt(2 * pi);
+    for (int m = 1; m <= highest; ++m) {
+      values(i, m) = step / std::sqrt(pi) * std::cos(m * i * step);
+      values(i, highest + m) = step / std::sqrt(pi) * std::sin(m * i * step);
+    }
+  }
+  return values;
+}
+
+/// Along the slab at equal steps of the azimuth from the momentum, [azimuth][x, y].
+Matrix azimuths(int steps, const Space::Momentum& momentum) {
+  const Eigen::Vector2d along(momentum[0], momentum[1]),
+      x = along.norm() == 0 ? Eigen::Vector2d(1, 0) : Eigen::Vector2d(along.normalized());
+  Matrix directions(steps, 2);
+  for (int i = 0; i < steps; ++i) {
+    const double phi = 2 * pi * i / steps, c = std::cos(phi), s = std::sin(phi);
+    directions.row(i) << c * x.x() - s * x.y(), c * x.y() + s * x.x();
+  }
+  return directions;
+}
+
+Matrix associated_legendre(const Eigen::VectorXd& angle, int m, int last) {
+  if (last < m) return Matrix(angle.size(), 0);
+  const Eigen::ArrayXd cosine = angle.array().cos(), sine = angle.array().sin();
+  const double order = m;
+  Matrix values(angle.size(), last - m + 1);
+  values.col(0).setConstant(std::sqrt(0.5));
+  for (int i = 1; i <= m; ++i) values.col(0).array() *= std::sqrt(1 + 0.5 / i) * sine;
+  for (int l = m + 1; l <= last; ++l) {
+    const double a = std::sqrt((4.0 * l * l - 1) / ((l - order) * (l + order))),
+                 b = std::sqrt((l - 1 - order) * (l - 1 + order) / (4.0 * (l - 1) * (l - 1) - 1));
+    const Eigen::Index i = l - m;
+    values.col(i) = a * cosine * values.col(i - 1).array();
+    if (i > 1) values.col(i) -= a * b * values.col(i - 2);
+  }
+  return values;
+}
+
+}  // namespace
+
+Eigen::Vector3d Space::matched(const SpacePair& lights, const SpacePair& views, double shift) {
+  const Eigen::Vector2d along =
+      (lights.second - (lights.first - views.first) / (1 + shift)).head<2>();
+  return {along.x(), along.y(),
+          std::copysign(std::sqrt(1 - along.squaredNorm()), views.second.z())};
+}
+
+Space::Momentum Space::momentum(const SpacePair& lights, double, double, double shift) {
+  constexpr double same_momentum = 1e-12;
+  const Eigen::Vector3d difference = lights.first - (1 + shift) * lights.second;
+  const auto rounded = [](double q) { return std::round(q / same_momentum) * same_momentum; };
+  return {rounded(difference.x()), rounded(difference.y())};
+}
+
+std::vector<Focus> Space::Foci::of(const SpacePair& lights, const Momentum&) const {
+  constexpr double too_wide = 0.4;  // for any panel to be split
+  std::vector<Focus> found;
+  if (width_ >= too_wide) return found;
+  for (const auto& light : {lights.first, lights.second}) {
+    const double angle = std::atan2(light.head<2>().norm(), std::abs(light.z()));
+    found.push_back({width_ / 2 * std::round(angle / (width_ / 2)), width_});
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+double Space::coupling(int m) {
+  return m == 0 ? std::numbers::sqrt2 / 2 : 0.5;
+}
+
+Matrix Space::functions(const Eigen::VectorXd& angle, int m, int last) {
+  const Eigen::VectorXd sine = angle.array().sin();
+  return sine.asDiagonal() * associated_legendre(angle, m, last);
+}
+
+Eigen::VectorXd Space::weights(const AngularGrid& grid) {
+  return grid.integrals_of(
+      1, [](const Eigen::VectorXd& angle) -> Matrix { return angle.array().sin(); });
+}
+
+template <typename Number>
+PairWavesOf<Number> Space::fed(const OrdinatesOf<Space, RealOf<Number>>& ordinates,
+                               const Momentum& momentum, int highest,
+                               const std::vector<SpacePair>& pairs) {
+  double most_sine = 0;
+  for (const SpacePair& pair : pairs)
+    for (const Eigen::Vector3d& direction : {pair.first, pair.second})
+      most_sine = std::max(most_sine, direction.head<2>().norm());
+  // Modes of p beyond l sin(theta) have died out at the angle of a light.
+  const int steps = 2 * highest + 32 +
+                    static_cast<int>(1.2 * most_sine * (1 + degree(ordinates.law().moments())));
+  const Matrix azimuthal = azimuthal_functions(steps, highest),
+               directions = azimuths(steps, momentum);
+  const auto projected = [&](const Eigen::VectorXd& angles, const SpacePair& pair, double side,
+                             const auto& part) -> Matrix {
+    Matrix values(angles.size(), steps);
+    for (Eigen::Index j = 0; j < angles.size(); ++j) {
+      const double sine = std::sin(angles[j]), cosine = side * std::cos(angles[j]);
+      for (Eigen::Index i = 0; i < steps; ++i) {
+        const Eigen::Vector3d to(sine * directions(i, 0), sine * directions(i, 1), cosine);
+        values(j, i) = sine * part(ordinates.law().pair(pair.first.dot(to), pair.second.dot(to)));
+      }
+    }
+    return product(values, azimuthal);
+  };
+  const Eigen::Index n = ordinates.grid().size(), functions = azimuthal.cols();
+  const auto into = [&](double side) {
+    return each_part<Number>([&](const auto& part) {
+      Rows rows(std::ssize(pairs), functions * n);
+      for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+        const Matrix integrals =
+            ordinates.root().cwiseInverse().asDiagonal() *
+            ordinates.grid().integrals_of(functions, [&](const Eigen::VectorXd& angles) {
+              return projected(angles, pairs[static_cast<std::size_t>(i)], side, part);
+            });
+        for (Eigen::Index f = 0; f < functions; ++f)
+          rows.block(i, f * n, 1, n) = power_of_i(static_cast<int>(f > highest ? f - highest : f)) *
+                                       integrals.col(f).transpose();
+      }
+      return rows;
+    });
+  };
+  return {{}, {}, ordinates.albedo() * into(1), ordinates.albedo() * into(-1)};
+}
+
+template PairWavesOf<double> Space::fed<double>(const OrdinatesOf<Space, double>&, const Momentum&,
+                                                int, const std::vector<SpacePair>&);
+template PairWavesOf<Complex> Space::fed<Complex>(const OrdinatesOf<Space, double>&,
+                                                  const Momentum&, int,
+                                                  const std::vector<SpacePair>&);
+template PairWavesOf<Dual<double>> Space::fed<Dual<double>>(const OrdinatesOf<Space, Dual<double>>&,
+                                                            const Momentum&, int,
+                                                            const std::vector<SpacePair>&);
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "flatland/scene/scene.h"
+#include "mc/slab/adding/angular_grid.h"
+#include "mc/slab/adding/layer.h"
+#include "mc/slab/adding/pair_wave.h"
+#include "mc/slab/adding/space_law.h"
+
+namespace flatspeckle::mc {
+
+template <typename Geometry, typename Real>
+class OrdinatesOf;
+
+/// What slabs in space have of their own (slab.h), of scalar waves (C41). Directions are unit
+/// vectors, z into the slab; functions of direction are Fourier modes of the azimuth about z,
+/// cos(m phi) and sin(m phi), phi from the momentum.
+struct Space {
+  using Direction = Eigen::Vector3d;
+  using Law = SpaceLaw;
+  using Momentum = std::array<double, 2>;  ///< in units of k
+
+  static Direction direction(double angle) { return {std::sin(angle), 0, std::cos(angle)}; }
+  /// The second view, turned (slab.h).
+  static Direction matched(const SpacePair& lights, const SpacePair& views, double shift);
+  /// Transverse; shift: Departure's.
+  static Momentum momentum(const SpacePair& lights, double, double, double shift);
+  static double size(const Momentum& momentum, double k) {
+    return k * Eigen::Vector2d(momentum[0], momentum[1]).norm();
+  }
+
+  static Law law(const Scene& scene, double delay = 0) {
+    return SpaceLaw(scene.medium.space_phase.density, delay);
+  }
+  /// The scene with other spheres at the same extinction (space_scene.cpp).
+  static Scene with_scatterer(Scene scene, const Scatterer& scatterer);
+  /// One scattering from lights to views.
+  template <typename L>
+  static auto turned(const L& law, const SpacePair& lights, const SpacePair& views) {
+    return law.pair(lights.first.dot(views.first), lights.second.dot(views.second));
+  }
+
+  /// Foci of pairs of lights, in steps of half a width, so that lights near to each other have one
+  /// grid.
+  class Foci {
+   public:
+    Foci(const std::vector<SpacePair>&, double, double width) : width_(width) {}
+    std::vector<Focus> of(const SpacePair& lights, const Momentum&) const;
+
+   private:
+    double width_;
+  };
+
+  static constexpr int families = 2;     ///< cosines and sines
+  static constexpr int first_modes = 2;  ///< the highest; refined as the ordinates are
+  static constexpr bool refines_modes = true;
+  static constexpr int flux_modes = 0;  ///< the highest that carries power
+  /// Of the momentum between mode m and the next.
+  static double coupling(int m);
+  /// Unknowns of both ways, per ordinate of the grid.
+  static int ordinates(std::size_t functions) { return 2 * static_cast<int>(functions); }
+
+  /// Associated Legendre functions of cos(angle), l = m .. last, [angle][l - m], times sin(angle),
+  /// with int P_l^m(c)^2 dc = 1 over [-1, 1] and positive in the forward direction.
+  static Matrix functions(const Eigen::VectorXd& angle, int m, int last);
+  /// Of a moment in the scattering between such functions.
+  static double weight(int) { return 2; }
+  static Eigen::VectorXd weights(const AngularGrid& grid);
+  /// What pairs scatter into directions down and up, a row each, function by function.
+  template <typename Number>
+  static PairWavesOf<Number> fed(const OrdinatesOf<Space, RealOf<Number>>& ordinates,
+                                 const Momentum& momentum, int highest,
+                                 const std::vector<SpacePair>& pairs);
+
+  static constexpr bool has_double_scattering = false;
+};
+
+}  // namespace flatspeckle::mc
