@@ -30,14 +30,17 @@ function(flatspeckle_rooms name)
   install(TARGETS flatspeckle_${name} EXPORT flatspeckle)
 endfunction()
 
-# No square root here is asked whether it failed: it need not set errno, and its loops become vectors.
-# gcc 12 warns of its own AVX-512 header.
+# Square roots of this module need not set errno, so that its loops become vectors.
 function(flatspeckle_roots_without_errno name)
-  target_compile_options(flatspeckle_${name} PRIVATE -fno-math-errno -fno-trapping-math
-                         $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  target_compile_options(flatspeckle_${name} PRIVATE -fno-math-errno -fno-trapping-math)
 endfunction()
 
-# What another room, compiled with the same options, has precompiled.
+# gcc 12 warns about its own AVX-512 header.
+function(flatspeckle_allow_uninitialized name)
+  target_compile_options(flatspeckle_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+endfunction()
+
+# Uses the precompiled header of another module, which is compiled with the same options.
 function(flatspeckle_share_headers name owner)
   target_precompile_headers(flatspeckle_${name} REUSE_FROM flatspeckle_${owner})
 endfunction()

@@ -32,7 +32,7 @@ std::string with_figure(const std::string& argument) {
   return number && written_number(first, Written::angle) ? "0" + argument : argument;
 }
 
-/// Those behind the subcommand.
+/// Returns the words that follow the subcommand, the last first.
 Arguments reversed(const Arguments& arguments) {
   Arguments flags;
   std::transform(arguments.rbegin(), arguments.rend() - 2, std::back_inserter(flags), with_figure);

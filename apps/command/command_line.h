@@ -71,7 +71,7 @@ class Subcommand {
 /// The value of a key that says which others there are, from the flags or the scene file that they
 /// name; empty where it is not given. What else is wrong shows when all is parsed.
 std::string value_ahead(const std::string& key, const Arguments& arguments);
-/// The same from the text of a scene file.
+/// Returns the same from the text of a scene file.
 std::string value_in(const std::string& key, const std::string& config);
 
 }  // namespace flatspeckle::apps

@@ -56,7 +56,7 @@ struct OneWord : NoKeys {
   std::string word;
 };
 
-/// What the program can be asked for: a call of its own, or an experiment, which makes one result
+/// A subcommand of the program: a call of its own, or an experiment, which makes one result
 /// and which sweeps and searches run too.
 struct SubcommandEntry {
   const char *name, *purpose;

@@ -26,7 +26,7 @@ class ExperimentSweep : public Sweep {
   void write(ResultFile& file, const PointStore& store) const override;
 
  private:
-  /// Of very many points, only some are looked at in full.
+  /// Checks only some points in full where there are very many.
   void check() override;
   void check_points();
   std::vector<std::size_t> points_to_check() const;

@@ -27,7 +27,7 @@ const DatasetTable stacked_table{
 
 namespace {
 
-/// What all points of a sweep have, in one dataset with the axes of the sweep in front. Values come
+/// Holds what all points of a sweep have in one dataset, the axes of the sweep in front. Values come
 /// point by point, in the order of the points, and are written by whole chunks of some 64 kB: no
 /// more than that is in memory, or one point's.
 class StackedDataset {
@@ -39,7 +39,7 @@ class StackedDataset {
   StackedDataset(ResultFile& file, const CollectedDataset& of_point, const std::vector<Axis>& grid,
                  const std::vector<std::size_t>& extents);
 
-  /// Of the next point.
+  /// Takes the values of the next point.
   void add(const Held& values);
   void add(double value) { add(std::vector{value}); }
   /// The next point has none: 0.
