@@ -4,10 +4,8 @@
 #include <sstream>
 
 #include "apps/command/subcommands.h"
-#include "apps/fit/fit_comparison.h"
 #include "apps/fit/fit_summary.h"
 #include "apps/fit/measurement_file.h"
-#include "apps/fit/plan_summary.h"
 #include "apps/fit/search_journal.h"
 #include "apps/sweep/varied_points.h"
 #include "core/error.h"

@@ -4,12 +4,67 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/error.h"
+#include "core/result/guarded_read.h"
+#include "core/result/result_reader.h"
 #include "mc/fit/fit_datasets.h"
 #include "mc/fit/fit_report.h"
 
 namespace flatspeckle::apps {
 
 namespace {
+
+struct ComparedFit {
+  std::string path, scatterer;
+  std::vector<double> measured;
+  double chi_squared = 0, parameters = 0;
+
+  double freedom() const { return static_cast<double>(measured.size()) - parameters; }
+  double information() const { return chi_squared + 2 * parameters; }
+};
+
+/// The word after a key in a configuration.
+std::string word_of(const std::string& config, const std::string& key) {
+  const std::string start = key + " = \"";
+  const auto found = config.find(start);
+  if (found == std::string::npos) return "";
+  const auto first = found + start.size();
+  return config.substr(first, config.find('"', first) - first);
+}
+
+ComparedFit fit_of(const std::string& path) {
+  const ResultReader file(path);
+  if (!file.has("estimate") || !file.has("measured") || !file.has_attribute("/", "chi_squared"))
+    throw InputError("compare", path, "is no result of fit");
+  ComparedFit fit;
+  fit.path = path;
+  fit.scatterer = word_of(file.attribute<std::string>("/", "config"), "scatterer");
+  fit.measured = file.dataset<double>("measured");
+  fit.chi_squared = file.attribute<double>("/", "chi_squared");
+  fit.parameters = static_cast<double>(file.dataset<double>("estimate").size());
+  return fit;
+}
+
+/// Of chi^2 that is as large or larger, by Wilson's and Hilferty's cube root.
+double chance(double chi_squared, double freedom) {
+  if (freedom < 1) return 1;
+  const double width = 2 / (9 * freedom),
+               normal = (std::cbrt(chi_squared / freedom) - 1 + width) / std::sqrt(width);
+  return std::erfc(normal / std::sqrt(2)) / 2;
+}
+
+using Eigen::Index;
+
+void print_growth(const mc::PlanTask& task, const char* what, const std::vector<double>& angles,
+                  const Eigen::MatrixXd& growth) {
+  std::printf("without %-8s errors are larger by\n%-12s", what, "");
+  for (const auto& free : task.free) std::printf(" %14s", free.key.c_str());
+  for (Index i = 0; i < growth.rows(); ++i) {
+    std::printf("\n%-12.6g", angles[static_cast<std::size_t>(i)]);
+    for (Index j = 0; j < growth.cols(); ++j) std::printf(" %14.3g", growth(i, j));
+  }
+  std::puts("");
+}
 
 void print_correlations(const mc::FitTask& task, const mc::MediumFit& fit) {
   constexpr double strong = 0.9;
@@ -52,6 +107,50 @@ void print_parameters(const mc::FitTask& task, const mc::MediumFit& fit) {
 }
 
 }  // namespace
+
+void print_comparison(const std::vector<std::string>& paths) {
+  std::vector<ComparedFit> fits;
+  for (const std::string& path : paths) {
+    fits.push_back(guarded_read(path, [&] { return fit_of(path); }));
+    if (fits.back().measured != fits.front().measured)
+      throw InputError("compare", path, "fits other measurements than " + paths.front());
+  }
+  std::ranges::sort(fits, {}, &ComparedFit::information);
+  double sum = 0;
+  const auto weight = [&](const ComparedFit& fit) {
+    return std::exp((fits.front().information() - fit.information()) / 2);
+  };
+  for (const ComparedFit& fit : fits) sum += weight(fit);
+  std::printf("%-28s %-12s %10s %10s %10s %10s %10s\n", "fit", "scatterer", "parameters", "chi^2",
+              "freedom", "chance", "weight");
+  for (const ComparedFit& fit : fits)
+    std::printf("%-28s %-12s %10g %10.4g %10g %10.2g %10.2g\n", fit.path.c_str(),
+                fit.scatterer.c_str(), fit.parameters, fit.chi_squared, fit.freedom(),
+                chance(fit.chi_squared, fit.freedom()), weight(fit) / sum);
+}
+
+void print_plan(const mc::PlanTask& task, const mc::FitPlan& plan) {
+  std::printf("%-16s %12s %14s %20s\n", "parameter", "value", "least error", "patterns to 1 %");
+  for (std::size_t i = 0; i < task.free.size(); ++i) {
+    const auto j = static_cast<Index>(i);
+    std::printf("%-16s %12.6g %14.2g %20.2g\n", task.free[i].key.c_str(), plan.values[j],
+                plan.errors[j], plan.patterns_to_percent[j]);
+  }
+  std::printf("from %g independent patterns of each view; condition %.3g\n", task.patterns,
+              plan.condition);
+  if (plan.views.size() > 1) print_growth(task, "view", plan.views, plan.without_view);
+  if (plan.tilts.size() > 1) print_growth(task, "tilt", plan.tilts, plan.without_tilt);
+}
+
+void print_plans(const mc::PlanTask& task, const std::vector<mc::PlanPoint>& points) {
+  std::printf("independent patterns of each view to 1 %%\n%-36s", "");
+  for (const auto& free : task.free) std::printf(" %14s", free.key.c_str());
+  for (const mc::PlanPoint& point : points) {
+    std::printf("\n%-36s", point.name.c_str());
+    for (const double patterns : point.plan.patterns_to_percent) std::printf(" %14.2g", patterns);
+  }
+  std::puts("");
+}
 
 void print_fit(const mc::FitTask& task, const mc::MediumFit& fit) {
   print_parameters(task, fit);

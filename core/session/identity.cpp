@@ -1,11 +1,31 @@
 #include "core/session/identity.h"
 
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <set>
 #include <sstream>
-
-#include "core/result/file_checksum.h"
+#include <zlib.h>
 
 namespace flatspeckle {
+
+namespace {
+
+/// CRC-32 of all bytes of a file; 0 where it cannot be read.
+std::uint32_t file_checksum(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::array<char, 1 << 16> part;
+  uLong checksum = 0;
+  do {
+    file.read(part.data(), part.size());
+    checksum = crc32_z(checksum, reinterpret_cast<const unsigned char*>(part.data()),
+                       static_cast<z_size_t>(file.gcount()));
+  } while (file);
+  return static_cast<std::uint32_t>(checksum);
+}
+
+}  // namespace
 
 std::string first_difference(const std::string& there, const std::string& here) {
   std::istringstream ours(here), lines(there);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -10,14 +11,32 @@
 #include "core/keys/keys.h"
 #include "core/result/provenance.h"
 #include "core/result/result_file.h"
+#include "core/run/interrupt.h"
 #include "core/run/runner.h"
 #include "core/run/stopwatch.h"
 #include "core/session/aside.h"
 #include "core/session/exit_status.h"
-#include "core/session/output_lock.h"
 #include "core/session/run_settings.h"
 
 namespace flatspeckle {
+
+/// Keeps an output to one process at a time, by a lock on .NAME.lock beside it that ends with the
+/// process however that ends. Where the file system has no locks there is none.
+class OutputLock {
+ public:
+  /// Throws InputError, which names the process that has the output.
+  explicit OutputLock(const std::filesystem::path& out);
+  OutputLock(const OutputLock&) = delete;
+  OutputLock& operator=(const OutputLock&) = delete;
+  ~OutputLock();
+
+ private:
+  bool take(const std::filesystem::path& out);
+
+  std::filesystem::path path_;
+  std::optional<RemovedIfEnded> removed_;
+  int descriptor_ = -1;
+};
 
 class ResultReader;
 

@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "core/result/block_file.h"
+#include "core/session/journal.h"
 
 namespace flatspeckle::test_block_file {
 

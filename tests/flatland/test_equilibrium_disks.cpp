@@ -6,7 +6,6 @@
 #include "core/error.h"
 #include "flatland/media/structure_factor.h"
 #include "flatland/placement/equilibrium_disks.h"
-#include "flatland/placement/event_chain.h"
 #include "flatland/placement/placement.h"
 #include "periodic_disks.h"
 #include "tests/statistics.h"

@@ -3,7 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "flatland/media/structure_factor.h"
-#include "flatland/placement/event_chain.h"
+#include "flatland/placement/equilibrium_disks.h"
 #include "periodic_disks.h"
 
 namespace flatspeckle::tests::test_event_chain {

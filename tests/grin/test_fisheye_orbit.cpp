@@ -7,7 +7,7 @@
 #include "grin/rays/connections/connection_trial.h"
 #include "grin/rays/connections/geometric_spreading.h"
 #include "grin/rays/marching/ray_step.h"
-#include "grin/render/curved/fisheye_orbit.h"
+#include "grin/render/curved/fisheye_rays.h"
 #include "grin/render/curved/ray_field.h"
 
 namespace flatspeckle::grin::test_fisheye_orbit {

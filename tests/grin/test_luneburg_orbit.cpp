@@ -5,7 +5,7 @@
 
 #include "bench/scenes/random_fields.h"
 #include "grin/rays/connections/connection_trial.h"
-#include "grin/render/curved/luneburg_orbit.h"
+#include "grin/render/curved/luneburg_rays.h"
 #include "grin/render/curved/ray_field.h"
 #include "tests/grin/ray_tests.h"
 

@@ -7,10 +7,10 @@
 #include "bench/scenes/meshes.h"
 #include "core/error.h"
 #include "core/numbers/random.h"
+#include "grin/rays/marching/ray_jump.h"
 #include "grin/rays/marching/trace.h"
-#include "grin/rays/surfaces/bernstein.h"
-#include "grin/rays/surfaces/curvature.h"
 #include "grin/rays/surfaces/mesh_distance.h"
+#include "grin/rays/surfaces/spline_cell.h"
 #include "grin/rays/surfaces/straight_way.h"
 
 namespace flatspeckle::grin::tests::test_mesh_surface {

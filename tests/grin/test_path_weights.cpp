@@ -8,7 +8,6 @@
 #include "core/numbers/random.h"
 #include "grin/render/flights/space.h"
 #include "grin/render/transport/beam_join.h"
-#include "grin/render/transport/path_join.h"
 
 namespace flatspeckle::grin::tests::test_path_weights {
 

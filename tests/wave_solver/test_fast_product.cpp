@@ -8,7 +8,6 @@
 #include "reference.h"
 #include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/sums/fast_product.h"
-#include "wave_solver/sums/ring_product.h"
 
 namespace flatspeckle::wave::test_fast_product {
 

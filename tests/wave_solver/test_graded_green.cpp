@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "core/numbers/hankel_array.h"
-#include "wave_solver/graded/graded_green.h"
+#include "wave_solver/graded/graded_fields.h"
 
 namespace flatspeckle::wave::test_graded_green {
 

@@ -29,7 +29,7 @@ const DatasetTable cluster_table{
 
 namespace {
 
-// w_n of cluster_t_matrix.h, of each mode.
+// w_n of cluster_equations.h, of each mode.
 std::vector<double> wave_sizes(const ClusterTMatrix& cluster) {
   std::vector<double> sizes;
   for (const Mode& mode : cluster.modes)

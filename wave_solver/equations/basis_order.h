@@ -11,7 +11,7 @@ namespace flatspeckle::wave {
 /// T_n of every scatterer for n = 0 .. its basis order.
 ///
 /// The order is the one at which the pairs that a disk forms with the closest neighbours of every
-/// kind (neighbours.h), each solved by itself (pair_response.h), have converged: with beta_n its
+/// kind (neighbours.h), each solved by itself, have converged: with beta_n its
 /// coefficients under plane waves and F the root mean square of its amplitude sum T_n e^{in theta},
 ///   sum beta_n^2 + sum beta_n |T_n|^(1/2) |H_n(k r)| <= tolerance F / safety
 /// over the orders left out; r is the distance of the nearest near-field sensor. A sensor on the

@@ -2,15 +2,72 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "core/error.h"
+#include "core/keys/number_text.h"
 #include "wave_solver/dense/columns.h"
 #include "wave_solver/dense/dense_factor.h"
 
 namespace flatspeckle::wave {
 
 namespace {
+
+constexpr double below_rounding = -38;  // of a logarithm
+constexpr Complex imaginary{0, 1};
+
+/// cot z, tan(z / 2) and (z / sin z)^(1/2), the one that is 1 at z = 0: from its values above the
+/// real axis, where it has no cut.
+struct Sines {
+  Complex cotangent, half_tangent, root;
+
+  explicit Sines(Complex z) {
+    const bool below = z.imag() < 0;
+    if (below) z = std::conj(z);
+    z.imag() < 1 ? from_sine(z) : from_exponential(z);
+    if (!below) return;
+    cotangent = std::conj(cotangent);
+    half_tangent = std::conj(half_tangent);
+    root = std::conj(root);
+  }
+
+ private:
+  void from_sine(Complex z) {
+    const Complex sine = std::sin(z);
+    cotangent = std::cos(z) / sine;
+    half_tangent = std::tan(0.5 * z);
+    root = std::sqrt(z / sine);
+    if (z.real() > std::numbers::pi) from_exponential(z);  // beyond the cut of this root
+  }
+  void from_exponential(Complex z) {
+    const Complex turn = std::exp(imaginary * z), square = turn * turn;
+    cotangent = imaginary * (square + 1.0) / (square - 1.0);
+    half_tangent = -imaginary * (turn - 1.0) / (turn + 1.0);
+    root = std::sqrt(2.0 * z / imaginary) * std::exp(0.5 * imaginary * z) / std::sqrt(1.0 - square);
+  }
+};
+
+/// sigma of the direct ray of a parabolic guide: the least root of |v(0)|^2 = n^2. Newton's method
+/// from below rises to it.
+std::optional<double> sigma_in_guide(const IndexField& field, Vec2 p, Vec2 q) {
+  const double deep = q.z - p.z, square = field.square(p);
+  const double most = std::sqrt(std::max({square, field.square(q), field.origin * field.origin}));
+  double sigma = std::hypot(deep, q.x - p.x) / most;
+  for (int step = 0; step < 100; ++step) {
+    const double angle = field.alpha * sigma, sine = std::sin(angle), cosine = std::cos(angle);
+    if (!(angle < std::numbers::pi)) return std::nullopt;
+    const double half = std::sin(angle / 2), moved = q.x - p.x + 2 * p.x * half * half;
+    const double across = field.alpha * moved / sine, along = deep / sigma;
+    const double slope = 2 * across * field.alpha * (field.alpha * p.x - across * cosine / sine) -
+                         2 * along * along / sigma;
+    if (!(slope < 0)) return std::nullopt;
+    const double excess = across * across + along * along - square, next = sigma - excess / slope;
+    if (std::abs(next - sigma) < 1e-9 * sigma) return next;  // the contour may be a little off
+    sigma = next;
+  }
+  return std::nullopt;
+}
 
 std::vector<Vec2> sources_of(const CovarianceRequest& request) {
   if (!request.lights.all(Light::Kind::point))
@@ -45,6 +102,74 @@ std::vector<T> joined(std::vector<T> list, const std::vector<T>& rest) {
 }
 
 }  // namespace
+
+GradedGreen::GradedGreen(const IndexField& field, double k, double longest) : field_(field), k_(k) {
+  if (!field.is_quadratic())
+    throw InputError("index_field", field.describe(),
+                     "has no exact solver; take linear or parabolic ones");
+  constexpr double fine = 0.04, most = 40, turn = 0.8;
+  step_ = std::min(fine, 0.4 / std::sqrt(k * longest));
+  for (double u = 0; u < most; u += step_) {
+    const double tanh = std::tanh(u);
+    time_.push_back(std::exp(Complex(u, turn * tanh)));
+    weight_.push_back(Complex(step_, step_ * turn * (1 - tanh * tanh)));
+  }
+}
+
+std::optional<double> GradedGreen::sigma(Vec2 p, Vec2 q) const {
+  if (field_.kind == IndexField::Kind::parabolic) return sigma_in_guide(field_, p, q);
+  const Vec2 way = q - p;
+  const double square = dot(way, way), mean = (field_.square(p) + field_.square(q)) / 2,
+               root = mean * mean - dot(field_.slope, field_.slope) * square / 4;
+  if (!(root > 0 && mean > 0)) return std::nullopt;
+  return std::sqrt(2 * square / (mean + std::sqrt(root)));
+}
+
+void GradedGreen::refuse(Vec2 p, Vec2 q) const {
+  const auto text = [](Vec2 x) { return '(' + number_text(x.x) + ", " + number_text(x.z) + ')'; };
+  throw InputError("index_field", field_.describe(),
+                   "bends so much that between " + text(p) + " and " + text(q) +
+                       " no direct wave is apart from what comes back; take a weaker one, or a "
+                       "smaller box with its ends nearer");
+}
+
+Complex GradedGreen::operator()(Vec2 p, Vec2 q) const {
+  const auto along = sigma(p, q);
+  if (!along) refuse(p, q);
+  const double t0 = *along / (2 * k_);
+  const bool guide = field_.kind == IndexField::Kind::parabolic;
+  const Vec2 way = q - p;
+  const double mean = (field_.square(p) + field_.square(q)) / 2,
+               force = k_ * k_ * length(field_.slope);
+  const double across = guide ? way.z * way.z : dot(way, way),
+               square = guide ? field_.origin * field_.origin : mean;
+  const double near = across / (4 * t0), far = k_ * k_ * square * t0,
+               cube = guide ? 0 : force * force * t0 * t0 * t0 / 12;
+  const double omega = k_ * field_.alpha;
+  // The exponent, and what stands before it.
+  const auto value = [&](Complex t, double& real) {
+    Complex power = imaginary * (near / t + far * t - cube * t * t * t), before = 1;
+    if (guide) {
+      const Sines sines(2 * omega * t0 * t);
+      power += imaginary * (omega / 2) *
+               (way.x * way.x * sines.cotangent - 2 * p.x * q.x * sines.half_tangent);
+      before = sines.root;
+    }
+    real = power.real();
+    return before * std::exp(power);
+  };
+  Complex sum = 0;
+  for (const bool up : {true, false}) {
+    double before = 1, real = 0;
+    for (std::size_t j = up ? 0 : 1; j < time_.size(); ++j) {
+      sum += weight_[j] * value(up ? time_[j] : 1.0 / time_[j], real);
+      if (real < below_rounding) break;
+      if (real > before + 1e-9) refuse(p, q);
+      before = real;
+    }
+  }
+  return sum / (4 * std::numbers::pi);
+}
 
 const DatasetTable graded_table{
     "solve in a graded medium",

@@ -26,7 +26,7 @@ struct Diagnosis {
   /// ||b - T(a + S b)|| / ||T a||, over all lights (C10); of many an estimate (columns.h)
   double residual = -1;
   double condition = -1;          ///< of the scaled matrix, in the Frobenius norm (an estimate)
-  double boundary_residual = -1;  ///< see boundary_residual.h
+  double boundary_residual = -1;  ///< of the fields at the rims (wave_solution.cpp)
 };
 
 /// beta under unit plane waves.

@@ -12,7 +12,7 @@
 #include "grin/media/scattering/free_flight.h"
 #include "grin/media/scattering/phase_function.h"
 #include "grin/render/flights/space.h"
-#include "mc/paths/walk/bounded_stretched_flight.h"
+#include "mc/paths/walk/first_scatterer.h"
 
 namespace flatspeckle::bench {
 

@@ -1,20 +1,69 @@
 #include "grin/design/goals/screen_aim.h"
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <numeric>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include <Eigen/Geometry>
 
+#include "core/error.h"
+#include "core/keys/number_text.h"
 #include "grin/design/goals/even_points.h"
 #include "grin/design/goals/passage.h"
-#include "grin/design/goals/picture_file.h"
+#include "grin/design/goals/picture_goal.h"
 #include "grin/design/goals/solid_hull.h"
 #include "grin/media/geometry/vector_values.h"
 
 namespace flatspeckle::grin::design {
 
 namespace {
+
+std::vector<double> numbers_of(std::string line, const std::string& where) {
+  std::ranges::replace(line, ',', ' ');
+  std::istringstream text(line);
+  std::vector<double> numbers;
+  for (std::string word; text >> word;) {
+    const auto value = read_number(word);
+    if (!value || !(*value >= 0 && *value <= 1e50))
+      throw InputError(where + ": '" + word + "' must be a number from 0 to 1e50");
+    numbers.push_back(*value);
+  }
+  return numbers;
+}
+
+/// A picture of a file of numbers, a line for each row, with commas or spaces between. Throws
+/// InputError for one that is not square, has fewer than 4 rows, is dark or holds anything else
+/// than numbers from 0 to 1e50.
+Picture read_picture(const std::string& path, double width) {
+  std::ifstream file(path);
+  if (!file) throw InputError("pictures", path, "cannot be read");
+  Picture picture{width, 0, {}};
+  std::size_t rows = 0, columns = 0, number = 0;
+  for (std::string line; std::getline(file, line);) {
+    ++number;
+    const auto row = numbers_of(line, path + ", line " + std::to_string(number));
+    if (row.empty()) continue;
+    if (rows++ == 0) columns = row.size();
+    if (row.size() != columns)
+      throw InputError("pictures", path,
+                       "must have rows of one length; line " + std::to_string(number) + " has " +
+                           std::to_string(row.size()) + " numbers, the first row " +
+                           std::to_string(columns));
+    picture.values.insert(picture.values.end(), row.begin(), row.end());
+  }
+  if (rows != columns || rows < 4 || rows > 4096)
+    throw InputError("pictures", path,
+                     "must be a square of 4 to 4096 rows of numbers; has " + std::to_string(rows) +
+                         " rows of " + std::to_string(columns));
+  if (!(std::ranges::max(picture.values) > 0))
+    throw InputError("pictures", path, "must not be all dark");
+  picture.pixels = static_cast<int>(rows);
+  return picture;
+}
 
 /// To the right and up on a screen, for who looks along the light with y upwards (light along y:
 /// with x to the right).

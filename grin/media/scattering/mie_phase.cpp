@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/error.h"
 #include "core/keys/number_text.h"
@@ -10,6 +11,57 @@
 namespace flatspeckle::grin {
 
 namespace {
+
+/// Beyond it psi_n(z) / xi_n(z) is below rounding.
+int last_order(double size) {
+  return static_cast<int>(size + 8 * std::cbrt(size)) + 12;
+}
+
+/// psi_{n+1}(z) / psi_n(z), n = 0 .. last, downwards: (n + 1)/z less the logarithmic derivative.
+std::vector<Complex> psi_ratios(Complex z, int last) {
+  std::vector<Complex> ratios(static_cast<std::size_t>(last) + 1);
+  Complex ratio = 0;
+  for (int n = std::max(last, last_order(std::abs(z))) + 1; n > 0; --n) {
+    ratio = 1.0 / ((2.0 * n + 1) / z - ratio);
+    if (n - 1 <= last) ratios[static_cast<std::size_t>(n) - 1] = ratio;
+  }
+  return ratios;
+}
+
+/// psi_n(x) = x j_n(x), n = 0 .. last, by Miller's algorithm: sum (2 n + 1) j_n^2 = 1.
+std::vector<double> psi(double x, int last) {
+  constexpr double large = 1e100;
+  const int start = std::max(last, last_order(x)) + 12;
+  std::vector<double> f(static_cast<std::size_t>(start) + 1);
+  double above = 0, here = f.back() = 1 / large;
+  for (int n = start; n > 0; --n) {
+    above = std::exchange(here, (2.0 * n + 1) / x * here - above);
+    f[static_cast<std::size_t>(n) - 1] = here;
+    if (std::abs(here) < large) continue;
+    for (double* value : {&above, &here}) *value /= large;
+    for (auto i = static_cast<std::size_t>(n) - 1; i < f.size(); ++i) f[i] /= large;
+  }
+  double squares = 0;
+  for (std::size_t n = 0; n < f.size(); ++n)
+    squares += (2 * static_cast<double>(n) + 1) * f[n] * f[n];
+  const double j0 = std::sin(x) / x, j1 = (j0 - std::cos(x)) / x,
+               sign = std::abs(f[0]) > std::abs(f[1]) ? f[0] * j0 : f[1] * j1,
+               scale = std::copysign(x / std::sqrt(squares), sign);
+  f.resize(static_cast<std::size_t>(last) + 1);
+  for (double& value : f) value *= scale;
+  return f;
+}
+
+/// xi_n(x) = x h_n(x) of waves that leave, upwards.
+std::vector<Complex> xi(double x, const std::vector<double>& psi) {
+  std::vector<Complex> values;
+  double before = std::sin(x), eta = -std::cos(x);  // x y_{-1}, x y_0
+  for (std::size_t n = 0; n < psi.size(); ++n) {
+    values.emplace_back(psi[n], eta);
+    before = std::exchange(eta, (2 * static_cast<double>(n) + 1) / x * eta - before);
+  }
+  return values;
+}
 
 using std::numbers::pi;
 
@@ -45,6 +97,70 @@ double unpolarized(const MieSphere& sphere, double cosine) {
 }
 
 }  // namespace
+
+MieSphere::MieSphere(double size, Complex index)
+    : size_(size), index_(index), coefficients_(coefficients()) {
+  const auto magnitude = [](const Coefficients& c) { return std::abs(c.a) + std::abs(c.b); };
+  constexpr double rounding = 1e-18;
+  double largest_one = 0;
+  for (const Coefficients& c : coefficients_) largest_one = std::max(largest_one, magnitude(c));
+  while (!coefficients_.empty() && magnitude(coefficients_.back()) <= rounding * largest_one)
+    coefficients_.pop_back();
+  sum();
+}
+
+/// With r_n = psi_{n+1}(mx) / psi_n(mx):
+///   a_n = (((n + 1)/x (m - 1/m) + r_n) psi_n - m psi_{n+1}) / (the same of xi),
+///   b_n = (m r_n psi_n - psi_{n+1}) / (the same of xi).
+std::vector<MieSphere::Coefficients> MieSphere::coefficients() const {
+  if (index_ == 1.0) return {};
+  const int last = last_order(size_);
+  const auto inside = psi_ratios(index_ * size_, last);
+  const auto regular = psi(size_, last + 1);
+  const auto leaving = xi(size_, regular);
+  std::vector<Coefficients> list;
+  for (int n = 1; n <= last; ++n) {
+    const auto i = static_cast<std::size_t>(n);
+    const Complex of_a = (n + 1) / size_ * (index_ - 1.0 / index_) + inside[i],
+                  of_b = index_ * inside[i];
+    list.push_back({(of_a * regular[i] - index_ * regular[i + 1]) /
+                        (of_a * leaving[i] - index_ * leaving[i + 1]),
+                    (of_b * regular[i] - regular[i + 1]) / (of_b * leaving[i] - leaving[i + 1])});
+  }
+  return list;
+}
+
+void MieSphere::sum() {
+  double extinction = 0, scattering = 0, cosine = 0;
+  for (std::size_t i = 0; i < coefficients_.size(); ++i) {
+    const auto& [a, b] = coefficients_[i];
+    const double n = static_cast<double>(i + 1);
+    extinction += (2 * n + 1) * (a + b).real();
+    scattering += (2 * n + 1) * (std::norm(a) + std::norm(b));
+    cosine += (2 * n + 1) / (n * (n + 1)) * (a * std::conj(b)).real();
+    if (i + 1 == coefficients_.size()) continue;
+    const auto& next = coefficients_[i + 1];
+    cosine += n * (n + 2) / (n + 1) * (a * std::conj(next.a) + b * std::conj(next.b)).real();
+  }
+  const double scale = 2 / (size_ * size_);
+  extinction_ = scale * extinction;
+  scattering_ = scale * scattering;
+  if (scattering > 0) mean_cosine_ = 2 * cosine / scattering;
+}
+
+MieSphere::Amplitudes MieSphere::amplitudes(double cosine) const {
+  Amplitudes found{};
+  double before = 0, pi = 1;  // of P_n^1 / sin: n - 1, n
+  for (std::size_t i = 0; i < coefficients_.size(); ++i) {
+    const auto& [a, b] = coefficients_[i];
+    const double n = static_cast<double>(i + 1), tau = n * cosine * pi - (n + 1) * before,
+                 share = (2 * n + 1) / (n * (n + 1));
+    found.s1 += share * (a * pi + b * tau);
+    found.s2 += share * (a * tau + b * pi);
+    before = std::exchange(pi, ((2 * n + 1) * cosine * pi - (n + 1) * before) / n);
+  }
+  return found;
+}
 
 MiePhase::MiePhase(const MieSphere& sphere) {
   Shape shape{sphere, {}, {0}};

@@ -1,15 +1,48 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <memory>
+#include <vector>
 
 #include "grin/rays/marching/step_curve.h"
 #include "grin/render/curved/ray_field.h"
-#include "grin/render/stage/flight_log.h"
+#include "grin/render/stage/flight.h"
+#include "grin/render/stage/part_medium.h"
 #include "grin/render/stage/stage.h"
 #include "grin/render/stage/straight_stage.h"
 
 namespace flatspeckle::grin {
+
+/// A stretch of a flight within one part.
+struct FlightLeg {
+  PathPoint start;
+  Vec3 direction;  ///< there, unit
+  double length;
+  double weight;  ///< of the flight, there
+};
+using FlightLog = std::vector<FlightLeg>;
+
+/// Calls use(x, arc length that x stands for times the light left there) for points of a leg that
+/// are at most `apart` from each other, evenly spaced from a random start: sums over them are
+/// integrals on average. x_at(s) is asked for increasing s.
+template <class At, class Use>
+void for_points(const FlightLeg& leg, const PartMedium& medium, double apart, RandomStream& random,
+                At x_at, const Use& use) {
+  const double count = std::max(1.0, std::ceil(leg.length / apart));
+  const double spacing = leg.length / count, offset = random.uniform();
+  const bool absorbs = !medium.scatters() && medium.mu_t() > 0;
+  const auto collide = [&] { return sample_free_flight(medium.majorant(), random.uniform()); };
+  double left = leg.weight;
+  double tentative = absorbs && medium.grid() ? collide() : std::numeric_limits<double>::infinity();
+  for (double i = 0; i < count; ++i) {
+    const double s = (i + offset) * spacing;
+    for (; tentative < s; tentative += collide()) left *= medium.lacking(x_at(tentative));
+    const bool is_even = absorbs && !medium.grid();
+    use(x_at(s), spacing * (is_even ? left * transmittance(medium.mu_t(), s) : left));
+  }
+}
 
 /// Which flights tell |J|, about half of their cost where rays are curved; joins always do.
 enum class Spreading { none, to_boundary, all };
@@ -58,7 +91,7 @@ class Space {
   };
   using NextFlight = std::function<std::optional<FlightStart>(int lane, const Flight*)>;
   void fly_side_by_side(const NextFlight& next) const;
-  /// Of a leg of a flight (flight_log.h).
+  /// Of a leg of a flight.
   template <class Use>
   void for_points(const FlightLeg& leg, double apart, RandomStream& random, const Use& use) const;
 

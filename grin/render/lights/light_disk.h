@@ -1,10 +1,45 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
+#include <numbers>
+
 #include "grin/render/endpoints/boundary_patch.h"
-#include "grin/render/lights/radial_profile.h"
 #include "grin/render/stage/stage.h"
 
 namespace flatspeckle::grin {
+
+enum class Spread { even, gaussian };
+
+/// A chance density over the plane that depends on the distance r from its middle: even within
+/// `radius`, or in proportion to exp(-2 r^2 / radius^2), cut off at 3 radii, beyond which 1.5e-8
+/// would be. Both end at `limit`.
+class RadialProfile {
+ public:
+  RadialProfile(Spread spread, double radius,
+                double limit = std::numeric_limits<double>::infinity())
+      : radius_(radius),
+        rim_(std::fmin(spread == Spread::even ? radius : 3 * radius, limit)),
+        decay_(spread == Spread::even ? 0 : 2 / (radius * radius)),
+        share_(-std::expm1(-decay_ * rim_ * rim_)) {}
+
+  bool is_even() const { return decay_ == 0; }
+  double radius() const { return radius_; }
+  double rim() const { return rim_; }
+  bool contains(double square) const { return square <= rim_ * rim_; }
+  /// r^2 that has this chance to be less; u in (0, 1).
+  double square(double u) const {
+    return is_even() ? u * rim_ * rim_ : -std::log1p(-u * share_) / decay_;
+  }
+  /// Per area, of r^2 within the rim.
+  double density(double square) const {
+    if (is_even()) return 1 / (std::numbers::pi * rim_ * rim_);
+    return decay_ * std::exp(-decay_ * square) / (std::numbers::pi * share_);
+  }
+
+ private:
+  double radius_, rim_, decay_, share_;
+};
 
 /// A disk inside the stage, or on its boundary, that shines to one side.
 class LightDisk {

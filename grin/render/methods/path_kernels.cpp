@@ -1,10 +1,23 @@
 #include "grin/render/methods/path_kernels.h"
 
 #include <numbers>
+#include <sstream>
 
 #include "grin/render/transport/bidirectional.h"
 
 namespace flatspeckle::grin {
+
+std::string RenderPlan::describe() const {
+  std::ostringstream text;
+  text << (curved ? "curved rays" : "straight rays") << "; "
+       << (scatters ? "scattering" : "no scattering") << "; "
+       << (absorbs ? "absorption" : "no absorption") << "; "
+       << (gridded ? "density grid" : "uniform media") << "; "
+       << (body ? "a body in the stage" : "a single medium") << "; "
+       << (timed ? "optical paths" : "steady state") << "; "
+       << (deep ? "importance in depth" : "no importance in depth");
+  return text.str();
+}
 
 namespace {
 

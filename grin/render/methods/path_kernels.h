@@ -2,16 +2,33 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/numbers/random.h"
 #include "grin/render/flights/space.h"
-#include "grin/render/stage/render_plan.h"
 #include "grin/render/transport/film.h"
 #include "grin/render/transport/join_promises.h"
 #include "grin/render/transport/transport.h"
 
 namespace flatspeckle::grin {
+
+/// What light transport in a scene has to do; stored with the result. Leaving out what a scene does
+/// not need never changes a result beyond rounding.
+struct RenderPlan {
+  bool curved = true;    ///< the index changes from point to point, not only at surfaces of bodies
+  bool scatters = true;  ///< some medium does
+  bool absorbs = true;   ///< some medium does; all that scatters is lossless without
+  bool gridded = true;   ///< some medium's density is a grid
+  bool body = true;      ///< one or more in the stage
+  bool timed = true;     ///< more than one bin of optical path
+  bool deep = true;      ///< light is split on its way to sensors deep behind a medium
+
+  bool operator==(const RenderPlan&) const = default;
+
+  /// For people, and for the result file.
+  std::string describe() const;
+};
 
 /// Light paths and as many sensor paths, added to a film; with `promises`, what each pair promised
 /// to add (Bidirectional) is collected too.

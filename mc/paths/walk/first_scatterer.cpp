@@ -2,13 +2,56 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <vector>
 
+#include "core/error.h"
 #include "mc/paths/walk/representatives.h"
 
 namespace flatspeckle::mc {
 
 namespace {
+
+using std::numbers::pi;
+
+/// Narrows a chord to low <= position + t speed <= high.
+void narrow(Chord& chord, double position, double speed, double low, double high) {
+  if (speed == 0) {
+    if (position < low || position > high) chord.leave = chord.enter;
+    return;
+  }
+  const double a = (low - position) / speed, b = (high - position) / speed;
+  chord.enter = std::max(chord.enter, std::min(a, b));
+  chord.leave = std::min(chord.leave, std::max(a, b));
+}
+
+/// Rounding must not take it out.
+Vec2 kept_inside(const Domain& box, Vec2 x) {
+  return {std::clamp(x.x, -box.width / 2, box.width / 2), std::clamp(x.z, 0.0, box.depth)};
+}
+
+Vec2 flown(const Domain& box, const Extinction& extinction, Vec2 origin, Vec2 w, const Chord& chord,
+           RandomStream& random) {
+  const double flight =
+      extinction.sample_flight(origin + chord.enter * w, w, chord.length(), random.uniform());
+  return kept_inside(box, origin + (chord.enter + flight) * w);
+}
+
+/// Half the box's extent along a unit vector; its middle is the box's.
+double half_extent(const Domain& box, Vec2 w) {
+  return (box.width * std::abs(w.x) + box.depth * std::abs(w.z)) / 2;
+}
+
+double gaussian_share(double low, double high, double sigma) {
+  const double scale = 1 / (std::numbers::sqrt2 * sigma);
+  return (std::erf(high * scale) - std::erf(low * scale)) / 2;
+}
+
+double sample_gaussian(RandomStream& random) {
+  const double radius = std::sqrt(-2 * std::log(random.uniform()));
+  return radius * std::cos(2 * pi * random.uniform());
+}
 
 /// Whether paths started for one source or beam serve the other.
 bool alike(const Light& a, const Light& b, double spacing, double wavelength) {
@@ -21,6 +64,117 @@ bool alike(const Light& a, const Light& b, double spacing, double wavelength) {
 }
 
 }  // namespace
+
+Chord chord_through(const Domain& box, Vec2 origin, Vec2 w, double least) {
+  Chord chord{least, std::numeric_limits<double>::max()};
+  narrow(chord, origin.x, w.x, -box.width / 2, box.width / 2);
+  narrow(chord, origin.z, w.z, 0, box.depth);
+  return chord;
+}
+
+PointRays::PointRays(const Domain& box, const Extinction& extinction, Vec2 source)
+    : box_(box), extinction_(extinction), source_(source), first_angle_(-pi), wedge_(2 * pi) {
+  const double half = box.width / 2;
+  const bool inside = std::abs(source.x) < half && source.z > 0 && source.z < box.depth;
+  if (inside) return;
+  const double middle = angle_of(Vec2{0, box.depth / 2} - source);
+  double low = 0, high = 0;
+  for (Vec2 corner : {Vec2{-half, 0}, {half, 0}, {-half, box.depth}, {half, box.depth}}) {
+    const Vec2 way = corner - source;
+    if (length(way) == 0) continue;
+    const double angle = std::remainder(angle_of(way) - middle, 2 * pi);
+    low = std::min(low, angle);
+    high = std::max(high, angle);
+  }
+  first_angle_ = middle + low;
+  wedge_ = high - low;
+}
+
+Vec2 PointRays::sample(RandomStream& random) const {
+  while (true) {  // rounding may let a ray along the wedge's rim miss the box
+    const Vec2 w = direction(first_angle_ + wedge_ * random.uniform());
+    const Chord chord = chord_through(box_, source_, w, 0);
+    if (chord.length() > 0) return flown(box_, extinction_, source_, w, chord, random);
+  }
+}
+
+double PointRays::density(Vec2 x) const {
+  const double r = length(x - source_);
+  const Vec2 w = arrival(x);
+  const Chord chord = chord_through(box_, source_, w, 0);
+  if (!(chord.length() > 0)) return 0;
+  return extinction_.flight_density(source_ + chord.enter * w, w, chord.length(), r - chord.enter) /
+         (r * wedge_);
+}
+
+Vec2 PointRays::arrival(Vec2 x) const {
+  const Vec2 way = x - source_;
+  return 1 / length(way) * way;
+}
+
+BeamRays::BeamRays(const Domain& box, const Extinction& extinction, const GaussianBeam& beam,
+                   double width)
+    : box_(box), extinction_(extinction), beam_(beam), sigma_(width / 2) {
+  const double middle = beam.across({0, box.depth / 2}),
+               half = half_extent(box, beam.across_axis());
+  low_ = middle - half;
+  high_ = middle + half;
+  nearest_ = std::max(0.0, std::abs(middle) - half);
+  share_ = gaussian_share(low_, high_, sigma_);
+}
+
+/// Gaussian between low and high, by rejection: of a Gaussian, or where little of it lies there, of
+/// a uniform number.
+double BeamRays::sample_across(RandomStream& random) const {
+  constexpr double little = 0.2;
+  while (true) {
+    if (share_ > little) {
+      const double across = sigma_ * sample_gaussian(random);
+      if (across > low_ && across < high_) return across;
+      continue;
+    }
+    const double across = low_ + (high_ - low_) * random.uniform();
+    const double exponent = (nearest_ * nearest_ - across * across) / (2 * sigma_ * sigma_);
+    if (std::log(random.uniform()) < exponent) return across;
+  }
+}
+
+Vec2 BeamRays::sample(RandomStream& random) const {
+  constexpr double anywhere = std::numeric_limits<double>::lowest();
+  while (true) {
+    const double across = sample_across(random);
+    const Vec2 origin = beam_.focus() + across * beam_.across_axis();
+    const Chord chord = chord_through(box_, origin, beam_.axis(), anywhere);
+    if (chord.length() > 0) return flown(box_, extinction_, origin, beam_.axis(), chord, random);
+  }
+}
+
+double BeamRays::density(Vec2 x) const {
+  constexpr double anywhere = std::numeric_limits<double>::lowest();
+  const double across = beam_.across(x);
+  const Vec2 origin = beam_.focus() + across * beam_.across_axis();
+  const Chord chord = chord_through(box_, origin, beam_.axis(), anywhere);
+  if (!(chord.length() > 0)) return 0;
+  const double deviation = across / sigma_;
+  const double gaussian = std::exp(-deviation * deviation / 2) / (std::sqrt(2 * pi) * sigma_);
+  return gaussian / share_ *
+         extinction_.flight_density(origin + chord.enter * beam_.axis(), beam_.axis(),
+                                    chord.length(), beam_.along(x) - chord.enter);
+}
+
+std::vector<BeamRays> beam_rays(const Domain& box, const Extinction& extinction,
+                                const GaussianBeam& beam) {
+  const double middle = beam.along({0, box.depth / 2}), half = half_extent(box, beam.axis());
+  const double narrowest = beam.width(std::max(0.0, std::abs(middle) - half)),
+               widest = beam.width(std::abs(middle) + half);
+  constexpr double alike = 1.3;
+  std::vector<BeamRays> rays{{box, extinction, beam, widest}};
+  if (widest > alike * narrowest) rays.emplace_back(box, extinction, beam, narrowest);
+  std::erase_if(rays, [](const BeamRays& some) { return some.misses(); });
+  if (rays.empty())
+    throw InputError("beam focused at x", beam.focus().x, "misses the medium; move it there");
+  return rays;
+}
 
 Lights representative_lights(const Scene& scene) {
   const double spacing = std::max(0.5 * (1 - std::abs(scene.medium.g)), 0.01);

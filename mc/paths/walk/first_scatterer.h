@@ -1,16 +1,103 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "core/numbers/random.h"
+#include "flatland/media/domain.h"
+#include "flatland/request/light.h"
 #include "flatland/scene/scene.h"
-#include "mc/paths/endpoint_factors/near_rays.h"
+#include "grin/media/scattering/free_flight.h"
+#include "mc/paths/endpoint_factors/extinction.h"
+#include "mc/paths/endpoint_factors/gaussian_beam.h"
 #include "mc/paths/endpoint_factors/profile_flight.h"
 #include "mc/paths/endpoint_factors/varying_scattering.h"
-#include "mc/paths/walk/bounded_stretched_flight.h"
 
 namespace flatspeckle::mc {
+
+/// As grin::StretchedFlight, of flights that stay inside. Without stretched ones the variance has
+/// no bound but the depth of the medium, from a pull of 1/2 on.
+class BoundedStretchedFlight {
+ public:
+  BoundedStretchedFlight(double mu_t, double longest, double pull)
+      : plain_{mu_t, longest}, pull_(pull) {}
+
+  double sample(double u) const {
+    if (pull_ <= 0) return plain_.sample(u);
+    return u < 0.5 ? stretched().sample(2 * u) : plain_.sample(2 * u - 1);
+  }
+  double density(double distance) const {
+    if (pull_ <= 0) return plain_.density(distance);
+    return (plain_.density(distance) + stretched().density(distance)) / 2;
+  }
+  /// Of a flight so long: the density of all flights over that of those sampled.
+  double weight(double distance) const {
+    if (pull_ <= 0) return plain_.probability();
+    return plain_.probability() * plain_.density(distance) / density(distance);
+  }
+
+ private:
+  grin::BoundedFlight stretched() const {
+    return {(1 - std::min(pull_, grin::StretchedFlight::most_pull)) * plain_.mu_t, plain_.longest};
+  }
+
+  grin::BoundedFlight plain_;
+  double pull_;
+};
+
+/// The part of a ray from an origin that lies in the medium.
+struct Chord {
+  double enter, leave;
+  double length() const { return leave - enter; }
+};
+/// Through a box, for enter >= least; no longer than 0 where the ray misses it.
+Chord chord_through(const Domain& box, Vec2 origin, Vec2 w, double least);
+
+/// First scatterers of a point source in a box or outside it: uniform in angle over what the box
+/// subtends, attenuated along the ray.
+class PointRays {
+ public:
+  PointRays(const Domain& box, const Extinction& extinction, Vec2 source);
+
+  Vec2 sample(RandomStream& random) const;
+  double density(Vec2 x) const;  ///< per area
+  Vec2 arrival(Vec2 x) const;
+
+ private:
+  Domain box_;
+  Extinction extinction_;
+  Vec2 source_;
+  double first_angle_, wedge_;
+};
+
+/// First scatterers of a beam in a box: Gaussian across, of the intensity's width at one distance
+/// from the focus, attenuated along the axis.
+class BeamRays {
+ public:
+  BeamRays(const Domain& box, const Extinction& extinction, const GaussianBeam& beam, double width);
+
+  /// Whether the box lies beyond two widths.
+  bool misses() const { return nearest_ > 4 * sigma_; }
+  Vec2 sample(RandomStream& random) const;
+  double density(Vec2 x) const;  ///< per area
+  Vec2 arrival(Vec2 x) const { return beam_.ray(x); }
+
+ private:
+  double sample_across(RandomStream& random) const;
+
+  Domain box_;
+  Extinction extinction_;
+  GaussianBeam beam_;
+  double sigma_, low_, high_;  ///< of the coordinate across; between them it meets the box
+  double nearest_;             ///< the least |coordinate across| of them
+  double share_;               ///< of the Gaussian that lies between them
+};
+
+/// Of the narrowest and the widest that the beam is in the box: together they cover it. Throws
+/// InputError for a beam that misses the box.
+std::vector<BeamRays> beam_rays(const Domain& box, const Extinction& extinction,
+                                const GaussianBeam& beam);
 
 /// Which of the request's lights paths are started for: so many that every light has one whose
 /// attenuation and phase function are close to its own. The rest need no density of their own.

@@ -1,13 +1,298 @@
 #include "mc/paths/walk/walks.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/numbers/random.h"
+#include "core/run/interrupt.h"
+#include "flatland/scene/scene.h"
+#include "grin/media/scattering/free_flight.h"
 #include "mc/paths/bent/graded_ends.h"
+#include "mc/paths/endpoint_factors/profile_flight.h"
 #include "mc/paths/endpoint_factors/space_scattering.h"
-#include "mc/paths/walk/path_walk.h"
+#include "mc/paths/endpoint_factors/varying_scattering.h"
+#include "mc/paths/walk/first_scatterer.h"
+#include "mc/paths/walk/graded_first.h"
+#include "mc/paths/walk/importance.h"
+#include "mc/paths/walk/path_scorer.h"
+#include "mc/paths/walk/plan.h"
 #include "mc/paths/walk/scene_scattering.h"
 
 namespace flatspeckle::mc {
 
 namespace {
+
+/// Walks from the lights through a scene (Bar et al. 2019) and gives what it finds to a scorer.
+/// Steps are cheap and scoring is not, so a contribution that promises little plays roulette first.
+/// Walkers split and die by what their depth is worth.
+///
+/// With reversed paths a path is weighed by the mean of the densities with which the walk would
+/// find it from either end. That is unbiased, because F + R does not change when a path is turned
+/// round, and no |R|^2 can outgrow its weight.
+template <typename Scattering>
+class PathWalk {
+  using Direction = typename Scattering::Direction;
+
+ public:
+  PathWalk(const Scene& scene, const Plan& plan, const Scattering& scattering)
+      : plan_(plan),
+        domain_(scene.domain),
+        medium_(scene.medium),
+        profile_(scene.profile.get()),
+        scattering_(scattering),
+        importance_(scene),
+        first_(make_first(scene)),
+        expected_view_(scene, view_ends(scene)) {}
+
+  /// To be called before a batch's first walk.
+  void begin(RandomStream& random) {
+    constexpr std::uint64_t steps_of_splitting = 5'000'000;  // five times what is planned
+    ticket_ = random.uniform();
+    last_splitting_ = steps_ + steps_of_splitting;
+  }
+
+  void walk(RandomStream& random, PathScorer& scorer) {
+    has_tally_ = scorer.has_tally();
+    const auto first = first_.sample(random);
+    if constexpr (bends<Scattering>) {
+      if (!first.hit) return;
+    }
+    const Vec2 x = first.x;
+    const Direction arrival = first.arrival;
+    if constexpr (varies<Scattering>) {
+      if (mu_s(x) == 0) return;
+    }
+    if (plan_.sampled_single) score_single(x, arrival, scorer);
+    start_ = local(scattering_, x).sample(arrival, random);
+    path_ = {x, start_, {}, {}, 0, true};
+    start_density_ = -1;
+    log_worth_first_ = std::max(importance_.log_worth(x.z), 0.0);
+    if (plan_.reversed) expected_first_ = expected(x, -start_);
+    const auto [length, weight] = first_flight(x, start_, random);
+    scorer.begin(x, start_, length);
+    const auto [end, w] = landed(x, start_, length);
+    follow({end, w, weight, 1}, random, scorer);
+    while (!waiting_.empty()) {
+      Walker walker = waiting_.back();
+      const bool last = --waiting_.back().copies == 0;
+      if (last) waiting_.pop_back();
+      scorer.take_up(last);
+      if (step(walker, random, scorer)) follow(walker, random, scorer);
+    }
+  }
+
+ private:
+  using First = std::conditional_t<bends<Scattering>, GradedFirst, FirstScatterer>;
+
+  First make_first(const Scene& scene) const {
+    if constexpr (bends<Scattering>)
+      return First(scene, scattering_);
+    else
+      return First(scene, plan_.weighted ? importance_.rise() : 0);
+  }
+
+  /// Weights in units of mu_s^2 / mu_t, that of B = 2.
+  struct Walker {
+    Vec2 x;
+    Direction arrival;
+    double weight;
+    std::uint32_t copies;
+  };
+
+  // Of the medium at a place.
+  double mu_s(Vec2 x) const {
+    if constexpr (varies<Scattering>) return profile_->mu_s(x);
+    return medium_.mu_s;
+  }
+  double albedo(Vec2 x) const {
+    if constexpr (varies<Scattering>) return profile_->albedo(x);
+    return medium_.albedo;
+  }
+
+  /// Its length and its weight. It stays inside: else most walks of a thin medium would find
+  /// nothing.
+  std::pair<double, double> first_flight(Vec2 x, Vec2 w, RandomStream& random) const {
+    if constexpr (bends<Scattering>) {
+      const grin::BoundedFlight flight{medium_.mu_t, scattering_.medium().inside(x, w)};
+      return {flight.sample(random.uniform()), flight.probability()};
+    }
+    const double edge = domain_.distance_to_edge(x, w);
+    if constexpr (varies<Scattering>) {
+      const ProfileFlight flight(*profile_, x, w, edge);
+      return {flight.sample(random.uniform()), flight.probability()};
+    }
+    const BoundedStretchedFlight flight{medium_.mu_t, edge, pull(x, w)};
+    const double length = flight.sample(random.uniform());
+    return {length, flight.weight(length)};
+  }
+
+  /// Where a flight ends, and its direction there.
+  std::pair<Vec2, Direction> landed(Vec2 x, const Direction& w, double length) const {
+    if constexpr (bends<Scattering>) {
+      const auto place = scattering_.medium().flown(x, w, length);
+      return place ? std::pair(place->x, place->w) : std::pair(x, w);
+    } else {
+      return {x + length * Vec2(w), w};
+    }
+  }
+
+  /// From where a walker has arrived, until it leaves, dies or splits.
+  void follow(Walker walker, RandomStream& random, PathScorer& scorer) {
+    do {
+      score(walker, scorer);
+      if (plan_.weighted && !reweigh(walker, random, scorer)) return;
+    } while (step(walker, random, scorer));
+  }
+
+  /// To the next scatterer; false if there is none.
+  bool step(Walker& walker, RandomStream& random, PathScorer& scorer) {
+    constexpr std::uint64_t between_looks = 4096;
+    if (++steps_ % between_looks == 0) stop_if_interrupted();
+    const Direction w = local(scattering_, walker.x).sample(walker.arrival, random);
+    if constexpr (bends<Scattering>) return fly_bent(walker, w, random, scorer);
+    const double edge = domain_.distance_to_edge(walker.x, w),
+                 flight = sample_flight(walker, w, edge, random);
+    if (flight >= edge) return false;
+    if (has_tally_) scorer.step(walker.x, walker.arrival, w, flight);
+    walker.x = walker.x + flight * Vec2(w);
+    walker.arrival = w;
+    return true;
+  }
+
+  bool fly_bent(Walker& walker, Vec2 w, RandomStream& random, PathScorer& scorer) const {
+    const double flight = grin::sample_free_flight(medium_.mu_t, random.uniform());
+    const auto place = scattering_.medium().flown(walker.x, w, flight);
+    if (!place) return false;
+    if (has_tally_) scorer.step(walker.x, walker.arrival, w, flight);
+    walker.x = place->x;
+    walker.arrival = place->w;
+    return true;
+  }
+
+  /// Where light dies out with depth, half of the flights towards what is worth more are stretched
+  /// (Dwivedi 1982): else rare long ones would carry most of the result.
+  double sample_flight(Walker& walker, Vec2 w, double edge, RandomStream& random) const {
+    if constexpr (varies<Scattering>)
+      return profile_->reach(walker.x, w, -std::log(random.uniform()), edge);
+    const double mu_t = medium_.mu_t;
+    if (plan_.weighted) {
+      if (const double gain = pull(walker.x, w); gain > 0) {
+        const double stretched = 1 - std::min(gain, grin::StretchedFlight::most_pull);
+        const bool stretch = random.uniform() < 0.5;
+        const double flight =
+            grin::sample_free_flight(stretch ? stretched * mu_t : mu_t, random.uniform());
+        walker.weight *= 2 / (1 + stretched * std::exp((1 - stretched) * mu_t * flight));
+        return flight;
+      }
+    }
+    return grin::sample_free_flight(mu_t, random.uniform());
+  }
+
+  /// How fast the worth grows in a direction, per mean free path.
+  double pull(Vec2 x, Vec2 w) const {
+    return plan_.weighted ? importance_.slope(x.z) * w.z / medium_.mu_t : 0;
+  }
+
+  /// The weight window: false if the walker died, or waits as several. Where depth promises more
+  /// than it gives, walkers would multiply for ever: splitting ends for the rest of the batch,
+  /// which depends on the past alone and so changes no mean.
+  bool reweigh(Walker& walker, RandomStream& random, PathScorer& scorer) {
+    walker.weight *= albedo(walker.x);
+    const double worth = walker.weight * importance(walker.x);
+    if (worth < 0.5) {
+      walker.weight /= worth;
+      return random.uniform() < worth;
+    }
+    if (worth < 2 || steps_ > last_splitting_) return true;
+    constexpr double most_copies = 1000;
+    const double copies = std::min(worth, most_copies);
+    walker.weight /= copies;
+    walker.copies = static_cast<std::uint32_t>(copies + random.uniform());
+    waiting_.push_back(walker);
+    scorer.keep();
+    return false;
+  }
+
+  /// Contributions that promise less than a score play systematic roulette: every so many of them,
+  /// measured in what they promise, one is taken for all.
+  void score(const Walker& walker, PathScorer& scorer) {
+    double promise = expected(walker.x, walker.arrival), backward_density = 0;
+    if (plan_.reversed) {
+      backward_density = first_.density(walker.x, -walker.arrival, scattering_);
+      if constexpr (varies<Scattering>) {  // flights end in the first scatterer, not in the last
+        const double mu_t = profile_->mu_t(walker.x);
+        backward_density *= mu_t > 0 ? profile_->mu_t(path_.first) / mu_t : 0;
+      }
+      const double forward = start_density();
+      promise =
+          (forward * promise + backward_density * expected_first_) / (forward + backward_density);
+    }
+    double weight = walker.weight;
+    if (!survives(promise * weight / plan_.score_level, weight)) return;
+    path_.last = walker.x;
+    path_.arrival = walker.arrival;
+    path_.weight =
+        mu_s(path_.first) * albedo(walker.x) * weight / (start_density() + backward_density);
+    scorer.multiple(path_);
+    path_.new_start = false;
+  }
+
+  /// A path of one scatterer, in the same units.
+  void score_single(Vec2 x, const Direction& light, PathScorer& scorer) {
+    double weight = mu_s(x) / first_.density(x);
+    if (plan_.single_roulette && albedo(x) > 0 &&
+        !survives(expected_view_(x, light) / (albedo(x) * plan_.score_level), weight))
+      return;
+    scorer.single(x, weight);
+  }
+
+  /// Systematic roulette.
+  bool survives(double chance, double& weight) {
+    if (chance >= 1) return true;
+    ticket_ += chance;
+    if (ticket_ < 1) return false;
+    ticket_ -= 1;
+    weight /= chance;
+    return true;
+  }
+
+  /// Of x relative to where the walk began, so that a deep beginning is not split at once.
+  double importance(Vec2 x) const {
+    constexpr double largest_log = 600;  // exp of it is finite
+    return std::exp(std::min(importance_.log_worth(x.z) - log_worth_first_, largest_log));
+  }
+
+  /// What a path that ends at x is likely to contribute, for a walker of usual weight there.
+  double expected(Vec2 x, const Direction& arrival) const {
+    const double value = expected_view_(x, arrival);
+    return plan_.weighted ? value * importance(x) : value;
+  }
+
+  /// Computed when it is first asked for: many walks never score.
+  double start_density() {
+    if (start_density_ < 0) start_density_ = first_.density(path_.first, start_, scattering_);
+    return start_density_;
+  }
+
+  const Plan& plan_;
+  Domain domain_;
+  const BulkMedium& medium_;
+  const MediumProfile* profile_;  ///< of a medium that varies
+  const Scattering& scattering_;
+  DiffusionImportance importance_;
+  First first_;
+  ExpectedContribution expected_view_;
+  std::vector<Walker> waiting_;
+  bool has_tally_ = false;
+  Direction start_;
+  Path path_;
+  double start_density_ = -1, log_worth_first_ = 0, expected_first_ = 0;
+  double ticket_ = 0;  ///< a score at every whole number
+  std::uint64_t steps_ = 0, last_splitting_ = 0;
+};
 
 template <typename Scattering>
 class ScatteringAtEnds final : public EndScattering {

@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "grin/media/scattering/mie_sphere.h"
+#include "grin/media/scattering/mie_phase.h"
 #include "mc/paths/dynamics/brownian.h"
 #include "mc/paths/estimators/gradient.h"
 #include "mc/slab/adding/space.h"

@@ -1,4 +1,4 @@
-#include "grin/rays/marching/ray_path.h"
+#include "grin/rays/marching/any_steps.h"
 
 namespace flatspeckle::grin {
 

@@ -1,4 +1,4 @@
-#include "mc/fit/task/field_sample.h"
+#include "mc/fit/task/measurement.h"
 
 #include <array>
 #include <cmath>
