@@ -5,7 +5,7 @@
 #include <set>
 
 #include "apps/command/subcommands.h"
-#include "apps/results/all_tables.h"
+#include "apps/results/datasets.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
 #include "core/result/guarded_read.h"

@@ -9,7 +9,6 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/command/key_lists.h"
-#include "apps/command/nearest_key.h"
 #include "apps/command/scene_file.h"
 #include "apps/command/subcommands.h"
 #include "apps/command/written_lengths.h"

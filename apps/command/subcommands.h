@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/command/command_line.h"
-#include "core/session/exit_status.h"
+#include "core/session/session.h"
 
 namespace flatspeckle::apps {
 

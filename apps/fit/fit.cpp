@@ -13,7 +13,7 @@
 #include "core/result/version.h"
 #include "core/session/session.h"
 #include "mc/fit/fit_datasets.h"
-#include "mc/fit/plan/plan_datasets.h"
+#include "mc/fit/plan/fit_plan.h"
 #include "mc/fit/task/fit_data.h"
 
 namespace flatspeckle::apps {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mc/fit/medium_fit.h"
-#include "mc/fit/plan/plan_datasets.h"
+#include "mc/fit/plan/fit_plan.h"
 
 namespace flatspeckle::apps {
 

@@ -33,17 +33,18 @@ Observable observable_of(const std::string& path, const Table& table) {
 }
 
 /// What a table's correlations are over.
-enum class Axis { none, tilt, delay, exposure };
+enum class CurveAxis { none, tilt, delay, exposure };
 const std::vector<std::string> axis_words = {"", "tilt", "delay", "exposure"};
 
-Axis axis_of(const Table& table, Observable observable) {
-  if (observable == Observable::squared_contrast) return Axis::exposure;
-  if (observable > Observable::intensity_correlation) return Axis::none;
-  return table.has("delay") ? Axis::delay : Axis::tilt;
+CurveAxis axis_of(const Table& table, Observable observable) {
+  if (observable == Observable::squared_contrast) return CurveAxis::exposure;
+  if (observable > Observable::intensity_correlation) return CurveAxis::none;
+  return table.has("delay") ? CurveAxis::delay : CurveAxis::tilt;
 }
 
 /// Throws for columns that nothing would read.
-void check_columns(const std::string& path, const Table& table, Observable observable, Axis axis) {
+void check_columns(const std::string& path, const Table& table, Observable observable,
+                   CurveAxis axis) {
   const std::string covariance = "covariance_";
   for (const std::string& name : table.names()) {
     const bool known = name == "error" || name == "light_angle" || name == "depth" ||
@@ -99,14 +100,16 @@ Eigen::MatrixXd covariance_of(const std::string& path, const Table& table) {
 /// view.
 class CurvesOfRows {
  public:
-  CurvesOfRows(const Table& table, Observable observable, Axis axis, const mc::MovingSpec& medium)
+  CurvesOfRows(const Table& table, Observable observable, CurveAxis axis,
+               const mc::MovingSpec& medium)
       : observable_(observable),
         axis_(axis),
         medium_(medium),
         lights_(column_or(table, "light_angle", 0)),
         views_(column_or(table, "view_angle", 0)),
-        at_(axis == Axis::none ? observable == Observable::intensity ? views_ : lights_
-                               : column_or(table, axis_words[static_cast<std::size_t>(axis)], 0)),
+        at_(axis == CurveAxis::none
+                ? observable == Observable::intensity ? views_ : lights_
+                : column_or(table, axis_words[static_cast<std::size_t>(axis)], 0)),
         depths_(column_or(table, "depth", medium.depth.value_or(0))) {}
 
   std::vector<Curve> curves() const {
@@ -116,7 +119,7 @@ class CurvesOfRows {
       add(found.back(), row);
     }
     for (Curve& curve : found)
-      if (axis_ == Axis::exposure)
+      if (axis_ == CurveAxis::exposure)
         curve.delays = mc::exposure_delays(curve.times);
       else
         curve.delays = curve.times;
@@ -127,7 +130,7 @@ class CurvesOfRows {
   bool joins(std::size_t row) const {
     if (depths_[row] != depths_[row - 1]) return false;
     const bool same_light = lights_[row] == lights_[row - 1];
-    if (axis_ != Axis::none) return same_light && views_[row] == views_[row - 1];
+    if (axis_ != CurveAxis::none) return same_light && views_[row] == views_[row - 1];
     return observable_ != Observable::intensity || same_light;
   }
 
@@ -138,14 +141,14 @@ class CurvesOfRows {
     curve.scene.view_angles = {views_[row]};
     if (!mc::is_flux(observable_)) curve.scene.light_angles = {lights_[row]};
     if (observable_ == Observable::intensity) curve.scene.view_angles.clear();
-    if (axis_ == Axis::tilt) curve.scene.covariance = "memory_effect";
+    if (axis_ == CurveAxis::tilt) curve.scene.covariance = "memory_effect";
     return curve;
   }
 
   /// The list that rows of a curve go into.
   std::vector<double>& list(Curve& curve) const {
-    if (axis_ == Axis::tilt) return curve.scene.tilts;
-    if (axis_ != Axis::none) return curve.times;
+    if (axis_ == CurveAxis::tilt) return curve.scene.tilts;
+    if (axis_ != CurveAxis::none) return curve.times;
     return observable_ == Observable::intensity ? curve.scene.view_angles
                                                 : curve.scene.light_angles;
   }
@@ -157,12 +160,12 @@ class CurvesOfRows {
   }
 
   Observable observable_;
-  Axis axis_;
+  CurveAxis axis_;
   const mc::MovingSpec& medium_;
   std::vector<double> lights_, views_, at_, depths_;
 };
 
-void check_times(const std::string& path, Axis axis, const std::vector<double>& times) {
+void check_times(const std::string& path, CurveAxis axis, const std::vector<double>& times) {
   for (const double time : times)
     if (!(time > 0))
       throw InputError("measurement", path,
@@ -194,11 +197,11 @@ Table telling(const std::string& path, const Table& table) {
 mc::Measurement measurement_of_values(const std::string& path, const Table& table,
                                       const mc::MovingSpec& medium) {
   const Observable observable = observable_of(path, table);
-  const Axis axis = axis_of(table, observable);
+  const CurveAxis axis = axis_of(table, observable);
   check_columns(path, table, observable, axis);
-  if (axis != Axis::none) {
+  if (axis != CurveAxis::none) {
     const auto at = table.column(axis_words[static_cast<std::size_t>(axis)]);
-    if (axis != Axis::tilt) check_times(path, axis, {at.begin(), at.end()});
+    if (axis != CurveAxis::tilt) check_times(path, axis, {at.begin(), at.end()});
   }
   if (table.has("depth") && medium.depth)
     throw InputError("depth", *medium.depth, path + " has depths of its own: leave the key out");

@@ -9,14 +9,13 @@
 #include "apps/command/experiment.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
-#include "core/numbers/memory.h"
+#include "core/numbers/address_space.h"
 #include "core/run/interrupt.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/imaging/blinking_datasets.h"
 #include "mc/imaging/imaging_datasets.h"
 #include "mc/imaging/media_statistics.h"
-#include "mc/imaging/picture_datasets.h"
-#include "mc/imaging/recovery/recovery_keys.h"
+#include "mc/imaging/recovery/recovery.h"
 
 namespace flatspeckle::apps {
 
@@ -329,7 +328,7 @@ void print_pictures(const mc::LineScene& line, const mc::ImagingTask& task,
 void print_moments(const mc::LineScene& line, const mc::ImagingTask& task,
                    const std::vector<mc::ImagedMedium>& media) {
   const mc::MeanOverMedia contrast = mc::mean_contrast(line.object, media),
-                     fourth = mc::mean_fourth_moment(media);
+                          fourth = mc::mean_fourth_moment(media);
   std::printf(
       "contrast %.4f +- %.2g (Gaussian: %.4f), E|u|^4/(E|u|^2)^2 %.3f +- %.2g, %.0f grains\n",
       contrast.value, contrast.error,
@@ -343,9 +342,9 @@ void print_sources(const mc::ImagingTask& task, const std::vector<mc::ImagedMedi
               contrast.found.error, contrast.expected);
   if (!task.blinking.unmixes) return;
   const mc::MeanOverMedia rate = mc::sources_success(media),
-                     count = mc::mean_over(media, 0, [](const auto&m) {
-                       return static_cast<double>(m.blinked.found.count.sources);
-                     });
+                          count = mc::mean_over(media, 0, [](const auto&m) {
+                            return static_cast<double>(m.blinked.found.count.sources);
+                          });
   std::printf(
       "%.3g sources by singular values; as sources all points found in %.3g +- %.2g of the media\n",
       count.value, rate.value, rate.error);

@@ -10,7 +10,7 @@
 #include "core/keys/number_text.h"
 #include "core/numbers/blas.h"
 #include "core/result/result_group.h"
-#include "flatland/request/triangle.h"
+#include "flatland/request/request.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/theory/allowance.h"
 #include "mc/theory/forward_lobe.h"

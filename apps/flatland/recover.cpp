@@ -11,8 +11,8 @@
 #include "core/keys/csv.h"
 #include "core/session/session.h"
 #include "mc/imaging/recovery/phase_retrieval.h"
+#include "mc/imaging/recovery/recovery.h"
 #include "mc/imaging/recovery/recovery_datasets.h"
-#include "mc/imaging/recovery/recovery_keys.h"
 #include "mc/imaging/unmixing/unmixing_datasets.h"
 
 namespace flatspeckle::apps {

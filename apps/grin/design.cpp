@@ -8,7 +8,7 @@
 #include "core/session/identity.h"
 #include "core/session/session.h"
 #include "grin/design/problem/design_datasets.h"
-#include "grin/design/problem/design_state_file.h"
+#include "grin/design/problem/designer.h"
 
 namespace flatspeckle::apps {
 

@@ -3,7 +3,6 @@
 #include <iostream>
 
 #include "apps/command/subcommands.h"
-#include "apps/results/all_tables.h"
 
 // The tables are declared here without the code beside which they stand: what is listed below must
 // not wait for all of it to be compiled.

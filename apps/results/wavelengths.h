@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/keys/keys.h"
-#include "flatland/media/index_table.h"
+#include "flatland/media/index_field.h"
 #include "flatland/placement/placement.h"
 
 namespace flatspeckle::apps {

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/result/run_state_file.h"
-#include "core/session/aside.h"
+#include "core/session/session.h"
 
 namespace flatspeckle::apps {
 

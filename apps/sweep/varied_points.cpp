@@ -4,7 +4,7 @@
 #include <set>
 #include <sstream>
 
-#include "apps/command/nearest_key.h"
+#include "apps/command/key_lists.h"
 #include "core/error.h"
 #include "core/keys/csv.h"
 #include "core/keys/number_text.h"

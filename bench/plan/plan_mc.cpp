@@ -7,7 +7,7 @@
 #include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
-#include "flatland/media/cell_density.h"
+#include "flatland/media/density_map.h"
 #include "flatland/media/layers.h"
 #include "mc/paths/dynamics/brownian.h"
 #include "mc/paths/dynamics/frequency_shifts.h"

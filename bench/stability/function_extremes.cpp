@@ -10,7 +10,6 @@
 #include "core/numbers/hankel_array.h"
 #include "core/numbers/phasor.h"
 #include "core/numbers/random.h"
-#include "core/numbers/scaled_bessel.h"
 #include "core/numbers/statistics.h"
 
 namespace flatspeckle::bench {

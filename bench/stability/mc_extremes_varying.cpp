@@ -5,7 +5,7 @@
 
 #include "bench/stability/extreme_rows.h"
 #include "bench/stability/mc_extremes.h"
-#include "flatland/media/cell_density.h"
+#include "flatland/media/density_map.h"
 #include "flatland/media/layers.h"
 #include "mc/paths/bent/graded_ends.h"
 #include "mc/paths/bent/linear_medium.h"

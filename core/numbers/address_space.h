@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <unistd.h>
 
 namespace flatspeckle {
 
@@ -18,5 +20,15 @@ bool address_space_holds(std::size_t bytes);
 /// the program where it cannot start one later. Throws InputError where their stacks, and what each
 /// of them allocates, do not fit.
 void require_address_space_of_threads(int threads);
+
+/// Bytes of memory that this machine has.
+inline double physical_memory() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+/// Of them, those that this process may have: `ulimit -v` may leave fewer.
+inline double usable_memory() {
+  return std::min(physical_memory(), address_space_left());
+}
 
 }  // namespace flatspeckle

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/numbers/mean_errors.h"
+#include "core/numbers/statistics.h"
 
 namespace flatspeckle {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
+#include "core/algebra/symmetric.h"
 
 namespace flatspeckle {
 
@@ -19,12 +19,11 @@ QuadratureRule gauss(int n, double beta, double total) {
     if (j + 1 < n)
       beside[j] = std::sqrt(4 * i * i * (i + beta) * (i + beta) / (s * s * (s * s - 1)));
   }
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-  solver.computeFromTridiagonal(diagonal, beside.head(n - 1));
+  const SymmetricEigen eigen = tridiagonal_eigen(diagonal, beside.head(n - 1));
   QuadratureRule rule;
   for (int j = 0; j < n; ++j) {
-    const double first = solver.eigenvectors()(0, j);
-    rule.node.push_back((1 + solver.eigenvalues()[j]) / 2);
+    const double first = eigen.vectors(0, j);
+    rule.node.push_back((1 + eigen.values[j]) / 2);
     rule.weight.push_back(total * first * first);
   }
   return rule;

@@ -6,7 +6,6 @@
 
 #include "core/contract.h"
 #include "core/error.h"
-#include "core/numbers/mean_errors.h"
 
 namespace flatspeckle {
 

@@ -18,8 +18,8 @@
 #include "core/contract.h"
 #include "core/error.h"
 #include "core/result/collected_result.h"
+#include "core/result/guarded_read.h"
 #include "core/result/hdf5_handle.h"
-#include "core/result/sealed_file.h"
 
 namespace flatspeckle {
 

@@ -92,7 +92,7 @@ class ResultFile {
   /// Puts the file at its path, replacing what is there. Throws IoError. Nothing can be written
   /// afterwards.
   void commit();
-  /// The same with a seal (core/result/sealed_file.h) at its end, for a file made in memory.
+  /// The same with a seal (guarded_read.h) at its end, for a file made in memory.
   void commit_sealed(Durable durable);
 
  private:

@@ -4,9 +4,7 @@
 #include <limits>
 #include <map>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-
+#include "core/algebra/symmetric.h"
 #include "core/run/stopwatch.h"
 
 namespace flatspeckle {
@@ -35,7 +33,7 @@ struct NormalEquations {
   VectorXd step(double damping) const {
     MatrixXd damped = matrix;
     damped.diagonal() *= 1 + damping;
-    return damped.ldlt().solve(descent);
+    return solve_symmetric(damped, descent);
   }
 
  private:
@@ -132,10 +130,8 @@ Information information(const BoundedLeastSquares& problem, const MatrixXd& jaco
 
 Information information_of(const BoundedLeastSquares& problem, const MatrixXd& fisher) {
   const VectorXd range = problem.upper - problem.lower;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(range.asDiagonal() * fisher *
-                                                       range.asDiagonal());
-  const VectorXd known = solver.eigenvalues();  // ascending
-  const MatrixXd& combinations = solver.eigenvectors();
+  const auto [known, combinations] =
+      symmetric_eigen(range.asDiagonal() * fisher * range.asDiagonal());
   const Index last = known.size() - 1;
   Information found;
   found.worst = combinations.col(0);

@@ -11,8 +11,8 @@
 #include <zlib.h>
 
 #include "core/error.h"
-#include "core/session/aside.h"
 #include "core/session/identity.h"
+#include "core/session/session.h"
 
 namespace flatspeckle {
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -14,11 +15,37 @@
 #include "core/run/interrupt.h"
 #include "core/run/runner.h"
 #include "core/run/stopwatch.h"
-#include "core/session/aside.h"
-#include "core/session/exit_status.h"
 #include "core/session/run_settings.h"
 
 namespace flatspeckle {
+
+/// Where a file that is in the way is kept: the first of NAME.aside-1, NAME.aside-2 ... that is
+/// free.
+std::filesystem::path free_aside(const std::filesystem::path& path);
+
+/// Gives a file such a name, by a second one beside its own where the file system can, so that the
+/// first is never without a file; returns it. Throws IoError.
+std::filesystem::path set_aside(const std::filesystem::path& path);
+
+/// Tells one file at a path from another, or from itself rewritten.
+struct FileStamp {
+  std::uint64_t device, inode;
+  std::int64_t seconds, nanoseconds;  ///< of its last change
+  bool operator==(const FileStamp&) const = default;
+};
+/// Nothing where there is no file.
+std::optional<FileStamp> stamp_of(const std::filesystem::path& path);
+
+/// Exit statuses (README).
+enum ExitStatus : int {
+  done = 0,
+  bad_input = 2,
+  error_not_reached = 3,
+  io_failed = 4,
+  row_failed = 5,  ///< a row of a benchmark; the result is written
+  interrupted_resumable = 75,
+  interrupted_for_good = 130  ///< nothing written, nothing to resume
+};
 
 /// Keeps an output to one process at a time, by a lock on .NAME.lock beside it that ends with the
 /// process however that ends. Where the file system has no locks there is none.

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "core/error.h"
+#include "core/numbers/address_space.h"
 #include "core/numbers/complex.h"
-#include "core/numbers/memory.h"
 
 namespace flatspeckle {
 

@@ -1,5 +1,4 @@
 #include "core/numbers/bessel.h"
-#include "core/numbers/scaled_bessel.h"
 #include "flatland/scatterers/scatterer_kinds.h"
 
 namespace flatspeckle {

@@ -8,7 +8,6 @@
 #include "core/keys/csv.h"
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
-#include "flatland/media/cell_density.h"
 #include "flatland/media/density_map.h"
 
 namespace flatspeckle {

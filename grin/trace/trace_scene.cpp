@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/keys/number_text.h"
-#include "core/numbers/memory.h"
+#include "core/numbers/address_space.h"
 #include "grin/render/curved/ray_field.h"
 
 namespace flatspeckle::grin {

@@ -5,9 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 
+#include "core/algebra/symmetric.h"
 #include "core/run/interrupt.h"
 #include "core/run/stopwatch.h"
 #include "mc/fit/fit_report.h"
@@ -133,8 +134,9 @@ struct Round {
                    added = model.added_information(root.solve(MatrixXd::Identity(size, size)));
     const MatrixXd safe =
         full + 1e-14 * full.trace() * MatrixXd::Identity(full.rows(), full.cols());
-    excess =
-        Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd>(added, safe).eigenvalues().maxCoeff();
+    const Eigen::LLT<MatrixXd> rest(safe);
+    const MatrixXd half = rest.matrixL().solve(added);
+    excess = symmetric_eigen(rest.matrixL().solve(half.transpose())).values.maxCoeff();
     fisher = excess < 0.5 ? MatrixXd(full - added) : full;
   }
 
@@ -147,10 +149,7 @@ struct Round {
   /// What errors of the model, noise or neglected, add to the covariance of the estimates'
   /// coordinates.
   MatrixXd by(const MatrixXd& errors) const {
-    const MatrixXd inverse =
-        (at.jacobian.transpose() * at.jacobian)
-            .ldlt()
-            .solve(MatrixXd::Identity(at.parameters.size(), at.parameters.size()));
+    const MatrixXd inverse = inverse_symmetric(at.jacobian.transpose() * at.jacobian);
     const MatrixXd estimator = inverse * root.solve(model.slopes).transpose();
     return estimator * errors * estimator.transpose();
   }

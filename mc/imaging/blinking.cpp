@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/run/interrupt.h"
-#include "flatland/request/triangle.h"
+#include "flatland/request/request.h"
 #include "mc/imaging/camera_frame.h"
 #include "mc/imaging/recovery/frame_statistics.h"
 #include "mc/paths/estimators/covariance_estimator.h"

@@ -2,14 +2,204 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <numeric>
+#include <span>
+#include <vector>
 
 #include "core/result/result_group.h"
 #include "mc/imaging/blinking_datasets.h"
+#include "mc/imaging/line_camera.h"
 #include "mc/imaging/media_statistics.h"
-#include "mc/imaging/picture_datasets.h"
+#include "mc/imaging/recovery/camera_noise.h"
+#include "mc/imaging/recovery/deconvolution.h"
+#include "mc/imaging/recovery/line_spectrum.h"
 #include "mc/imaging/recovery/recovery_datasets.h"
+#include "mc/imaging/recovery/speckle_band.h"
 
 namespace flatspeckle::mc {
+
+namespace {
+
+/// Means over a power x of mean 1 that is distributed exponentially, of x / (x + e), its square,
+/// and x / (x + e)^2.
+struct FilterMeans {
+  double response = 0, square = 0, noise = 0;
+
+  explicit FilterMeans(double e) {
+    constexpr int steps = 200;
+    for (int i = 0; i < steps; ++i) {
+      const double x = -std::log((i + 0.5) / steps), passed = x / (x + e);
+      response += passed / steps;
+      square += passed * passed / steps;
+      noise += passed / (x + e) / steps;
+    }
+  }
+};
+
+/// Of a picture before it is made.
+struct Expected {
+  std::vector<double> picture;
+  double noise = 0;  ///< variance of each of its values
+};
+
+/// What a frame consists of.
+struct Shares {
+  LineObject at;                    ///< shifts
+  std::vector<double> coefficient;  ///< of each point: its share of the light times C_I
+  std::vector<double> speckle;      ///< power by frequency of all speckle and of the reference's
+  double other = 0;                 ///< of speckle that the reference knows nothing of
+  double white = 0;                 ///< of the camera's noise
+};
+
+Complex spectrum_of(const Shares& of, double frequency) {
+  Complex sum = 0;
+  for (std::size_t i = 0; i < of.at.x.size(); ++i)
+    sum += std::polar(of.coefficient[i], -2 * std::numbers::pi * frequency * of.at.x[i]);
+  return sum;
+}
+
+Expected expected(const Shares& of, const LineSpectrum& spectra, double regularisation,
+                  double width) {
+  std::vector<double> power = of.speckle;
+  for (double& value : power) value += of.white;
+  const double level = regularisation * typical_power(power);
+  const std::size_t n = spectra.size();
+  std::vector<Complex> spectrum(n);
+  Expected result;
+  for (std::size_t m = 0; m <= n / 2; ++m) {
+    if (power[m] == 0) continue;
+    const double frequency = spectra.frequency(m), blur = gaussian_spectrum(frequency, width);
+    const FilterMeans filter(level / power[m]);
+    const Complex object = blur * of.speckle[m] / power[m] * spectrum_of(of, frequency);
+    spectrum[m] = filter.response * object;
+    if (m > 0) spectrum[n - m] = std::conj(spectrum[m]);
+    const double scatter = filter.square - filter.response * filter.response,
+                 strange = (of.speckle[m] * of.other + of.white) / power[m],
+                 both_signs = m == 0 || 2 * m == n ? 1 : 2;
+    result.noise +=
+        both_signs * (std::norm(object) * scatter + blur * blur * strange * filter.noise);
+  }
+  result.noise /= static_cast<double>(n) * static_cast<double>(n);
+  result.picture = spectra.line(std::move(spectrum));
+  return result;
+}
+
+/// As psnr(), with noise on every value of the picture.
+double noisy_psnr(std::span<const double> truth, std::span<const double> picture, double noise) {
+  const auto product = [&](auto a, auto b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+  };
+  const auto count = static_cast<double>(truth.size());
+  const double both = product(truth, picture),
+               left = product(truth, truth) -
+                      both * both / (product(picture, picture) + noise * count);
+  const double largest = *std::max_element(truth.begin(), truth.end());
+  return 10 * std::log10(largest * largest * count / left);
+}
+
+/// What a picture by Wiener's filter is expected to be, without one: its PSNR in dB.
+///
+/// A point's speckle is that of the reference, shifted, times C_I (to_reference), and something
+/// else of variance 1 - C_I^2; that part of the frame is lost, too, whose speckle has left the
+/// reference's. Speckle has a triangle as its power spectrum, up to the grains that
+/// the camera can see; the power of one frequency is distributed exponentially, over which the
+/// filter's response and what it lets through are averaged. Shot and read noise are white.
+double predicted_psnr(const LineScene& line, std::span<const double> to_reference,
+                      const CameraNoise& noise, std::size_t lags, double regularisation) {
+  const LineSpectrum spectra(line.camera.pixels);
+  const auto pixels = static_cast<double>(line.camera.pixels);
+  const double contrast = 1 / (1 + noise.background);
+  Shares of{shifts(line), {}, {}, 0, noise_variance(noise)};
+  for (std::size_t m = 0; m < spectra.size(); ++m)
+    of.speckle.push_back(contrast * contrast *
+                         speckle_power(spectra.frequency(m), most_grains(line) / pixels));
+  const auto& b = line.object.brightness;
+  const double all = std::reduce(b.begin(), b.end());
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    const double share = b[i] / all, seen = 1 - std::abs(of.at.x[i]) / pixels,
+                 alike = to_reference[i] * seen;
+    of.coefficient.push_back(share * alike);
+    of.other += share * share * (1 - alike * alike);
+  }
+  const double grain = pixels / most_grains(line) * 2 / 3;
+  auto made = expected(of, spectra, regularisation, point_width(grain));
+  const auto seen = about_zero(made.picture, lags);
+  return noisy_psnr(point_picture(of.at, lags, grain), seen, made.noise);
+}
+
+}  // namespace
+
+const DatasetTable picture_table{
+    .name = "picture",
+    .rows = {{"picture_x", Data::scale, "", "length", "place on the object's line"},
+             {"reference_x", Data::real, "", "length", "of the reference point"},
+             {"reference_frame", Data::real, "repeat camera_place", "1",
+              "of the reference point alone, in units of the light's mean"},
+             {"true_picture", Data::real, "picture_x", "1",
+              "the object, a Gaussian as wide as a grain for each point"},
+             {"picture", Data::real, "repeat picture_x", "1",
+              "frames divided by their reference; the scale is free"},
+             {"psnr", Data::real, "repeat", "1",
+              "dB: the largest value of the true picture over the rms difference"},
+             {"mean_psnr", Data::estimate, "", "1", "mean over the media"},
+             {"predicted_psnr", Data::real, "", "1", "without pictures, of Wiener's filter"},
+             {"iteration", Data::numbers, "", "1", "number of the step (richardson_lucy)"},
+             {"residual", Data::real, "repeat iteration", "1",
+              "rms of what the frame differs by from picture and reference, over its mean"},
+             {"reference_correlation", Data::estimate, "point", "1",
+              "C_I of each point's speckle and the reference's, from light paths"}}};
+
+double expected_psnr(const LineScene& line, const ImagingTask& task,
+                     const ImagingPrediction& prediction) {
+  return predicted_psnr(line, real_parts(prediction.to_reference.value), task.recovery.noise,
+                        task.recovery.lags, task.deconvolution.regularisation);
+}
+
+namespace {
+
+void write_residuals(const ResultGroup& root, const std::vector<ImagedMedium>& media) {
+  const std::size_t steps = media.front().deconvolved.residual.size();
+  root.number("iteration", steps);
+  root.put("residual",
+           of_each(media, steps, [](const ImagedMedium& m) { return m.deconvolved.residual; }));
+}
+
+}  // namespace
+
+void write_pictures(ResultFile& file, const LineScene& line, const ImagingTask& task,
+                    const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction) {
+  const ResultGroup root(file, picture_table);
+  root.put("reference_x", *line.reference);
+  root.put("reference_correlation", prediction.to_reference);
+  if (task.deconvolution.method == DeconvolutionTask::Method::wiener)
+    root.put("predicted_psnr", expected_psnr(line, task, prediction));
+  if (media.empty()) return;
+  const std::size_t lags = task.recovery.lags, shown = 2 * lags - 1;
+  const bool mirrored = magnification(line) < 0;
+  std::vector<double> places;
+  for (std::size_t p = 0; p < shown; ++p)
+    places.push_back(*line.reference + (static_cast<double>(p) - static_cast<double>(lags - 1)) /
+                                           std::abs(magnification(line)));
+  const auto turned = [&](std::vector<double> picture) {
+    if (mirrored) std::reverse(picture.begin(), picture.end());
+    return picture;
+  };
+  root.put("picture_x", places);
+  root.put("reference_frame",
+           of_each(media, line.camera.pixels, [](const ImagedMedium& m) { return m.reference; }));
+  root.put("true_picture",
+           turned(point_picture(shifts(line), lags, media.front().deconvolved.grain)));
+  root.put("picture", of_each(media, shown, [&](const ImagedMedium& m) {
+             return turned(m.deconvolved.picture);
+           }));
+  root.put("psnr", column(media, [](const ImagedMedium& m) { return m.psnr; }));
+  const MeanOverMedia mean = mean_psnr(media);
+  root.put("mean_psnr", mean.value, mean.error);
+  if (task.deconvolution.method == DeconvolutionTask::Method::richardson_lucy)
+    write_residuals(root, media);
+}
 
 const DatasetTable imaging_table{
     .name = "image",

@@ -6,10 +6,21 @@
 #include "mc/imaging/imaging.h"
 
 namespace flatspeckle {
+
 class ResultFile;
-}
+}  // namespace flatspeckle
 
 namespace flatspeckle::mc {
+
+extern const DatasetTable picture_table;
+
+/// As predicted_psnr(), of a scene with a reference.
+double expected_psnr(const LineScene& line, const ImagingTask& task,
+                     const ImagingPrediction& prediction);
+
+/// Pictures of frames that were divided by a reference, beside what write_imaging() has written.
+void write_pictures(ResultFile& file, const LineScene& line, const ImagingTask& task,
+                    const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction);
 
 extern const DatasetTable imaging_table;
 

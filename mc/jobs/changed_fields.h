@@ -4,6 +4,14 @@
 
 namespace flatspeckle::mc {
 
+/// How a field differs from another besides its light and view.
+struct FieldChange {
+  double delay = 0;  ///< k^2 D tau: recorded later, as the scatterers diffuse (brownian.h)
+  /// Of its wavenumber, relative; its view is turned so that transverse momenta match. Attenuation
+  /// and scattering stay those of k.
+  double shift = 0;
+};
+
 /// Of a job whose quantities are the covariance, then the same where the second field of each entry
 /// has changed. Of a request for intensities, [change][channel]: the covariances, and those over
 /// the intensity without change, 0 where there is none. Of one for a memory effect: the covariances

@@ -5,7 +5,6 @@
 
 #include "core/result/result_group.h"
 #include "flatland/scene/scene_datasets.h"
-#include "mc/jobs/light_aperture.h"
 
 namespace flatspeckle::mc {
 

@@ -6,7 +6,6 @@
 #include "core/error.h"
 #include "core/result/result_group.h"
 #include "flatland/request/field_moments.h"
-#include "mc/jobs/directional_slope.h"
 #include "mc/theory/memory_effect.h"
 #include "mc/theory/moments_datasets.h"
 

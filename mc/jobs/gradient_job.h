@@ -1,8 +1,12 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "core/numbers/complex.h"
 #include "core/result/dataset_row.h"
 #include "core/result/result_file.h"
 #include "flatland/scene/scene.h"
@@ -10,6 +14,28 @@
 #include "mc/jobs/path_job.h"
 
 namespace flatspeckle::mc {
+
+/// Derivative of what f makes of entries, along that of the entries, by a central difference.
+template <typename F>
+std::vector<Complex> directional_slope(const F& f, std::span<const Complex> entries,
+                                       std::span<const Complex> along) {
+  const auto largest = [](std::span<const Complex> values) {
+    double most = 0;
+    for (const Complex value : values) most = std::max(most, std::abs(value));
+    return most;
+  };
+  const bool still = largest(along) == 0;
+  const double step = still ? 1 : 1e-6 * largest(entries) / largest(along);
+  const auto moved = [&](double by) {
+    std::vector<Complex> values(entries.begin(), entries.end());
+    for (std::size_t e = 0; e < values.size(); ++e) values[e] += by * along[e];
+    return f(values);
+  };
+  std::vector<Complex> slope = moved(step);
+  const std::vector<Complex> below = moved(-step);
+  for (std::size_t i = 0; i < slope.size(); ++i) slope[i] = (slope[i] - below[i]) / (2 * step);
+  return slope;
+}
 
 /// Derivatives of a scene's covariance from the paths that estimate it: the integrand of C14 is
 /// differentiated, the density that the paths are drawn from is not. The parameters are mu_t, g and

@@ -2,7 +2,7 @@
 
 #include "flatland/scene/scene.h"
 #include "mc/jobs/bulk_parameter.h"
-#include "mc/jobs/field_change.h"
+#include "mc/jobs/changed_fields.h"
 #include "mc/slab/refinement.h"
 #include "mc/slab/slab_scene.h"
 

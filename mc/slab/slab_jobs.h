@@ -4,8 +4,8 @@
 
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
+#include "mc/jobs/changed_fields.h"
 #include "mc/jobs/gradient_job.h"
-#include "mc/jobs/field_change.h"
 #include "mc/jobs/path_job.h"
 #include "mc/slab/refinement.h"
 

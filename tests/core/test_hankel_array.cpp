@@ -9,7 +9,6 @@
 #include "core/keys/csv.h"
 #include "core/numbers/bessel.h"
 #include "core/numbers/hankel_array.h"
-#include "core/numbers/hankel_fit.h"
 
 namespace flatspeckle::test_hankel_array {
 

@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include "core/numbers/bessel.h"
-#include "core/numbers/scaled_bessel.h"
 
 namespace flatspeckle::test_scaled_bessel {
 

@@ -6,9 +6,8 @@
 
 #include <doctest/doctest.h>
 
-#include "core/result/result_file.h"
+#include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
-#include "core/result/sealed_file.h"
 
 namespace flatspeckle::test_sealed_file {
 

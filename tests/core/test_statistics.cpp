@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "core/numbers/mean_errors.h"
 #include "core/numbers/random.h"
 #include "core/numbers/statistics.h"
 

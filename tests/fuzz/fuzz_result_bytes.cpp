@@ -1,5 +1,5 @@
 #include "apps/sweep/point_journal.h"
-#include "core/result/sealed_file.h"
+#include "core/result/guarded_read.h"
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/result_kinds.h"
 

@@ -9,7 +9,7 @@
 #include "core/numbers/random.h"
 #include "grin/rays/marching/ray_jump.h"
 #include "grin/rays/marching/trace.h"
-#include "grin/rays/surfaces/mesh_distance.h"
+#include "grin/rays/surfaces/mesh_surface.h"
 #include "grin/rays/surfaces/spline_cell.h"
 #include "grin/rays/surfaces/straight_way.h"
 

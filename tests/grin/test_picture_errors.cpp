@@ -3,7 +3,7 @@
 
 #include <doctest/doctest.h>
 
-#include "core/numbers/mean_errors.h"
+#include "core/numbers/statistics.h"
 #include "grin/render/pictures/picture_errors.h"
 
 namespace flatspeckle::grin::tests::test_picture_errors {

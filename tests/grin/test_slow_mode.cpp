@@ -4,9 +4,9 @@
 #include <doctest/doctest.h>
 
 #include "core/numbers/random.h"
+#include "grin/media/scattering/diffusion_rate.h"
 #include "grin/media/scattering/free_flight.h"
 #include "grin/media/scattering/phase_function.h"
-#include "grin/media/scattering/slow_mode.h"
 
 // The slow mode and stretched flights: what is worth something on average and what is not.
 

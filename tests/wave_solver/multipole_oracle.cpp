@@ -3,8 +3,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/numbers/bessel.h"
 #include "core/numbers/blas.h"
-#include "core/numbers/scaled_bessel.h"
 
 namespace flatspeckle::wave {
 

@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/keys/number_text.h"
-#include "core/numbers/scaled_bessel.h"
+#include "core/numbers/bessel.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/equations/t_matrix_system.h"

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "core/keys/csv.h"
-#include "core/numbers/scaled_bessel.h"
+#include "core/numbers/bessel.h"
 #include "core/result/guarded_read.h"
 #include "core/result/result_group.h"
 #include "core/result/result_reader.h"

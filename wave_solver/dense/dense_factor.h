@@ -4,9 +4,12 @@
 #include <vector>
 
 #include "core/numbers/complex.h"
-#include "wave_solver/dense/entries.h"
+#include "core/numbers/unset.h"
 
 namespace flatspeckle::wave {
+
+/// Of a matrix that is filled by whoever makes it, column by column.
+using Entries = std::vector<Complex, Unset<Complex>>;
 
 /// A complex symmetric system M x = b: L L^T without pivoting (symmetric_factor.h), or LU with row
 /// exchanges where that leaves a backward error |b - M x| / (|M| |x| + |b|) above 1e-14 after

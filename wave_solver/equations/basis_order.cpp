@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/numbers/bessel.h"
 #include "core/numbers/complex.h"
 #include "core/numbers/scaled.h"
-#include "core/numbers/scaled_bessel.h"
 #include "wave_solver/dense/symmetric_factor.h"
 #include "wave_solver/equations/cylinder_waves.h"
 #include "wave_solver/equations/neighbours.h"

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "core/error.h"
+#include "core/numbers/bessel.h"
 #include "core/numbers/hankel_array.h"
 #include "core/numbers/phasor.h"
-#include "core/numbers/scaled_bessel.h"
 
 namespace flatspeckle::wave {
 

@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "core/numbers/bessel.h"
-#include "core/numbers/scaled_bessel.h"
 #include "flatland/scatterers/scatterer.h"
 
 namespace flatspeckle::wave {

@@ -1,14 +1,24 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "core/numbers/complex.h"
-#include "wave_solver/dense/entries.h"
+#include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/equations/cylinder_waves.h"
 
 namespace flatspeckle::wave {
+
+/// Threads that solve systems of their own at this moment, this one included.
+int systems_at_work();
+
+/// Bytes that each of some systems, solved together, may take.
+double memory_of_system(int together = systems_at_work());
+
+/// Throws InputError where the dense matrix of so many unknowns needs more.
+void require_dense_memory(std::size_t unknowns, int together = systems_at_work());
 
 /// The multiple-scattering equations of bodies that answer regular waves with outgoing ones,
 /// b = T (a + S b) (C10), in the real standing waves of cylinder_waves.h and with b = sigma beta:

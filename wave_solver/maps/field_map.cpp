@@ -22,8 +22,6 @@
 
 namespace flatspeckle::wave {
 
-namespace {
-
 /// The scattered field of a solution at many points: rings of point sources (multipole_ring.h)
 /// stand for the scatterers wherever a point is beyond a clearance from their centres, so that a
 /// HelmholtzSum serves; nearer points are corrected one by one.
@@ -64,6 +62,8 @@ class RingField {
   std::vector<Complex> charges_;  // [light][position]
 };
 
+namespace {
+
 // field[light][point] += factor sum over columns of values[column][point] x[light][column].
 void add_columns(std::span<const Complex> values, std::size_t points, const Complex* x,
                  std::size_t ldx, double factor, std::span<Complex> field) {
@@ -77,7 +77,7 @@ const Complex* coefficients(const WaveSolution& solution, std::size_t scatterer)
 }
 
 // Seconds for one ring of a kind, as measured: its sources in the sum, and the points to correct.
-double cost(double ring_points, double modes, double near_points) {
+double ring_cost(double ring_points, double modes, double near_points) {
   return 2e-6 * ring_points + near_points * (15e-9 * ring_points + 15e-9 * modes + 100e-9);
 }
 
@@ -91,6 +91,21 @@ void add_scattered(const WaveSolution& solution, std::size_t scatterer,
   add_columns(values, points.size(), coefficients(solution, scatterer), system.unknowns(), 1,
               field);
 }
+
+constexpr std::uint32_t no_place = ~std::uint32_t{0};
+constexpr std::size_t points_at_a_time =
+    256;  // points that stay in cache with the waves of a scatterer
+
+using Pixels = std::vector<std::uint32_t>;
+
+std::vector<Vec2> positions(const MapGrid& grid, const MapTile& tile, const Pixels& pixels) {
+  std::vector<Vec2> result;
+  for (const std::uint32_t pixel : pixels)
+    result.push_back(grid.pixel(tile.ix + pixel % tile.nx, tile.iz + pixel / tile.nx));
+  return result;
+}
+
+}  // namespace
 
 RingField::RingField(const WaveSolution& solution, double tolerance, double area_per_point)
     : solution_(solution), tolerance_(tolerance) {
@@ -132,8 +147,9 @@ RingField::ClearedRing RingField::best_ring(std::size_t scatterer, double area_p
     const double clearance = factor * radius;
     MultipoleRing ring(modes, system.k(), radius, clearance, 0.1 * tolerance_);
     const double near = std::numbers::pi * (clearance - radius) * (clearance + radius);
-    const double seconds = cost(static_cast<double>(ring.points),
-                                static_cast<double>(modes.modes.size()), near / area_per_point);
+    const double seconds =
+        ring_cost(static_cast<double>(ring.points), static_cast<double>(modes.modes.size()),
+                  near / area_per_point);
     if (seconds >= least) continue;
     least = seconds;
     best = {std::move(ring), clearance};
@@ -185,21 +201,6 @@ std::vector<Complex> RingField::correction(std::size_t scatterer,
   add_columns(waves, points.size(), &charges_[first], positions_.size(), -1, field);
   return field;
 }
-
-constexpr std::uint32_t no_place = ~std::uint32_t{0};
-constexpr std::size_t points_at_a_time =
-    256;  // points that stay in cache with the waves of a scatterer
-
-using Pixels = std::vector<std::uint32_t>;
-
-std::vector<Vec2> positions(const MapGrid& grid, const MapTile& tile, const Pixels& pixels) {
-  std::vector<Vec2> result;
-  for (const std::uint32_t pixel : pixels)
-    result.push_back(grid.pixel(tile.ix + pixel % tile.nx, tile.iz + pixel / tile.nx));
-  return result;
-}
-
-}  // namespace
 
 // The pixels of a tile: those in a disk by disk, the others in a list.
 struct FieldMap::Points {

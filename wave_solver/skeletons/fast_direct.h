@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/numbers/complex.h"
-#include "wave_solver/equations/system_memory.h"
 #include "wave_solver/equations/wave_equations.h"
 #include "wave_solver/skeletons/interpolative.h"
 

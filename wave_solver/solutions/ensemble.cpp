@@ -13,7 +13,7 @@
 #include "core/numbers/blas.h"
 #include "core/numbers/random.h"
 #include "flatland/scene/frequency_shift.h"
-#include "wave_solver/equations/system_memory.h"
+#include "wave_solver/equations/wave_equations.h"
 #include "wave_solver/graded/graded_fields.h"
 #include "wave_solver/solutions/wave_solution.h"
 

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "core/numbers/bessel.h"
-#include "core/numbers/scaled_bessel.h"
 
 namespace flatspeckle::wave {
 

@@ -14,7 +14,6 @@
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/sums/helmholtz_sum.h"
 #include "wave_solver/sums/near_sum.h"
-#include "wave_solver/sums/sum_cost.h"
 
 namespace flatspeckle::wave {
 

@@ -4,7 +4,7 @@
 
 #include "core/keys/keys.h"
 #include "grin/design/forms/field_form.h"
-#include "grin/design/goals/aim.h"
+#include "grin/design/goals/goal.h"
 
 namespace flatspeckle::grin::design {
 

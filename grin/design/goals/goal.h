@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "grin/design/system/ray_system.h"
+
 namespace flatspeckle::grin::design {
 
 /// What is asked of the readings of all rays: residuals whose squares are to be as small as can be,
@@ -23,5 +25,22 @@ class Goal {
 
 /// Readings are to be what they are told to be.
 std::unique_ptr<Goal> make_target_goal(std::vector<double> targets);
+
+/// Rays, and what is asked of them.
+struct DesignTask {
+  std::unique_ptr<RaySystem> rays;
+  std::unique_ptr<Goal> goal;
+};
+
+/// What light is to do.
+class Aim {
+ public:
+  virtual ~Aim() = default;
+  /// held_out: of rays that the search does not see.
+  virtual DesignTask task(const RayWalk& walk, bool held_out) const = 0;
+  virtual double rays() const = 0;  ///< that the search sees
+  /// Two numbers are read off each ray, or one.
+  virtual int readings() const { return 2; }
+};
 
 }  // namespace flatspeckle::grin::design

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/numbers/memory.h"
+#include "core/numbers/address_space.h"
 
 namespace flatspeckle::grin::design {
 

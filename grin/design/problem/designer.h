@@ -1,6 +1,9 @@
 #pragma once
 
 #include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
 
 #include "grin/design/problem/design_scene.h"
 
@@ -31,7 +34,7 @@ struct DesignCheck {
   double start_held_out = 0;  ///< of the field at the start
   std::size_t unseen = 0;  ///< coefficients within the field that no ray of the search depends on
   std::optional<std::vector<double>> readings = {};  ///< of the held-out rays, by the half steps
-  double in_place = 0;  ///< share of these that miss by nothing
+  double in_place = 0;                               ///< share of these that miss by nothing
 };
 
 /// Level after level, step after step.
@@ -62,5 +65,20 @@ class Designer {
   const DesignScene& scene_;
   DesignTask seen_, held_out_;
 };
+
+/// Where a search that was cut off goes on from: beside its result, NAME.state.
+std::filesystem::path state_path(const std::filesystem::path& out);
+
+/// identity: what tells one search from another. Throws IoError.
+void save_state(const std::filesystem::path& path, const std::string& identity,
+                const DesignState& state);
+
+/// Whether it is there and whole, and of this search.
+bool holds(const std::filesystem::path& path, const std::string& identity);
+
+/// Nothing where there is no such file. Throws InputError for one that is damaged, or of another
+/// search.
+std::optional<DesignState> read_state(const std::filesystem::path& path,
+                                      const std::string& identity);
 
 }  // namespace flatspeckle::grin::design

@@ -6,6 +6,11 @@
 
 namespace flatspeckle::grin {
 
+/// Of an index field, at places all over its part of the stage.
+struct IndexRange {
+  double lowest = 1, highest = 1;
+};
+
 /// n = 1 + excess. A field computes the excess as such: an index of 1 + 1e-6 keeps all its digits.
 struct IndexGradient {
   double excess;

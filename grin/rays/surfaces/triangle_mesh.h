@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
+#include <string>
 #include <vector>
 
 #include "grin/media/geometry/shapes.h"
@@ -23,5 +25,9 @@ TriangleMesh closed_mesh(const std::vector<Vec3>& corners);
 Box bounds(const TriangleMesh& mesh);
 double volume(const TriangleMesh& mesh);
 double area(const TriangleMesh& mesh);
+
+/// The triangles of an STL file, binary or text, made closed_mesh(); the normals in it are not
+/// read. Every InputError names the key and the file.
+TriangleMesh read_stl(const std::string& key, const std::filesystem::path& path);
 
 }  // namespace flatspeckle::grin

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "grin/media/fields/any_index_field.h"
-#include "grin/media/index/index_range.h"
+#include "grin/media/index/index_field.h"
 #include "grin/render/lights/light.h"
 #include "grin/render/methods/field_parameter.h"
 #include "grin/render/methods/light_map.h"

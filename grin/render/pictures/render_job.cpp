@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/numbers/control_variate.h"
-#include "core/numbers/mean_errors.h"
 #include "core/numbers/random.h"
+#include "core/numbers/statistics.h"
 #include "grin/media/index/lanes.h"
 #include "grin/render/methods/method_choice.h"
 #include "grin/render/methods/photon_map.h"

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "grin/media/scattering/slow_mode.h"
+#include "grin/media/scattering/diffusion_rate.h"
 #include "grin/render/lights/light.h"
 #include "grin/render/sensors/sensor.h"
 #include "grin/render/stage/straight_stage.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "grin/render/flights/space.h"
-#include "grin/render/transport/energy_balance.h"
+#include "grin/render/transport/film.h"
 #include "grin/render/transport/path_vertex.h"
 
 namespace flatspeckle::grin {

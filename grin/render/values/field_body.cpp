@@ -7,7 +7,7 @@
 #include "grin/media/geometry/vector_values.h"
 #include "grin/rays/surfaces/lens_values.h"
 #include "grin/rays/surfaces/mesh_surface.h"
-#include "grin/rays/surfaces/stl_file.h"
+#include "grin/rays/surfaces/triangle_mesh.h"
 #include "grin/render/stage/stage.h"
 
 namespace flatspeckle::grin {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "grin/media/fields/scene_field.h"
-#include "grin/media/index/index_range.h"
+#include "grin/media/index/index_field.h"
 #include "grin/rays/surfaces/signed_distance.h"
 
 namespace flatspeckle::grin {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "grin/media/index/index_range.h"
+#include "grin/media/index/index_field.h"
 #include "grin/render/stage/stage.h"
 #include "grin/render/values/field_body.h"
 #include "grin/render/values/plain_bodies.h"

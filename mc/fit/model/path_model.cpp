@@ -9,7 +9,7 @@
 #include "mc/fit/task/correlated_errors.h"
 #include "mc/fit/task/curve_values.h"
 #include "mc/fit/task/fit_data.h"
-#include "mc/jobs/directional_slope.h"
+#include "mc/jobs/gradient_job.h"
 #include "mc/paths/estimators/gradient.h"
 
 namespace flatspeckle::mc {

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "core/result/dataset_row.h"
+#include "core/result/result_file.h"
 #include "mc/fit/task/free_parameter.h"
-#include "mc/fit/task/moving_spec.h"
 
 namespace flatspeckle::mc {
 
@@ -34,5 +36,15 @@ FitPlan fit_plan(const PlanTask& task);
 /// Of fields of covariance C with derivatives, their scale unknown: [parameter][parameter].
 Eigen::MatrixXd field_information(const Eigen::MatrixXcd& covariance,
                                   const std::vector<Eigen::MatrixXcd>& slopes);
+
+extern const DatasetTable plan_table;
+void write_plan(ResultFile& file, const PlanTask& task, const FitPlan& plan);
+
+/// A plan of the same free keys at each of several points.
+struct PlanPoint {
+  std::string name;
+  FitPlan plan;
+};
+void write_plans(ResultFile& file, const PlanTask& task, const std::vector<PlanPoint>& points);
 
 }  // namespace flatspeckle::mc

@@ -6,9 +6,24 @@
 
 #include <Eigen/Core>
 
-#include "mc/fit/task/moving_spec.h"
+#include "flatland/scene/scene.h"
+#include "mc/jobs/motion.h"
 
 namespace flatspeckle::mc {
+
+/// A scene and how its scatterers move while it is measured.
+struct MovingSpec : SceneSpec {
+  double diffusion = 1, velocity_x = 0, velocity_z = 0, shear = 0, beta = 1;
+
+  Motion motion() const { return {diffusion, {velocity_x, velocity_z}, shear}; }
+  /// Diffusion alone, which transport can do.
+  bool only_diffuses() const { return velocity_x == 0 && velocity_z == 0 && shear == 0; }
+};
+
+/// Of the motion alone.
+void add_motion_keys(Keys& keys, MovingSpec& spec);
+/// All, found by the struct's name (Keyed).
+void add_keys(Keys& keys, MovingSpec& spec);
 
 /// A key of the scene that is fitted, within bounds. Steps are taken in a coordinate that makes a
 /// straight line of what thick media alone tell, mu_s (1 - g): the logarithm of 1 - g and of what

@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 
 #include "core/numbers/complex.h"
-#include "mc/fit/task/moving_spec.h"
+#include "mc/fit/task/free_parameter.h"
 
 namespace flatspeckle::mc {
 

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include <Eigen/Cholesky>
-
+#include "core/algebra/symmetric.h"
 #include "core/numbers/fourier.h"
 #include "mc/imaging/recovery/frame_statistics.h"
 #include "mc/imaging/recovery/line_spectrum.h"
@@ -105,7 +104,7 @@ std::vector<double> settled(const Tree& tree, const std::vector<PatternShift>& s
     right[a] -= weight * pair.shift;
     right[b] += weight * pair.shift;
   }
-  const Eigen::VectorXd x = normal.ldlt().solve(right);
+  const Eigen::VectorXd x = solve_symmetric(normal, right);
   return {x.begin(), x.end()};
 }
 

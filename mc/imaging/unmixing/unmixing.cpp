@@ -4,8 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include <Eigen/Eigenvalues>
-
+#include "core/algebra/symmetric.h"
 #include "core/error.h"
 #include "mc/imaging/recovery/frame_statistics.h"
 
@@ -52,11 +51,10 @@ double from_median(const std::vector<double>& values, std::size_t most, double a
 
 /// Largest first, from the products of columns.
 std::vector<double> singular_values(const MatrixXd& matrix) {
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(matrix.transpose() * matrix,
-                                                       Eigen::EigenvaluesOnly);
+  const Eigen::VectorXd squares = symmetric_eigen(matrix.transpose() * matrix).values;
   std::vector<double> values;
-  for (Eigen::Index i = solver.eigenvalues().size(); i-- > 0;)
-    values.push_back(std::sqrt(std::max(solver.eigenvalues()[i], 0.0)));
+  for (Eigen::Index i = squares.size(); i-- > 0;)
+    values.push_back(std::sqrt(std::max(squares[i], 0.0)));
   return values;
 }
 

@@ -6,7 +6,6 @@
 #include "core/error.h"
 #include "core/keys/number_text.h"
 #include "core/numbers/phasor.h"
-#include "mc/paths/bent/domain_edge.h"
 
 namespace flatspeckle::mc {
 

@@ -12,7 +12,6 @@
 #include "flatland/scene/scene.h"
 #include "grin/media/scattering/free_flight.h"
 #include "mc/jobs/flux_job.h"
-#include "mc/jobs/light_aperture.h"
 
 namespace flatspeckle::mc {
 

@@ -5,7 +5,7 @@
 
 #include "core/result/result_group.h"
 #include "core/run/interrupt.h"
-#include "flatland/request/triangle.h"
+#include "flatland/request/request.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/speckle/field_statistics.h"

@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-#include "core/numbers/memory.h"
+#include "core/numbers/address_space.h"
 #include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/speckle/speckle_field.h"
 

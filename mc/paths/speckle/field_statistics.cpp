@@ -5,7 +5,7 @@
 #include <fftw3.h>
 
 #include "core/numbers/fourier.h"
-#include "flatland/request/triangle.h"
+#include "flatland/request/request.h"
 
 namespace flatspeckle::mc {
 

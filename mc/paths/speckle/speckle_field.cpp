@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "core/numbers/blas.h"
-#include "flatland/request/triangle.h"
+#include "flatland/request/request.h"
 
 namespace flatspeckle::mc {
 

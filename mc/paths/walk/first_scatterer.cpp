@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
-#include "mc/paths/walk/representatives.h"
+#include "mc/paths/walk/importance.h"
 
 namespace flatspeckle::mc {
 

@@ -9,7 +9,7 @@
 #include "flatland/request/light.h"
 #include "flatland/scene/scene.h"
 #include "grin/media/scattering/free_flight.h"
-#include "mc/paths/endpoint_factors/extinction.h"
+#include "mc/paths/endpoint_factors/end_factors.h"
 #include "mc/paths/endpoint_factors/gaussian_beam.h"
 #include "mc/paths/endpoint_factors/profile_flight.h"
 #include "mc/paths/endpoint_factors/varying_scattering.h"

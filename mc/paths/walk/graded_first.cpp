@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "grin/media/scattering/free_flight.h"
-#include "mc/paths/bent/domain_edge.h"
+#include "mc/paths/bent/graded_ends.h"
 
 namespace flatspeckle::mc {
 

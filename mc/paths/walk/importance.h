@@ -8,6 +8,11 @@
 
 namespace flatspeckle::mc {
 
+/// Whether a plane wave along w is represented by others: wherever it reaches in the medium, one of
+/// them whose direction differs by `spacing` (radians) at the most is weakened by no more than a
+/// factor of exp(1.5) beyond it. By reversal the same holds for light that leaves along -w.
+bool reached(const Scene& scene, Vec2 w, const std::vector<Vec2>& others, double spacing);
+
 /// What a walker at a depth is worth to the far views: the share of its light that leaves the
 /// medium on their sides, by diffusion theory, relative to a mean free path from where the light
 /// enters. Walkers are split where it rises and play roulette where it falls, so that all

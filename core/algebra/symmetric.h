@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace flatspeckle {
+
+/// Eigenvalues, ascending, and eigenvectors, one a column.
+struct SymmetricEigen {
+  Eigen::VectorXd values;
+  Eigen::MatrixXd vectors;
+};
+
+/// Of a symmetric matrix, by tridiagonal QR. Eigen's decompositions take seconds to compile, so
+/// that they are compiled here once.
+SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
+
+/// Of a symmetric tridiagonal matrix; beside: the n - 1 elements next to the diagonal.
+SymmetricEigen tridiagonal_eigen(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside);
+
+/// a^-1 b of a symmetric matrix, by LDL^T with pivots; singular directions of a positive
+/// semidefinite one are left out.
+Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b);
+Eigen::MatrixXd inverse_symmetric(const Eigen::MatrixXd& a);
+
+}  // namespace flatspeckle
