@@ -1,5 +1,6 @@
 #include "core/session/journal.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -150,8 +151,8 @@ namespace {
 constexpr char head_kind = 'h', kept_kind = 's';
 
 std::vector<std::byte> with_kind(char kind, std::span<const std::byte> record) {
-  std::vector<std::byte> block{std::byte(kind)};
-  block.insert(block.end(), record.begin(), record.end());
+  std::vector<std::byte> block(1 + record.size(), std::byte(kind));
+  std::ranges::copy(record, block.begin() + 1);
   return block;
 }
 

@@ -19,12 +19,6 @@ struct RulerFit {
   double gain = 0;  ///< twice the logarithm of the likelihood, over that of nothing
 };
 
-double memory_correlation(double distance, double memory_range) {
-  constexpr double at_half = 1.49143;  // (x / sinh x)^2 = 1/2
-  const double x = memory_range > 0 ? at_half * distance / memory_range : 0;
-  return x < 1e-4 ? 1 : std::pow(x / std::sinh(x), 2);
-}
-
 /// What is expected of a pair of points of mean brightness at each lag of the peaks.
 std::vector<double> expected_heights(const PairPeaks& peaks, const SparseTask& task) {
   const double equal = peaks.alone / static_cast<double>(task.points);
@@ -305,6 +299,12 @@ LineObject object_of(const RulerFit& fit, double step) {
 }
 
 }  // namespace
+
+double memory_correlation(double distance, double memory_range) {
+  constexpr double at_half = 1.49143;  // (x / sinh x)^2 = 1/2
+  const double x = memory_range > 0 ? at_half * distance / memory_range : 0;
+  return x < 1e-4 ? 1 : std::pow(x / std::sinh(x), 2);
+}
 
 SparseFit sparse_search(const PairPeaks& peaks, const SparseTask& task) {
   const auto expected = expected_heights(peaks, task);
