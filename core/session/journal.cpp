@@ -87,9 +87,9 @@ bool is_torn(int descriptor, std::uint64_t place, std::uint64_t size) {
 
 std::vector<std::byte> block_of(std::span<const std::byte> bytes) {
   const Head head{word_of_blocks, checksum_of(bytes), bytes.size()};
-  const auto front = std::as_bytes(std::span(&head, 1));
-  std::vector<std::byte> whole(front.begin(), front.end());
-  whole.insert(whole.end(), bytes.begin(), bytes.end());
+  std::vector<std::byte> whole(sizeof head + bytes.size());
+  std::memcpy(whole.data(), &head, sizeof head);
+  std::ranges::copy(bytes, whole.begin() + sizeof head);
   return whole;
 }
 
