@@ -1,6 +1,6 @@
 """Keys that a scene accepts have an effect: for each scene of format_scenes.py and each key that is accepted
-there, one of some other values changes the result. Takes half an hour, or the scenes whose names begin
-with a word that is given."""
+there, one of some other values changes the result. Words restrict it to scenes whose names begin
+with one of them."""
 
 import json
 import re
@@ -116,7 +116,7 @@ class UsedKeys(ProgramTest):
 
     def test_each_scene(self):
         for name, (subcommand, keys, *_) in RUNS.items():
-            if subcommand not in self.rows or subcommand == "merge" or not name.startswith(PREFIX):
+            if subcommand not in self.rows or subcommand == "merge" or not name.startswith(PREFIXES):
                 continue
             scene = {key: value for key, value in {**cost(subcommand, keys), **keys}.items() if value is not None}
             before = self.result(subcommand, scene)
@@ -126,7 +126,7 @@ class UsedKeys(ProgramTest):
                     self.assertTrue(self.has_effect(subcommand, scene, before, row))
 
 
-PREFIX = sys.argv.pop() if len(sys.argv) > 1 else ""
+PREFIXES = tuple(sys.argv[1:]) or ""
 
 if __name__ == "__main__":
-    unittest.main()
+    unittest.main(argv=sys.argv[:1])
