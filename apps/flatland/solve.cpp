@@ -220,7 +220,10 @@ class SolveExperiment : public OneShot {
 
   void read(const Keys& keys) override {
     keys.read(run_.seed);
+    if (!is_placement_rule(values_.spec)) keys.disregard(run_.seed);  // nothing is drawn
     if (keys.read(values_.spec.index_field) != "homogeneous") return read_graded(keys);
+    keys.read(values_.tolerance);
+    keys.read(values_.solver);
     if (!values_.spec.near_sources.empty())
       throw InputError(
           "near_sources", values_.spec.near_sources,
@@ -235,8 +238,6 @@ class SolveExperiment : public OneShot {
  private:
   /// Copies of a cluster in place of scatterers: what it is comes from its file.
   void read_cluster(const Keys& keys) {
-    keys.read(values_.tolerance);
-    keys.read(values_.solver);
     if (is_placement_rule(values_.spec))
       throw InputError("placement", values_.spec.placement.value_or("none"),
                        "must be a CSV with columns x, z [, angle], of the cluster's copies");
@@ -245,7 +246,6 @@ class SolveExperiment : public OneShot {
     if (values_.tolerance < cluster_->tolerance)
       throw InputError("tolerance", values_.tolerance,
                        "must be at least that of the cluster, " + number_text(cluster_->tolerance));
-    keys.disregard(run_.seed);  // nothing is drawn
   }
 
   void read_placement_and_work(const Keys& keys) {
@@ -255,11 +255,8 @@ class SolveExperiment : public OneShot {
       grid_ = map_grid(keys, values_.map, keys.read(spec.wavelength));
       keys.read(values_.t_matrix_gap);
     }
-    keys.read(values_.tolerance);
-    keys.read(values_.solver);
     if (is_placement_rule(spec)) scene_ = make_scene(keys, spec);
     placement_ = scene_ ? drawn_placement(spec, *scene_, seed()) : placement_of_file(keys, spec);
-    if (!scene_) keys.disregard(run_.seed);  // nothing is drawn
     for (const Vec2& sensor : sensors_.points) require_outside(placement_, sensor);
     if (wavelengths_->index) require_index_from_table(spec, placement_);
   }
@@ -286,7 +283,6 @@ class SolveExperiment : public OneShot {
                sensors = read_points(keys.required(spec.near_sensors));
     const double k = 2 * std::numbers::pi / keys.read(spec.wavelength);
     placement_ = placement_of_file(keys, spec);
-    keys.disregard(run_.seed);  // nothing is drawn
     if (placement_.empty() || placement_.front().scatterer.is_disk())
       throw InputError("index_field", spec.index_field, "is of points, one at the least");
     graded_->fields.emplace(*field, k, sources, sensors, corners_around(placement_));

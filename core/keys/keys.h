@@ -12,10 +12,12 @@
 
 namespace flatspeckle {
 
-/// The keys of what is asked for, and which of them were read: what is given and read by nothing is
-/// refused by that rule alone. Whoever makes something of a struct's values reads them through its
-/// keys. Several rows may share a name (each kind of a thing has its own row for what it needs):
-/// what is given goes to all of them, and counts as read where one was.
+/// Keys of one call and a record of which were read: keys that are given and never read are
+/// rejected. Code that uses a struct's value reads it through the keys, so that the code that
+/// decides what is used is the only place that says so. A forgotten read is seen at the first use
+/// of its key; a condition in the row, if forgotten, would leave the key accepted and ignored.
+/// Several rows may share a name (each kind of a thing has its own row for what it needs): a given
+/// value goes to all of them and counts as read if one of them was.
 class Keys {
  public:
   Keys() = default;

@@ -167,8 +167,8 @@ Session::Session(std::string command_line, const Keys& keys, const RunSettings& 
   keys.read(settings.out);
   require_address_space_of_threads(threads());
   if (keys.find("threads")) omp_set_num_threads(threads());
-  if (keys.find("resume")) keys.read(settings.resume);
-  if (keys.find("keep_state")) keys.read(settings.keep_state);
+  keys.read(settings.resume);
+  keys.read(settings.keep_state);
   if (only_prints) return;
   if (settings.out.empty())
     throw InputError("out is not given: name the " +
