@@ -1,13 +1,12 @@
-"""An index that varies around the scatterers: exact placements, Monte Carlo, and what is refused. By night, with the
-argument Night: speckle of slabs whose mean field is refracted."""
+"""An index that varies around the scatterers: exact placements, Monte Carlo, and what is refused. By night:
+speckle of slabs whose mean field is refracted."""
 
-import sys
 import unittest
 
 import h5py
 import numpy as np
 
-from program import ProgramTest
+from program import ProgramTest, nightly
 from refusing import RefusingTest
 
 SOURCES = "x,z\n0,-4\n0.5,-4\n"
@@ -118,8 +117,9 @@ class Guiding(ProgramTest):
         self.check(12000, **self.POINTS)
 
 
-class Night(ProgramTest):
-    """Slabs of cylinders against exact placements: minutes."""
+@nightly
+class Slabs(ProgramTest):
+    """Slabs of cylinders against exact placements."""
 
     TILTS = [-0.06, -0.04, -0.02, 0.02, 0.04, 0.06]
     SLAB = {"domain": "box", "width": 24, "depth": 6, "scatterer": "tm", "radius": 0.1, "index": 1.5, "count": 355,
@@ -189,4 +189,4 @@ class Refused(RefusingTest):
 
 
 if __name__ == "__main__":
-    unittest.main(defaultTest=["Graded", "Guiding", "Refused"] if len(sys.argv) < 2 else None)
+    unittest.main()
