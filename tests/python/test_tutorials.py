@@ -1,8 +1,10 @@
 """Each tutorial runs, draws its picture, and finds its own assertions true, within a minute."""
 
+import contextlib
 import multiprocessing
 import os
 import runpy
+import sys
 import traceback
 import unittest
 
@@ -18,12 +20,14 @@ MOST_S = 60 * float(os.environ.get("FLATSPECKLE_SLOWNESS", 1))
 
 class Tutorials(PackageTest):
     def run_script(self, script):
-        """As `python SCRIPT` in the test's folder; what went wrong is left in the file `error`."""
+        """As `python SCRIPT` in the test's folder, and what it says to standard error is in SCRIPT.error."""
         os.chdir(self.folder)
-        try:
-            runpy.run_path(str(script), run_name="__main__")
-        except BaseException:
-            (self.folder / "error").write_text(traceback.format_exc())
+        with open(f"{script.stem}.error", "w") as heard, contextlib.redirect_stderr(heard):
+            try:
+                runpy.run_path(str(script), run_name="__main__")
+            except BaseException:
+                traceback.print_exc()
+                sys.exit(1)
 
     def test_each(self):
         """Each in a copy of this process, which has loaded matplotlib and xarray."""
@@ -32,9 +36,9 @@ class Tutorials(PackageTest):
                 process = multiprocessing.get_context("fork").Process(target=self.run_script, args=[script])
                 process.start()
                 process.join(MOST_S)
-                process.kill()
-                error = self.folder / "error"
-                self.assertFalse(error.exists(), error.exists() and error.read_text())
+                process.kill()  # does nothing where it has ended
+                process.join()
+                self.assertEqual(process.exitcode, 0, (self.folder / f"{script.stem}.error").read_text())
                 self.assertTrue((self.folder / f"{script.stem}.png").is_file())
 
     def test_all_are_in_the_guide_with_their_pictures(self):
