@@ -271,15 +271,15 @@ class Extension(ProgramTest):
         for keeps in (False, True):
             with self.subTest(keeps=keeps):
                 keys = {**WIDE, "keep_state": keeps}
-                done = self.call("covariance", **keys, samples=16_000, out="run.h5")
+                done = self.call("covariance", **keys, samples=112_000, out="run.h5")
                 self.assertEqual("--keep_state" in done.stdout, not keeps)
-                done = self.call("covariance", **keys, samples=24_000, out="run.h5", resume=True)
+                done = self.call("covariance", **keys, samples=116_000, out="run.h5", resume=True)
                 self.assertEqual("afresh" in done.stderr, not keeps)
-                self.call("covariance", **keys, samples=24_000, out="whole.h5")
+                self.call("covariance", **keys, samples=116_000, out="whole.h5")
                 self.check_same("run.h5", "whole.h5")
 
     def test_interrupted_afresh_keeps_the_finished_one(self):
-        self.call("covariance", **WIDE, samples=16_000, out="run.h5")
+        self.call("covariance", **WIDE, samples=112_000, out="run.h5")
         before = (self.folder / "run.h5").read_bytes()
         process = self.start("covariance", "--resume", **WIDE, samples=50_000_000, out="run.h5")
         self.wait_until_it_catches(process)
