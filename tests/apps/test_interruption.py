@@ -14,10 +14,10 @@ from program import BOX, TILTS, ProgramTest, attributes, catches, datasets
 
 # Each runs for a third of a second or more on two threads.
 LONG = {
-    "mc": ("covariance", {**BOX, **TILTS, "samples": 600_000}),
+    "mc": ("covariance", {**BOX, **TILTS, "samples": 1_000_000}),
     "wave": ("covariance", {**BOX, **TILTS, "samples": 5000, "method": "wave"}),
     "validate, in mc": ("validate", {**BOX, **TILTS, "samples": 600_000, "wave_samples": 20}),
-    "validate, in wave": ("validate", {**BOX, **TILTS, "samples": 5000, "wave_samples": 25000}),
+    "validate, in wave": ("validate", {**BOX, **TILTS, "samples": 5000, "wave_samples": 40000}),
 }
 SHORT = {**BOX, **TILTS, "samples": 20_000, "threads": 2}
 NEVER = 1e-9  # a target error that is not reached
@@ -104,7 +104,7 @@ class Interruption(ProgramTest):
     def test_other_threads_and_stops_may_resume(self):
         keys = LONG["mc"][1]
         self.interrupt(signal.SIGINT, 0.1, "covariance", **keys, threads=2, out="run.h5")
-        keys = {**keys, "samples": 700_000}
+        keys = {**keys, "samples": 1_100_000}
         self.call("covariance", "--resume", **keys, threads=3, out="run.h5")
         self.call("covariance", **keys, out="whole.h5")
         self.assert_same_data("run.h5", "whole.h5")
