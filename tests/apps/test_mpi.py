@@ -16,7 +16,7 @@ ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_R
 
 SWEEP = {"depth": 100, "optical_depth": [2, 5], "g": [0, 0.5], "albedo": [1, 0.9],
          "tilts": [0, 0.001, 0.002, 0.004]}
-LONG = {**SWEEP, "samples": 100_000}
+LONG = {**SWEEP, "samples": 150_000}
 
 
 class Mpi(ProgramTest):
