@@ -18,6 +18,7 @@ namespace {
 struct BenchKeys {
   std::string word;
   bool quick = false;
+  long every = 1;
   RunSettings run;
 };
 
@@ -32,6 +33,15 @@ std::string text(const char* format, Values... values) {
   char line[400];
   std::snprintf(line, sizeof line, format, values...);
   return line;
+}
+
+/// Returns every so manyth row, from the first.
+template <typename Row>
+std::vector<Row> thinned(std::vector<Row> rows, long every) {
+  std::vector<Row> kept;
+  for (std::size_t i = 0; i < rows.size(); i += static_cast<std::size_t>(every))
+    kept.push_back(std::move(rows[i]));
+  return kept;
 }
 
 /// run(i) for all i in this order, side by side.
@@ -85,11 +95,12 @@ bool has_slope_of_sampling(const bench::ErrorCurve& curve) {
   return !curve.is_monte_carlo || std::abs(curve.slope + 0.5) <= tolerance;
 }
 
-Outcome error_against_time(ResultFile& file, bool quick) {
+Outcome error_against_time(ResultFile& file, bool quick, long every) {
   const double cpu_seconds = quick ? 0.05 : 30;
   auto runs = bench::error_runs();
   if (quick) std::erase_if(runs, [](const auto& run) { return run.slow; });
-  const auto costs = bench::cost_runs();
+  runs = thinned(std::move(runs), every);
+  const auto costs = thinned(bench::cost_runs(), every);
   std::vector<bench::ErrorCurve> curves(runs.size());
   std::vector<bench::CostCurve> growth(costs.size());
   BenchLog log(runs.size() + costs.size(), "curves");
@@ -113,10 +124,11 @@ Outcome error_against_time(ResultFile& file, bool quick) {
       "curves", runs.size() + costs.size(), static_cast<std::size_t>(failed)};
 }
 
-Outcome stability(ResultFile& file, bool quick) {
+Outcome stability(ResultFile& file, bool quick, long every) {
   std::vector<ExaminedCase> cases;
   for (auto& extreme : bench::extreme_cases())
     if (!quick || !extreme.slow) cases.push_back({std::move(extreme), {}});
+  cases = thinned(std::move(cases), every);
   auto order = in_order(cases.size());
   std::stable_partition(order.begin(), order.end(),
                         [&](std::size_t i) { return cases[i].extreme.slow; });
@@ -136,11 +148,11 @@ Outcome stability(ResultFile& file, bool quick) {
 }
 
 /// One at a time, for kernels that compete for the memory would wait for each other.
-Outcome what_plans_leave_out(ResultFile& file, bool quick) {
+Outcome what_plans_leave_out(ResultFile& file, bool quick, long every) {
   const double cpu_seconds = quick ? 0.02 : 4;
   omp_set_num_threads(1);
   std::vector<bench::PlanRow> rows;
-  const auto cases = bench::plan_cases();
+  const auto cases = thinned(bench::plan_cases(), every);
   BenchLog log(cases.size(), "comparisons");
   for (const auto& comparison : cases) {
     rows.push_back(comparison.run(cpu_seconds));
@@ -153,7 +165,7 @@ Outcome what_plans_leave_out(ResultFile& file, bool quick) {
           rows.size(), static_cast<std::size_t>(failed)};
 }
 
-using Report = Outcome (*)(ResultFile&, bool quick);
+using Report = Outcome (*)(ResultFile&, bool quick, long every);
 
 Report report_named(const std::string& word) {
   if (word == "error") return error_against_time;
@@ -164,7 +176,8 @@ Report report_named(const std::string& word) {
 
 void add_keys(Keys& keys, BenchKeys& values) {
   keys.group("Benchmark");
-  keys.add("quick", values.quick, "Only a look: seconds in place of minutes");
+  keys.add("quick", values.quick, "Only a look: a minute in place of many");
+  keys.add("every", values.every, "Only every so manyth row, from the first").positive();
   add_thread_key(keys, values.run);
   add_output_key(keys, values.run);
 }
@@ -175,11 +188,12 @@ int run_benchmark(const Subcommand& command, BenchKeys& values) {
   const Report kind = report_named(values.word);
   const Session session(command.text(), keys, values.run, command.only_prints());
   keys.read(values.quick);
+  keys.read(values.every);
   if (!command.settle()) return ExitStatus::done;
   omp_set_num_threads(session.threads());
   return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
     const Stopwatch clock;
-    const Outcome outcome = kind(file, values.quick);
+    const Outcome outcome = kind(file, values.quick, values.every);
     std::printf("%zu %s, %zu failed, %.0f s\n", outcome.count, outcome.parts.c_str(),
                 outcome.failed, clock.seconds());
     return Made{outcome.plan, static_cast<double>(outcome.count),

@@ -86,7 +86,7 @@ def file_of(result):
 def whole(figure, pad):
     """Makes the page larger by what stands outside of it, legends above all, with so many inches around,
     and leaves the panels as they are: so that nothing is cut off however the figure is saved."""
-    figure.canvas.draw()
+    figure.draw_without_rendering()
     width, height = figure.get_size_inches()
     box = figure.get_tightbbox(figure.canvas.get_renderer())
     left, bottom = (max(0, pad - low) for low in (box.x0, box.y0))
@@ -99,7 +99,7 @@ def whole(figure, pad):
     figure.get_layout_engine().set(rect=(left / wide, bottom / high, width / wide, height / high))
     for legend, place in zip(figure.legends, places):
         legend.set_bbox_to_anchor(((place.x0 + left) / wide, (place.y0 + bottom) / high), figure.transFigure)
-    figure.canvas.draw()
+    figure.draw_without_rendering()
 
 
 def figure(name, results, options):

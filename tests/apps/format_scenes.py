@@ -155,7 +155,7 @@ RUNS = {
                              "scatterer": "point", "method": "both"}),
     "sweep_of": ("sweep", {**STAGE, "of": "render", "vary": ["method=light,path", "mu_a=0,0.1"],
                            "sensor": "area", "sensor_at": [0, 0, 4], "sensor_size": [1, 1]}),
-    "optimise": ("optimise", {**STAGE, "of": "render", "vary": ["mu_a=0:0.1"], "maximise": "total", "scattered": 2,
+    "optimise": ("optimise", {**STAGE, "of": "render", "vary": ["mu_a=0:0.1"], "maximise": "total", "scattered": 2, "method": "light",
                               "against": "mu_a=0.2", "key_tolerance": 0.5, "target_error": 0.5, "sensor": "area",
                               "sensor_at": [0, 0, 4], "sensor_size": [1, 1]}),
     "ball": ("trace", {**RAYS, "field": "luneburg", "origin": [0, 0, -2], "beam_radius": 0.5}),
@@ -194,7 +194,7 @@ RUNS = {
     "lens_graded": ("design", {"design": "guide", "goal": "equal_path", "delta": 0.01, "ray_count": 9}),
     "display": ("design", {"design": "box", "nodes": [7], "goal": "irradiance", "pictures": "picture.csv", "rays_across": 4,
                            "iterations": 2}),
-    **{f"bench_{kind}": (f"bench {kind}", {"quick": True})
+    **{f"bench_{kind}": (f"bench {kind}", {"quick": True, "every": 25})
        for kind in ("error", "stability", "plan")},
 }
 

@@ -22,6 +22,9 @@ SLAB = {"domain": "slab", "depth": 100, "scatterer": "hg", "optical_depth": 2, "
 SLOWNESS = float(os.environ.get("FLATSPECKLE_SLOWNESS", 1))  # above 1 of a program with sanitizers
 LLVM_OPENMP = "libomp" in subprocess.run(["ldd", PROGRAM], capture_output=True, text=True).stdout
 MOST_USER_S = 0.3 * SLOWNESS  # bad input is refused before anything is computed
+WHOLE = "FLATSPECKLE_TEST_WHOLE" in os.environ  # by night: all tests at their full sizes
+SAMPLES, ERRORS = (1, 1) if WHOLE else (0.25, 2)  # long runs: a quarter of their samples, twice their errors by day
+nightly = unittest.skipUnless(WHOLE, "takes minutes: run by night")
 TILTS = {"covariance": "memory_effect", "tilts": [0, 0.04, 0.16], "view_angles": [0.1, 0.5]}
 
 

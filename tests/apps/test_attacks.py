@@ -10,11 +10,11 @@ import unittest
 
 import h5py
 
-from program import BOX, PROGRAM, SLAB, SLOWNESS, ProgramTest, cpu_of_children, flags
+from program import BOX, PROGRAM, SLAB, SLOWNESS, WHOLE, ProgramTest, cpu_of_children, flags
 
 SHORT = {**BOX, "samples": 4000}
 LONG = {**BOX, "seconds": 60, "threads": 1}
-INTERLEAVINGS = int(os.environ.get("FLATSPECKLE_INTERLEAVINGS", 12))
+INTERLEAVINGS = 200 if WHOLE else 6
 WIDE = {"covariance": "full", "view_angles": [0.1 * i for i in range(15)]}  # 45 kB of result
 
 

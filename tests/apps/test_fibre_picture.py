@@ -1,12 +1,12 @@
-"""Pictures of the graded fibre against those of its rays in closed form. By night, with the argument Pixels: what share of
-the pixels that are not marked lies beyond two errors."""
+"""Pictures of the graded fibre against those of its rays in closed form. By night: what share of the pixels that are not
+marked lies beyond two errors."""
 
-import sys
 import unittest
 
 import numpy as np
 
 from fibre_picture import fibre_picture
+from program import nightly
 from renders import RenderTest
 
 
@@ -24,6 +24,7 @@ class Picture(RenderTest):
         self.assertLess(np.sqrt(np.mean((coarse - fine) ** 2)), 0.005 * np.sqrt(np.mean(fine**2)))
 
 
+@nightly
 class Pixels(RenderTest):
     def assert_few_beyond(self, samples, seeds):
         """At most 8 %, and what chance adds to so many pixels: one standard error."""
@@ -46,4 +47,4 @@ class Pixels(RenderTest):
 
 
 if __name__ == "__main__":
-    unittest.main(defaultTest="Picture" if len(sys.argv) < 2 else None)
+    unittest.main()

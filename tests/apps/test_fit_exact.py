@@ -1,13 +1,12 @@
-"""Cylinders in a box, measured by exact placements: what fit makes of them, and the bias that it tells of. By night, with the
-argument Seeds: two crowds by several seeds."""
+"""Cylinders in a box, measured by exact placements: what fit makes of them, and the bias that it tells of. By night two
+crowds by several seeds."""
 
 import os
-import sys
 import unittest
 
 import numpy as np
 
-from program import ProgramTest, attributes, datasets
+from program import ProgramTest, nightly, attributes, datasets
 
 VIEWS = [-2.9, -2.6, -2.3, -2, -1.7, -1.4, -1.1, -0.9, -0.7, -0.5, -0.35, -0.2, 0.25, 0.3, 0.4, 0.45, 0.55, 0.6, 0.65,
          0.8, 1, 1.2, 1.3, 1.5, 1.6, 1.8, 1.9, 2.1, 2.4, 2.7]
@@ -38,6 +37,7 @@ class Once(Fits):
         self.assertLess((found["estimate_error"] / found["estimate"]).max(), 0.15)
 
 
+@nightly
 class Seeds(Fits):
     """Two crowds, several seeds, 2000 placements each."""
 
@@ -51,4 +51,4 @@ class Seeds(Fits):
 
 
 if __name__ == "__main__":
-    unittest.main(defaultTest="Once" if len(sys.argv) < 2 else None)
+    unittest.main()

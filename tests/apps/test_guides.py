@@ -1,5 +1,5 @@
 """Every command of the README and the guides. Here: its keys are known and its values accepted. By
-night, with the argument Run: each guide's blocks run one after the other, as a reader would."""
+night each guide's blocks run one after the other, as a reader would."""
 
 import os
 import pathlib
@@ -10,7 +10,7 @@ import subprocess
 import sys
 import unittest
 
-from program import DATA, PROGRAM, ProgramTest
+from program import DATA, PROGRAM, ProgramTest, nightly
 
 ROOT = DATA.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -66,6 +66,7 @@ class Written(ProgramTest):
             self.assertEqual(done.returncode, 0, done.stderr)
 
 
+@nightly
 class Run(ProgramTest):
     def test_every_block_runs(self):
         for page in PAGES:
@@ -91,4 +92,4 @@ class Run(ProgramTest):
 
 
 if __name__ == "__main__":
-    unittest.main(defaultTest="Written" if len(sys.argv) < 2 else None)
+    unittest.main()

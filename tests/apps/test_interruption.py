@@ -12,11 +12,11 @@ import numpy as np
 
 from program import BOX, TILTS, ProgramTest, attributes, catches, datasets
 
-# Each runs for half a second or more on two threads.
+# Each runs for a third of a second or more on two threads.
 LONG = {
     "mc": ("covariance", {**BOX, **TILTS, "samples": 1_000_000}),
-    "wave": ("covariance", {**BOX, **TILTS, "samples": 8000, "method": "wave"}),
-    "validate, in mc": ("validate", {**BOX, **TILTS, "samples": 1_000_000, "wave_samples": 20}),
+    "wave": ("covariance", {**BOX, **TILTS, "samples": 5000, "method": "wave"}),
+    "validate, in mc": ("validate", {**BOX, **TILTS, "samples": 600_000, "wave_samples": 20}),
     "validate, in wave": ("validate", {**BOX, **TILTS, "samples": 5000, "wave_samples": 40000}),
 }
 SHORT = {**BOX, **TILTS, "samples": 20_000, "threads": 2}
@@ -271,15 +271,15 @@ class Extension(ProgramTest):
         for keeps in (False, True):
             with self.subTest(keeps=keeps):
                 keys = {**WIDE, "keep_state": keeps}
-                done = self.call("covariance", **keys, samples=120_000, out="run.h5")
+                done = self.call("covariance", **keys, samples=112_000, out="run.h5")
                 self.assertEqual("--keep_state" in done.stdout, not keeps)
-                done = self.call("covariance", **keys, samples=180_000, out="run.h5", resume=True)
+                done = self.call("covariance", **keys, samples=116_000, out="run.h5", resume=True)
                 self.assertEqual("afresh" in done.stderr, not keeps)
-                self.call("covariance", **keys, samples=180_000, out="whole.h5")
+                self.call("covariance", **keys, samples=116_000, out="whole.h5")
                 self.check_same("run.h5", "whole.h5")
 
     def test_interrupted_afresh_keeps_the_finished_one(self):
-        self.call("covariance", **WIDE, samples=120_000, out="run.h5")
+        self.call("covariance", **WIDE, samples=112_000, out="run.h5")
         before = (self.folder / "run.h5").read_bytes()
         process = self.start("covariance", "--resume", **WIDE, samples=50_000_000, out="run.h5")
         self.wait_until_it_catches(process)

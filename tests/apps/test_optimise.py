@@ -1,5 +1,6 @@
 """`optimise`: the best values of keys, seen by random numbers of their own, however often it was killed."""
 
+import shutil
 import signal
 import time
 import unittest
@@ -23,6 +24,17 @@ GUIDE = {**SOUND, "stage_box": [-2, -2, 0, 2, 2, 8], "mu_s": 0.2, "phase": "heny
 
 
 class Optimise(ProgramTest):
+    @classmethod
+    def setUpClass(cls):
+        """The search of GUIDE, made once, on two threads."""
+        cls.maker = ProgramTest("call")
+        cls.maker.setUp()
+        cls.addClassCleanup(cls.maker.doCleanups)
+        cls.maker.call("optimise", **GUIDE, out="whole.h5")
+
+    def whole(self):
+        shutil.copy(self.maker.folder / "whole.h5", self.folder)
+
     def found(self, path):
         return datasets(self.folder / path, ("wall_s", "cpu_s"))
 
@@ -55,8 +67,8 @@ class Optimise(ProgramTest):
 
     def test_the_result_is_that_of_the_best(self):
         """Its datasets are those of a run of its own there, by a fresh seed."""
-        self.call("optimise", **GUIDE, out="guide.h5")
-        found = self.found("guide.h5")
+        self.whole()
+        found = self.found("whole.h5")
         keys = {key: GUIDE[key] for key in GUIDE if key not in ("vary", "maximise", "scattered", "target_error",
                                                                 "against")}
         last = found["search/draw"] == 2
@@ -70,7 +82,7 @@ class Optimise(ProgramTest):
         self.assertLess(found["best/value_error"] / found["best/value"], 0.1)
         self.assertGreater(found["best/gain"], 1)
         self.assertAlmostEqual(float(found["best/gain"] * found["against/value"]), float(found["best/value"]), 12)
-        with h5py.File(self.folder / "guide.h5") as file:
+        with h5py.File(self.folder / "whole.h5") as file:
             self.assertEqual(file.attrs["objective"], "total")
             self.assertEqual(list(file["search"].attrs["swept"]), ["amplitude", "sound_order"])
             self.assertEqual(len(file["search/amplitude"]), len(file["search/value"]))
@@ -101,11 +113,11 @@ class Optimise(ProgramTest):
 
     def test_threads(self):
         self.call("optimise", **{**GUIDE, "threads": 1}, out="one.h5")
-        self.call("optimise", **GUIDE, out="two.h5")
-        self.assert_same("one.h5", "two.h5")
+        self.whole()
+        self.assert_same("one.h5", "whole.h5")
 
     def test_killed_again_and_again(self):
-        self.call("optimise", **GUIDE, out="whole.h5")
+        self.whole()
         for number in (signal.SIGKILL, signal.SIGTERM, signal.SIGKILL):
             process = self.start("optimise", **GUIDE, out="killed.h5", resume=True)
             time.sleep(0.3)
@@ -122,7 +134,7 @@ class Optimise(ProgramTest):
         self.assertIn("--resume goes on", done.stdout)
         self.assertFalse(self.attribute("short.h5", "complete"))
         self.call("optimise", **GUIDE, resume=True, out="short.h5")
-        self.call("optimise", **GUIDE, out="whole.h5")
+        self.whole()
         self.assert_same("short.h5", "whole.h5")
 
     def attribute(self, path, name):

@@ -5,7 +5,7 @@ import unittest
 import numpy as np
 
 from meshes import ball, volume, write_stl
-from program import attributes
+from program import ERRORS, SAMPLES, attributes
 from renders import BOX, RenderTest
 
 ROOM = {"stage_box": [-2, -2, -2, 2, 2, 2]}
@@ -43,11 +43,11 @@ class Mesh(RenderTest):
         for index in (1.4, 1):
             for medium in (SMOKE, {}):
                 with self.subTest(index=index, **medium):
-                    mesh, sphere = self.both(index=index, method="light", samples=60000, **medium, **BEAM, **DISK)
+                    mesh, sphere = self.both(index=index, method="light", samples=int(60000 * SAMPLES), **medium, **BEAM, **DISK)
                     self.assert_balance(mesh)
-                    self.assert_alike(mesh, sphere, "total", 0.02)
+                    self.assert_alike(mesh, sphere, "total", 0.02 * ERRORS)
                     for name in ("absorbed_body", "scattered") if medium else ():
-                        self.assert_alike(mesh, sphere, f"energy/{name}", 0.02)
+                        self.assert_alike(mesh, sphere, f"energy/{name}", 0.02 * ERRORS)
 
     def test_map(self):
         """Fluence and absorbed power inside of it."""
@@ -59,13 +59,13 @@ class Mesh(RenderTest):
     def test_pictures(self):
         """From outside, joined through the smooth surface: by a pinhole, and on a wall."""
         camera = {"sensor": "camera", "sensor_at": [1.999, 0, 0], "sensor_direction": [-1, 0, 0],
-                  "field_of_view": 1.2, "index": 1.1, "samples": 160000}
+                  "field_of_view": 1.2, "index": 1.1, "samples": int(160000 * SAMPLES)}
         wall = {"sensor": "area", "sensor_at": [2, 0, 0], "sensor_up": [0, 1, 0], "sensor_size": [1, 1],
-                "index": 1.4, "method": "bidirectional", "samples": 40000}
+                "index": 1.4, "method": "bidirectional", "samples": int(40000 * SAMPLES)}
         for keys, error in ((camera, 0.08), (wall, 0.02)):
             with self.subTest(sensor=keys["sensor"]):
                 mesh, sphere = self.both(point_light=[0, 0, -1.5, 1], pixels=[3, 2], **SMOKE, **keys)
-                self.assert_alike(mesh, sphere, "mean", error)
+                self.assert_alike(mesh, sphere, "mean", error * ERRORS)
                 errors = np.hypot(mesh["image_error"], sphere["image_error"])
                 self.assertLess(np.mean(np.abs(mesh["image"] - sphere["image"]) > 3 * errors), 0.2)
 

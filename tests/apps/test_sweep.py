@@ -56,7 +56,7 @@ class Shares(SweepTest):
         self.assertEqual(part, whole)
 
     def test_at_the_same_time(self):
-        self.call("sweep", **MANY, out="whole.h5")
+        self.whole(MANY)
         for out in (["sweep.h5"] * 3, ["a.h5", "b.h5", "c.h5"]):
             shares = [self.start("sweep", **MANY, shard=f"{number}/3", out=name)
                       for number, name in enumerate(out)]
@@ -263,7 +263,7 @@ class Stops(SweepTest):
         self.assertTrue(is_complete(self.folder / "sweep.h5"))
 
     def test_seconds(self):
-        self.call("sweep", **SLOW, out="whole.h5")
+        self.whole(SLOW)
         done = self.call("sweep", **SLOW, seconds=0.1, out="sweep.h5", status=3)
         self.assertIn("--resume", done.stdout)
         self.assertTrue(self.unfinished())
@@ -288,7 +288,7 @@ class Stops(SweepTest):
         self.assertTrue(self.unfinished())
 
     def test_seconds_of_a_share(self):
-        self.call("sweep", **SLOW, out="whole.h5")
+        self.whole(SLOW)
         self.call("sweep", **SLOW, shard="0/2", seconds=0.05, out="sweep.h5", status=3)
         self.assertFalse((self.folder / "sweep.h5").exists())
         self.call("sweep", "--resume", **SLOW, out="sweep.h5")

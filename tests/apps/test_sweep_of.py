@@ -137,14 +137,14 @@ class SweepOf(SweepTest):
         self.assert_same("one.h5", "two.h5")
 
     def test_interruption(self):
-        self.call("sweep", **SLOW, out="whole.h5")
+        self.whole(SLOW)
         self.interrupted(**SLOW, out="sweep.h5")
         self.call("sweep", **SLOW, out="sweep.h5", resume=True)
         self.assert_same("sweep.h5", "whole.h5")
         self.assertFalse(self.points().exists())
 
     def test_shares_and_merge(self):
-        self.call("sweep", **MANY, out="whole.h5")
+        self.whole(MANY)
         for i in range(3):
             self.call("sweep", **MANY, out="sweep.h5", shard=f"{i}/3")
             if i < 2:
@@ -153,7 +153,7 @@ class SweepOf(SweepTest):
         self.assert_same("sweep.h5", "whole.h5")
 
     def test_part_as_a_list(self):
-        self.call("sweep", **MANY, out="whole.h5")
+        self.whole(MANY)
         self.call("sweep", **MANY, out="sweep.h5", shard="1/3")
         self.call("merge", out="sweep.h5", partial=True, status=3)
         part, whole = (datasets(self.folder / path) for path in ("sweep.h5", "whole.h5"))

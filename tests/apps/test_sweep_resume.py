@@ -112,7 +112,7 @@ class Interruption(SweepTest):
         self.assert_same_data("sweep.h5", "whole.h5")
 
     def test_of_a_share(self):
-        self.call("sweep", **SLOW, out="whole.h5")
+        self.whole(SLOW)
         self.interrupted(**SLOW, shard="0/2", out="sweep.h5")
         self.call("sweep", **SLOW, shard="1/2", out="sweep.h5")
         self.call("sweep", **SLOW, shard="0/2", out="sweep.h5", status=2)
@@ -124,7 +124,7 @@ class Interruption(SweepTest):
 
     def test_where_an_older_result_lies(self):
         """Which a new sweep may replace, in one go or in several."""
-        self.call("sweep", **SLOW, out="whole.h5")
+        self.whole(SLOW)
         self.call("sweep", **SWEEP, out="sweep.h5")
         older = (self.folder / "sweep.h5").read_bytes()
         self.interrupted(**SLOW, out="sweep.h5")
@@ -192,7 +192,7 @@ class Damage(SweepTest):
             self.check_mended({})
 
     def test_of_unfinished_points(self):
-        self.call("sweep", **SLOW, out="slow.h5")
+        self.whole(SLOW, "slow.h5")
         for change in (truncated, emptied, flipped_at(9000, 0)):
             self.interrupted(**SLOW, out="sweep.h5")
             damaged = {}
@@ -227,7 +227,7 @@ class Damage(SweepTest):
 
     def test_of_unfinished_points_of_another_sweep(self):
         """Or of another point."""
-        keys = {**SLOW, "optical_depth": [3], "samples": 3_000_000}
+        keys = {**SLOW, "optical_depth": [3], "samples": 1_000_000}
         self.call("sweep", **keys, out="slow.h5")
         for changes in ({"seed": 2}, {"optical_depth": [2]}):
             self.interrupted(**{**keys, **changes}, out="other.h5")

@@ -1,4 +1,4 @@
-"""torture.py finds nothing in eight seconds, and its checks find programs that misbehave."""
+"""torture.py finds nothing in four seconds, and its checks find programs that misbehave."""
 
 import pathlib
 import signal
@@ -39,7 +39,7 @@ MISBEHAVIOURS = [
 
 class Torture(ProgramTest):
     def test_nothing_is_found(self):
-        done = subprocess.run([sys.executable, "-B", TORTURE, "--runs", "500", "--seconds", "8"],
+        done = subprocess.run([sys.executable, "-B", TORTURE, "--runs", "500", "--seconds", "4"],
                               capture_output=True, text=True, timeout=550)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 

@@ -6,6 +6,7 @@ import sys
 import tempfile
 import unittest
 
+WHOLE = "FLATSPECKLE_TEST_WHOLE" in os.environ  # by night: all tests at their full sizes
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "python"))
 

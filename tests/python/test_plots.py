@@ -82,7 +82,8 @@ class Plots(PackageTest):
 
     def test_a_sweep_over_two_keys_makes_several_curves_or_is_refused(self):
         scene = {"stage_box": [-1, -1, -1, 1, 1, 1], "point_light": [0, 0, -0.5, 1], "sensor": "area",
-                 "sensor_at": [0, 0, 1], "sensor_size": [2, 2], "pixels": [1, 1], "phase": "henyey_greenstein", "samples": 500}
+                 "sensor_at": [0, 0, 1], "sensor_size": [2, 2], "pixels": [1, 1], "phase": "henyey_greenstein", "samples": 500,
+                 "method": "path"}
         two = fs.sweep(scene, of="render", vary={"mu_s": [0.5, 1, 2], "mu_a": [0.1, 0.2]})
         self.assertEqual([len(bars.lines[0].get_xdata()) for bars in fs.plots.throughput(two).axes[0].containers], [3, 3])
         three = fs.sweep(scene, of="render", vary={"mu_s": [0.5, 1], "mu_a": [0.1, 0.2], "g": [0, 0.5]})

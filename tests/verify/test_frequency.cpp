@@ -50,13 +50,23 @@ void check(const Scene& scene, std::uint64_t placements) {
   const auto mc = estimates(scene, mc::frequency_job(scene, plan, shifts, 1), 200'000).correlation;
 
   const double bias = 2 / (scene.k * scene.medium.mean_free_path());  // what the method neglects
+  const auto entries = static_cast<double>(mc.value.size());
+  double deviations = 0, variances = 0;
   for (std::size_t i = 0; i < mc.value.size(); ++i) {
     const double error = std::hypot(mc.error[i], exact.error[i]);
     INFO("correlation ", i, ": exact ", exact.value[i].real(), " ", exact.value[i].imag(),
          " i, Monte Carlo ", mc.value[i].real(), " ", mc.value[i].imag(), " i +- ", error);
     CHECK(std::abs(mc.value[i] - exact.value[i]) < 4 * error + bias);
     CHECK(error < 0.015 * tests::effort().errors);
+    deviations += std::norm(mc.value[i] - exact.value[i]);
+    variances += error * error;
   }
+  // Values of one view share their placements and paths; those of other views are independent. So the
+  // mean square of the deviations over that of the errors is 1 to 1 / sqrt(views), as real and
+  // imaginary parts are.
+  const auto views = static_cast<double>(
+      scene.request.moves > 0 ? scene.request.reference_views : scene.request.views.size());
+  CHECK(deviations < variances * (1 + 4 / std::sqrt(views)) + entries * bias * bias);
 }
 
 }  // namespace
