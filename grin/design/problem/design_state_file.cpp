@@ -18,7 +18,6 @@ void each_member(State& state, const Use& use) {
   use(state.search.roughness);
   use(state.search.loss);
   use(state.search.traces);
-  use(state.search.memory);
   use(state.history.rms);
   use(state.history.traces);
   use(state.history.cpu_s);
