@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <map>
 #include <set>
 #include <sstream>
 
@@ -23,6 +24,10 @@ namespace {
 constexpr const char* length_unit_key = "length_unit";
 /// Keys whose texts are values of others: depth=10um:1mm.
 const std::set<std::string> assigning{"vary", "free", "against"};
+/// Keys of earlier versions, and what became of them.
+const std::map<std::string, std::string> gone{
+    {"photon_radius", "; the photon map is a baseline of `bench error`"},
+    {"rate", "; the search adam is a baseline of `bench error`"}};
 
 /// -.4 and -pi are numbers; CLI11 would take them for the flags "." and "p" with a value.
 std::string with_figure(const std::string& argument) {
@@ -49,6 +54,7 @@ std::string line_of(const Arguments& arguments) {
 }
 
 std::string unknown_key(const Keys& keys, const std::string& name) {
+  if (gone.contains(name)) return name + ": unknown key" + gone.at(name);
   const auto owners = key_owners();
   const auto owner = owners.find(name);
   const std::string advice = owner == owners.end() ? did_you_mean(keys, name)

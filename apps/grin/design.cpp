@@ -130,13 +130,6 @@ bool is_reached(const DesignScene& scene, const DesignState& state, const Design
   return scene.target == 0 || state.history.rms.back() <= scene.target;
 }
 
-std::string method_of(const DesignScene& scene) {
-  const std::string by = "; derivatives by reversed rays";
-  if (scene.method == "lbfgs") return "quasi-Newton steps (L-BFGS)" + by;
-  if (scene.method == "adam") return "steps of Adam" + by;
-  return "Gauss-Newton steps, damped" + by;
-}
-
 /// Nothing where a signal came.
 std::optional<Made> make(const DesignScene& scene, const Kept& kept, ResultFile& file) {
   Designer designer(scene);
@@ -151,7 +144,8 @@ std::optional<Made> make(const DesignScene& scene, const Kept& kept, ResultFile&
   const bool reached = is_reached(scene, state, check);
   if (!reached)
     std::puts(state.stalled ? "the search stalled" : "stopped before the target was reached");
-  return Made{method_of(scene), state.history.traces.back(),
+  return Made{"Gauss-Newton steps, damped; derivatives by reversed rays",
+              state.history.traces.back(),
               reached ? ExitStatus::done : ExitStatus::error_not_reached};
 }
 

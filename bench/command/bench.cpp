@@ -1,14 +1,16 @@
 #include <algorithm>
 #include <cstdio>
+#include <mutex>
 #include <numeric>
+#include <unistd.h>
 
 #include <omp.h>
 
 #include "apps/command/subcommands.h"
-#include "bench/command/bench_log.h"
 #include "bench/command/bench_output.h"
 #include "core/error.h"
 #include "core/run/parallel.h"
+#include "core/run/stopwatch.h"
 #include "core/session/session.h"
 
 namespace flatspeckle::apps {
@@ -20,6 +22,37 @@ struct BenchKeys {
   bool quick = false;
   long every = 1;
   RunSettings run;
+};
+
+/// A line on standard output for each part of a benchmark that is finished, and on a terminal one
+/// on standard error that tells how many are not. For any thread.
+class BenchLog {
+ public:
+  /// parts: what they are called.
+  BenchLog(std::size_t count, std::string parts) : count_(count), parts_(std::move(parts)) {}
+  ~BenchLog() { clear(); }
+
+  void finished(const std::string& line) {
+    const std::lock_guard lock(mutex_);
+    ++done_;
+    clear();
+    std::printf("%s\n", line.c_str());
+    std::fflush(stdout);
+    if (terminal_)
+      std::fprintf(stderr, "bench: %zu of %zu %s, %.0f s", done_, count_, parts_.c_str(),
+                   clock_.seconds());
+  }
+
+ private:
+  void clear() const {
+    if (terminal_) std::fputs("\r\033[K", stderr);
+  }
+
+  std::size_t count_, done_ = 0;
+  std::string parts_;
+  bool terminal_ = isatty(STDERR_FILENO) == 1;
+  Stopwatch clock_;
+  std::mutex mutex_;
 };
 
 /// What a kind of benchmark came to.
@@ -155,7 +188,7 @@ Outcome what_plans_leave_out(ResultFile& file, bool quick, long every) {
   const auto cases = thinned(bench::plan_cases(), every);
   BenchLog log(cases.size(), "comparisons");
   for (const auto& comparison : cases) {
-    rows.push_back(comparison.run(cpu_seconds));
+    rows.push_back(comparison(cpu_seconds));
     log.finished(line_of(rows.back()));
   }
   write_plan_rows(file, rows);

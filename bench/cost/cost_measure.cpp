@@ -29,6 +29,18 @@ double seconds_of(const std::function<void()>& work) {
 
 }  // namespace
 
+std::vector<CostRun> cost_runs() {
+  std::vector<CostRun> runs;
+  for (const auto& some : {wave_cost_runs(), transport_cost_runs(), ray_cost_runs()})
+    runs.insert(runs.end(), some.begin(), some.end());
+  return runs;
+}
+
+CostRun cost_run(const Scaling& scaling) {
+  return {scaling.what,
+          [scaling](double cpu_seconds) { return measure_cost(scaling, cpu_seconds); }};
+}
+
 void fit_exponent(CostCurve& curve) {
   const std::size_t used = std::min<std::size_t>(4, curve.size.size());
   const auto fitted =

@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "bench/cost/cost_measure.h"
-#include "bench/cost/cost_rooms.h"
 #include "grin/media/fields/luneburg.h"
 #include "grin/rays/marching/ray_step.h"
 

@@ -5,7 +5,6 @@
 #include <omp.h>
 
 #include "bench/cost/cost_measure.h"
-#include "bench/cost/cost_rooms.h"
 #include "bench/scenes/render_scenes.h"
 #include "core/run/stopwatch.h"
 #include "mc/paths/estimators/covariance_estimator.h"
@@ -15,7 +14,7 @@ namespace flatspeckle::bench {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// The next batches at every call, of so many samples together: long paths have small batches.
 std::function<void()> samples(double count, const BatchJob& job) {
@@ -23,11 +22,6 @@ std::function<void()> samples(double count, const BatchJob& job) {
           sums = std::make_shared<std::vector<Complex>>(job.size)] {
     for (double done = 0; done < count; done += job.samples_per_batch) job.run((*number)++, *sums);
   };
-}
-
-CostRun run_of(const Scaling& scaling) {
-  return {scaling.what,
-          [scaling](double cpu_seconds) { return measure_cost(scaling, cpu_seconds); }};
 }
 
 FieldJob covariance_job(const SceneSpec& spec) {
@@ -50,8 +44,8 @@ SceneSpec slab(double optical_depth) {
 
 /// Paths are, whatever the optical depth, as long as a mean chord on average in even light.
 CostRun path_against_depth() {
-  return run_of({"100 paths, Monte Carlo", "optical depth", 2, 256, 1,
-                 [](double depth) { return samples(100, covariance_job(slab(depth)).batches); }});
+  return cost_run({"100 paths, Monte Carlo", "optical depth", 2, 256, 1,
+                   [](double depth) { return samples(100, covariance_job(slab(depth)).batches); }});
 }
 
 /// CPU seconds to an error of 1 % of the memory effect in transmission.
@@ -88,12 +82,12 @@ CostRun error_against_depth() {
 
 /// A doubling more, whenever the depth doubles.
 CostRun solution_against_depth() {
-  return run_of({"memory effect to 1e-6, transport", "optical depth", 2, 4096, 0,
-                 [](double depth) -> std::function<void()> {
-                   return [scene = make_scene(slab(depth))] {
-                     mc::slab_covariance(scene, false, {1e-6});
-                   };
-                 }});
+  return cost_run({"memory effect to 1e-6, transport", "optical depth", 2, 4096, 0,
+                   [](double depth) -> std::function<void()> {
+                     return [scene = make_scene(slab(depth))] {
+                       mc::slab_covariance(scene, false, {1e-6});
+                     };
+                   }});
 }
 
 /// box_points with 4 lights and so many views.
@@ -113,26 +107,26 @@ SceneSpec box(double channels, const std::string& covariance) {
 }
 
 CostRun intensities_against_channels() {
-  return run_of({"100 paths, intensities", "channels", 256, 8192, 1, [](double channels) {
-                   return samples(100, covariance_job(box(channels, "intensity")).batches);
-                 }});
+  return cost_run({"100 paths, intensities", "channels", 256, 8192, 1, [](double channels) {
+                     return samples(100, covariance_job(box(channels, "intensity")).batches);
+                   }});
 }
 
 CostRun full_against_channels() {
-  return run_of({"100 paths, full covariance", "channels", 32, 1024, 2, [](double channels) {
-                   return samples(100, covariance_job(box(channels, "full")).batches);
-                 }});
+  return cost_run({"100 paths, full covariance", "channels", 32, 1024, 2, [](double channels) {
+                     return samples(100, covariance_job(box(channels, "full")).batches);
+                   }});
 }
 
 CostRun render_against_depth() {
   constexpr double mean_chord = 4.0 / 3;
-  return run_of({"128 pairs of paths, bidirectional", "optical depth", 1, 128, 1, [](double depth) {
-                   grin::RenderScene scene = even_luneburg();
-                   scene.field = grin::Homogeneous{};
-                   scene.stage.medium.mu_s = depth / mean_chord;
-                   return samples(
-                       128, render_job(scene, {grin::RenderMethod::bidirectional}, 1).batches);
-                 }});
+  return cost_run(
+      {"128 pairs of paths, bidirectional", "optical depth", 1, 128, 1, [](double depth) {
+         grin::RenderScene scene = even_luneburg();
+         scene.field = grin::Homogeneous{};
+         scene.stage.medium.mu_s = depth / mean_chord;
+         return samples(128, render_job(scene, {grin::RenderMethod::bidirectional}, 1).batches);
+       }});
 }
 
 }  // namespace

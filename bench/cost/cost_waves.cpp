@@ -1,17 +1,14 @@
 #include <cmath>
 #include <memory>
-#include <numbers>
 
 #include "bench/cost/cost_measure.h"
-#include "bench/cost/cost_rooms.h"
+#include "bench/scenes/standard_scenes.h"
 #include "core/numbers/random.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::bench {
 
 namespace {
-
-constexpr double k = 2 * std::numbers::pi;
 
 /// Resonant points, ten per square wavelength.
 Placement points(std::size_t count) {
@@ -25,17 +22,15 @@ Placement points(std::size_t count) {
 
 CostRun solver(const std::string& what, wave::Method method, double smallest, double largest,
                double expected) {
-  const Scaling scaling{
-      what, "scatterers", smallest, largest, expected, [method](double size) {
-        const auto placement =
-            std::make_shared<const Placement>(points(static_cast<std::size_t>(size)));
-        return [placement, method] {
-          const wave::SolveOptions options{
-              .tolerance = 1e-6, .sensors = {}, .diagnose = false, .method = method};
-          wave::solve(*placement, k, {0}, options);
-        };
-      }};
-  return {what, [scaling](double cpu_seconds) { return measure_cost(scaling, cpu_seconds); }};
+  return cost_run({what, "scatterers", smallest, largest, expected, [method](double size) {
+                     const auto placement =
+                         std::make_shared<const Placement>(points(static_cast<std::size_t>(size)));
+                     return [placement, method] {
+                       const wave::SolveOptions options{
+                           .tolerance = 1e-6, .sensors = {}, .diagnose = false, .method = method};
+                       wave::solve(*placement, k, {0}, options);
+                     };
+                   }});
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
-#include "bench/error/error_design.h"
-
 #include <cmath>
 
 #include <omp.h>
 
+#include "bench/baselines/gradient_searches.h"
+#include "bench/error/error_rooms.h"
 #include "core/run/stopwatch.h"
 #include "grin/design/goals/even_points.h"
 #include "grin/design/problem/designer.h"
@@ -31,6 +31,10 @@ double index_error(const Form& form, const std::vector<double>& coefficients) {
   return std::sqrt(off / all);
 }
 
+double index_error(const FieldForm& form, const std::vector<double>& coefficients) {
+  return std::visit([&](const auto& of) { return index_error(of, coefficients); }, form);
+}
+
 ErrorPoint sought(const DesignValues& values) {
   const double start = thread_cpu_seconds();
   const DesignScene scene = make_design_scene(values);
@@ -38,10 +42,25 @@ ErrorPoint sought(const DesignValues& values) {
   DesignState state = designer.begin();
   while (!state.ended) designer.advance(state);
   const double seconds = thread_cpu_seconds() - start;
-  const double error =
-      std::visit([&](const auto& form) { return index_error(form, state.search.coefficients); },
-                 designer.form(state));
-  return {seconds, 0, error, 0};
+  return {seconds, 0, index_error(designer.form(state), state.search.coefficients), 0};
+}
+
+/// By the gradient alone, until rays miss by no more than they do at the end of least squares.
+template <class Search>
+ErrorPoint by_gradient(const DesignValues& values, const Search& search) {
+  constexpr double enough = 1e-8;  // root 1e-4
+  constexpr long most_traces = 2000;
+  const double start = thread_cpu_seconds();
+  const DesignScene scene = make_design_scene(values);
+  const DesignTask task = scene.aim->task(scene.walk, false);
+  FinerField field{scene.start.form, scene.start.coefficients};
+  for (int level = 1; level < scene.start.levels; ++level)
+    field = finer(field.form, field.coefficients);
+  const SearchLimits limits{bounds_of(field.form, scene.start.least_index, scene.start.most_index),
+                            enough, most_traces};
+  const Searched found =
+      search(GradientObjective(*task.rays, *task.goal, field.form), limits, field.coefficients);
+  return {thread_cpu_seconds() - start, 0, index_error(field.form, found.coefficients), 0};
 }
 
 DesignValues profile(int coefficients) {
@@ -59,27 +78,34 @@ DesignValues ball(const std::vector<std::int64_t>& nodes) {
   return values;
 }
 
-ErrorCurve curve_of(const char* method, const std::vector<DesignValues>& scenes) {
-  omp_set_num_threads(1);
-  ErrorCurve curve{"lens from n = 1", method, "Luneburg's closed form", 0, {}};
-  curve.is_monte_carlo = false;
-  for (const DesignValues& values : scenes) curve.points.push_back(sought(values));
-  return curve;
+template <class Sought>
+ErrorRun run_of(const char* method, const std::vector<DesignValues>& scenes, const Sought& point_of,
+                bool slow = false) {
+  const char* const lens = "lens from n = 1";
+  return {lens, method,
+          [=](double) {
+            omp_set_num_threads(1);
+            ErrorCurve curve{lens, method, "Luneburg's closed form", 0, {}};
+            curve.is_monte_carlo = false;
+            for (const DesignValues& values : scenes) curve.points.push_back(point_of(values));
+            return curve;
+          },
+          slow};
 }
 
 }  // namespace
 
 std::vector<ErrorRun> design_error_runs() {
   constexpr bool slow = true;
-  return {{"lens from n = 1", "radial profile",
-           [](double) {
-             return curve_of("radial profile", {profile(4), profile(6), profile(8)});
-           }},
-          {"lens from n = 1", "spline in space",
-           [](double) {
-             return curve_of("spline in space", {ball({3}), ball({5}), ball({5, 9})});
-           },
-           slow}};
+  const std::vector<DesignValues> profiles{profile(4), profile(6), profile(8)};
+  const auto adam = [](const DesignValues& values) {
+    return by_gradient(values, [](const auto&... of) { return by_adam(of..., 0.03); });
+  };
+  const auto lbfgs = [](const DesignValues& values) { return by_gradient(values, by_lbfgs); };
+  return {run_of("radial profile", profiles, sought),
+          run_of("L-BFGS, radial profile", profiles, lbfgs, slow),
+          run_of("Adam, radial profile", profiles, adam, slow),
+          run_of("spline in space", {ball({3}), ball({5}), ball({5, 9})}, sought, slow)};
 }
 
 }  // namespace flatspeckle::bench

@@ -5,6 +5,7 @@
 
 #include <omp.h>
 
+#include "bench/error/error_rooms.h"
 #include "bench/measure/power_fit.h"
 #include "core/run/stopwatch.h"
 
@@ -36,9 +37,9 @@ double relative_square(const std::vector<Complex>& values, const ErrorReference&
   return sum / static_cast<double>(values.size()) / mean_square(reference.value);
 }
 
-RunErrors run_once(const Method& method, const ErrorReference& reference, std::uint64_t seed,
+RunErrors run_once(const ErrorMethod& method, const ErrorReference& reference, std::uint64_t seed,
                    std::uint64_t first, std::size_t points) {
-  const Trial trial = method.trial(seed);
+  const ErrorTrial trial = method.trial(seed);
   std::vector<Complex> sums(trial.batches.size), batch(trial.batches.size);
   RunErrors errors;
   std::uint64_t next = first;
@@ -58,7 +59,7 @@ RunErrors run_once(const Method& method, const ErrorReference& reference, std::u
 
 /// Doublings of the first point's batches, and runs, that the time is enough for: many of both, or
 /// fewer runs where a slope could not be told else. Of many doublings the first are left out.
-Schedule schedule(const Method& method, const ErrorReference& reference, double cpu_seconds) {
+Schedule schedule(const ErrorMethod& method, const ErrorReference& reference, double cpu_seconds) {
   constexpr double many_runs = 64, few_runs = 16, fewest_runs = 4;
   constexpr double enough = 5, few = 3, fewest = 2, most = 9;  // doublings
   const double start = thread_cpu_seconds();
@@ -83,9 +84,9 @@ Schedule schedule(const Method& method, const ErrorReference& reference, double 
 }
 
 /// Sums over the runs, from which those without one of them follow.
-class Spread {
+class SeedErrors {
  public:
-  Spread(std::vector<RunErrors> runs, double reference_square)
+  SeedErrors(std::vector<RunErrors> runs, double reference_square)
       : runs_(std::move(runs)),
         reference_square_(reference_square),
         total_(runs_.front().square.size()) {
@@ -124,7 +125,7 @@ class Spread {
 };
 
 /// Slope, its error and the efficiency of the points that are above what the reference is off by.
-void fit(const Spread& spread, ErrorCurve& curve) {
+void fit(const SeedErrors& spread, ErrorCurve& curve) {
   std::vector<std::size_t> used;
   std::vector<double> time, error, whole, weight;
   for (std::size_t p = 0; p < curve.points.size(); ++p) {
@@ -160,7 +161,7 @@ double relative_distance(const std::vector<Complex>& values, const ErrorReferenc
   return std::sqrt(relative_square(values, reference));
 }
 
-ErrorCurve measure_error(const Method& method, const ErrorReference& reference,
+ErrorCurve measure_error(const ErrorMethod& method, const ErrorReference& reference,
                          double cpu_seconds) {
   omp_set_num_threads(1);
   const auto [runs, first, points] = schedule(method, reference, method.share * cpu_seconds);
@@ -172,7 +173,7 @@ ErrorCurve measure_error(const Method& method, const ErrorReference& reference,
   }
   const double to_last = seconds / static_cast<double>(runs);
   const double per_batch = method.trial(0).batches.samples_per_batch;
-  const Spread spread(std::move(errors), std::pow(reference.relative_error, 2));
+  const SeedErrors spread(std::move(errors), std::pow(reference.relative_error, 2));
   ErrorCurve curve{method.scene, method.name, reference.how, reference.relative_error, {}};
   curve.is_monte_carlo = method.is_monte_carlo;
   for (std::size_t p = 0; p < points; ++p) {
@@ -187,7 +188,24 @@ ErrorCurve measure_error(const Method& method, const ErrorReference& reference,
   return curve;
 }
 
-void set_plain_slope(ErrorCurve& curve) {
+ErrorRun run_of(const ErrorMethod& method, const std::function<ErrorReference()>& reference) {
+  return {method.scene, method.name,
+          [=](double cpu_seconds) { return measure_error(method, reference(), cpu_seconds); },
+          method.slow};
+}
+
+void measure_points(ErrorCurve& curve, double cpu_seconds,
+                    const std::function<std::optional<ErrorPoint>()>& next) {
+  constexpr std::size_t fewest = 3;
+  omp_set_num_threads(1);
+  curve.is_monte_carlo = false;
+  const double start = thread_cpu_seconds();
+  while (curve.points.size() < fewest || 3 * (thread_cpu_seconds() - start) < cpu_seconds) {
+    const auto point = next();
+    if (!point) break;
+    curve.points.push_back(*point);
+    if (point->error < 2 * curve.reference_error) break;
+  }
   std::vector<double> time, error;
   for (const ErrorPoint& point : curve.points) {
     time.push_back(point.cpu_s);
@@ -197,6 +215,32 @@ void set_plain_slope(ErrorCurve& curve) {
   curve.slope = slope.exponent;
   curve.slope_error = slope.exponent_error;
   curve.efficiency = 1 / (error.back() * error.back() * time.back());
+}
+
+ErrorPoint rms_point(unsigned runs, const std::function<OneRun(unsigned seed)>& run) {
+  OneRun sum{};
+  for (unsigned seed = 1; seed <= runs; ++seed) {
+    const OneRun one = run(seed);
+    sum.cpu_s += one.cpu_s / runs;
+    sum.square += one.square / runs;
+    sum.samples += one.samples / runs;
+  }
+  const double error = std::sqrt(sum.square);
+  return {sum.cpu_s, sum.samples, error, error / std::sqrt(2.0 * runs)};
+}
+
+OneRun timed_run(double samples, const std::function<double()>& work) {
+  const double start = thread_cpu_seconds();
+  const double square = work();
+  return {thread_cpu_seconds() - start, square, samples};
+}
+
+std::vector<ErrorRun> error_runs() {
+  std::vector<ErrorRun> runs = box_error_runs();
+  for (const auto& more : {slab_error_runs(), fit_error_runs(), imaging_error_runs(),
+                           render_error_runs(), design_error_runs()})
+    runs.insert(runs.end(), more.begin(), more.end());
+  return runs;
 }
 
 }  // namespace flatspeckle::bench

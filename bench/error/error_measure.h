@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,14 +12,14 @@
 namespace flatspeckle::bench {
 
 /// One seed of a method: numbered batches, and how their sums are read.
-struct Trial {
+struct ErrorTrial {
   BatchJob batches;
   Estimator values;
 };
 
-struct Method {
+struct ErrorMethod {
   std::string scene, name;
-  std::function<Trial(std::uint64_t seed)> trial;
+  std::function<ErrorTrial(std::uint64_t seed)> trial;
   std::uint64_t first_point = 1;  ///< batches of the first point of a curve
   bool is_monte_carlo = true;     ///< see ErrorCurve
   double share = 1;               ///< of the time, for dear ones
@@ -39,10 +40,25 @@ double relative_distance(const std::vector<Complex>& values, const ErrorReferenc
 /// have doubled. All points see the same number of runs, so that a method without finite variance
 /// is seen: its error falls more slowly. Slope by least squares, weighted by the points' own
 /// errors; its error by leaving one run out at a time, with what the reference may be off by.
-ErrorCurve measure_error(const Method& method, const ErrorReference& reference, double cpu_seconds);
+ErrorCurve measure_error(const ErrorMethod& method, const ErrorReference& reference,
+                         double cpu_seconds);
 
-/// Slope by plain least squares through all points, and the efficiency of the last: of curves whose
-/// points have nothing in common.
-void set_plain_slope(ErrorCurve& curve);
+/// A curve against a reference that is made once it is measured.
+ErrorRun run_of(const ErrorMethod& method, const std::function<ErrorReference()>& reference);
+
+/// A curve of points that have nothing in common: as long as there is time, and `next` makes one,
+/// and it is not as good as the reference. Slope by plain least squares through all of them,
+/// efficiency of the last.
+void measure_points(ErrorCurve& curve, double cpu_seconds,
+                    const std::function<std::optional<ErrorPoint>()>& next);
+
+/// The RMS of what runs of seeds 1 .. `runs` are off by.
+struct OneRun {
+  double cpu_s, square, samples;
+};
+ErrorPoint rms_point(unsigned runs, const std::function<OneRun(unsigned seed)>& run);
+
+/// The square that work returns, and the time that it takes.
+OneRun timed_run(double samples, const std::function<double()>& work);
 
 }  // namespace flatspeckle::bench

@@ -1,11 +1,11 @@
-#include "bench/error/error_references.h"
-
 #include <map>
 #include <sstream>
 
-#include "bench/error/error_reference_table.h"
+#include "bench/error/error_rooms.h"
 
 namespace flatspeckle::bench {
+
+extern const char* const error_reference_table;  // data/error_references.txt, made by CMake
 
 namespace {
 

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 namespace flatspeckle::bench {
 
 /// Of one value or more.
-double median(std::vector<double> values);
+inline double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+}
 
 }  // namespace flatspeckle::bench

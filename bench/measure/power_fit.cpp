@@ -6,50 +6,32 @@
 
 namespace flatspeckle::bench {
 
-namespace {
-
-struct LogMoments {
-  double weight = 0, x = 0, y = 0, xx = 0, xy = 0;  ///< means, then spreads about them
-};
-
-LogMoments log_moments(std::span<const double> x, std::span<const double> y,
-                       std::span<const double> weight) {
-  LogMoments m;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    m.weight += weight[i];
-    m.x += weight[i] * std::log(x[i]);
-    m.y += weight[i] * std::log(y[i]);
-  }
-  m.x /= m.weight;
-  m.y /= m.weight;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double dx = std::log(x[i]) - m.x;
-    m.xx += weight[i] * dx * dx;
-    m.xy += weight[i] * dx * (std::log(y[i]) - m.y);
-  }
-  return m;
-}
-
-}  // namespace
-
-PowerLaw fit_power(std::span<const double> x, std::span<const double> y,
+PowerFit fit_power(std::span<const double> x, std::span<const double> y,
                    std::span<const double> weight) {
-  const LogMoments m = log_moments(x, y, weight);
-  const double exponent = m.xy / m.xx;
-  return {exponent, std::exp(m.y - exponent * m.x)};
-}
-
-PowerFit fit_power(std::span<const double> x, std::span<const double> y) {
-  const std::vector<double> ones(x.size(), 1.0);
-  const LogMoments m = log_moments(x, y, ones);
-  const double exponent = m.xy / m.xx;
-  double square = 0;
+  double sum = 0, mean_x = 0, mean_y = 0, xx = 0, xy = 0, square = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const double off = std::log(y[i]) - m.y - exponent * (std::log(x[i]) - m.x);
+    sum += weight[i];
+    mean_x += weight[i] * std::log(x[i]);
+    mean_y += weight[i] * std::log(y[i]);
+  }
+  mean_x /= sum;
+  mean_y /= sum;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double dx = std::log(x[i]) - mean_x;
+    xx += weight[i] * dx * dx;
+    xy += weight[i] * dx * (std::log(y[i]) - mean_y);
+  }
+  const double exponent = xy / xx;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double off = std::log(y[i]) - mean_y - exponent * (std::log(x[i]) - mean_x);
     square += off * off;
   }
   const double freedom = std::max(1.0, static_cast<double>(x.size()) - 2);
-  return {exponent, std::sqrt(square / freedom / m.xx)};
+  return {exponent, std::exp(mean_y - exponent * mean_x), std::sqrt(square / freedom / xx)};
+}
+
+PowerFit fit_power(std::span<const double> x, std::span<const double> y) {
+  return fit_power(x, y, std::vector<double>(x.size(), 1.0));
 }
 
 }  // namespace flatspeckle::bench

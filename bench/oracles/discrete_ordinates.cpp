@@ -6,14 +6,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include <cblas.h>
-#include <lapacke.h>
+#include "core/numbers/blas.h"
 
 namespace flatspeckle::oracles {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 using Matrix = std::vector<double>;  ///< n x n, row-major
 
 Matrix product(const Matrix& a, const Matrix& b, std::size_t n) {

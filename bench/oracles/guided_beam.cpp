@@ -11,7 +11,7 @@ namespace {
 
 template <class Function>
 double integral(const Function& of, double from, double to) {
-  Quadrature points;
+  GaussPanels points;
   points.add(from, to, 4);
   double sum = 0;
   for (std::size_t i = 0; i < points.node.size(); ++i) sum += points.weight[i] * of(points.node[i]);

@@ -4,7 +4,7 @@
 
 namespace flatspeckle::oracles {
 
-void Quadrature::add(double from, double to, int panels) {
+void GaussPanels::add(double from, double to, int panels) {
   using Rule = boost::math::quadrature::gauss<double, 10>;
   const double half = (to - from) / (2 * panels);
   for (int panel = 0; panel < panels; ++panel) {

@@ -5,7 +5,7 @@
 namespace flatspeckle::oracles {
 
 /// Nodes and weights of Gauss-Legendre quadrature over [from, to], `panels` x 10 nodes.
-struct Quadrature {
+struct GaussPanels {
   std::vector<double> node, weight;
   void add(double from, double to, int panels = 1);
 };

@@ -4,14 +4,13 @@
 #include <cstdlib>
 #include <numbers>
 
-#include <cblas.h>
-#include <lapacke.h>
+#include "core/numbers/blas.h"
 
 namespace flatspeckle::oracles {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// int_0^x K_0 = pi/2 - int_0^inf exp(-x cosh t)/cosh t dt; the trapezoidal rule converges
 /// exponentially.

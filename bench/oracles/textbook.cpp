@@ -14,7 +14,7 @@ namespace flatspeckle::oracles {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr std::uint64_t stream = 1001;  // none that the estimator under test draws from
 
 struct Ray {

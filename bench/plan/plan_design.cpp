@@ -1,6 +1,7 @@
 // Derivatives of rays that a search of a field needs.
 
-#include "bench/plan/plan_rooms.h"
+#include <memory>
+
 #include "bench/plan/plan_timing.h"
 #include "grin/design/problem/designer.h"
 
@@ -11,9 +12,9 @@ namespace {
 using namespace grin::design;
 
 /// The loss of rays that are to meet, and its derivatives.
-class Lens {
+class LensUnderDesign {
  public:
-  explicit Lens(int coefficients)
+  explicit LensUnderDesign(int coefficients)
       : scene_(scene(coefficients)), task_(scene_.aim->task(scene_.walk, false)) {}
 
   std::vector<Complex> by_reversed_rays() {
@@ -55,19 +56,15 @@ class Lens {
   std::vector<double> at_ = std::vector<double>(shape_of(form_).size(), 0.3);
 };
 
-PlanRow differences(double cpu_seconds) {
-  PlanRow row{.per = "gradient"};
-  Lens lens(40);
-  compare_values(
-      row, [&] { return lens.by_differences(); }, [&] { return lens.by_reversed_rays(); }, 1e-6,
-      cpu_seconds);
-  return row;
-}
-
 }  // namespace
 
 std::vector<PlanCase> design_plan_cases() {
-  return {named("design", "a trace for each coefficient", "lens of 40 coefficients", differences)};
+  return {case_of_values(
+      {"design", "a trace for each coefficient", "lens of 40 coefficients", "gradient"}, 1e-6,
+      [](bool) -> TwoWays {
+        const auto lens = std::make_shared<LensUnderDesign>(40);
+        return {[=] { return lens->by_differences(); }, [=] { return lens->by_reversed_rays(); }};
+      })};
 }
 
 }  // namespace flatspeckle::bench

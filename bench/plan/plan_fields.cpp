@@ -2,7 +2,6 @@
 #include <complex>
 #include <span>
 
-#include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
 #include "mc/paths/estimators/covariance_estimator.h"
@@ -19,7 +18,7 @@ constexpr int views = 256;
 Scene viewed_scene() {
   std::vector<View> fan;
   for (int v = 0; v < views; ++v) fan.push_back(far_view(0.2 + 0.8 * v / views));
-  Scene scene = standard_scenes()[0].scene;
+  Scene scene = box_points();
   scene.request = full_request({0}, fan);
   return scene;
 }
@@ -71,20 +70,15 @@ SampledKernel kernel_of(const mc::FieldDraw& draw) {
 }
 
 /// Of many fields, whose covariance is found once and not counted here.
-PlanRow light_paths_of_each_field(double cpu_seconds) {
-  PlanRow row{.per = "field"};
+TwoKernels light_paths_of_each_field() {
   const Scene scene = viewed_scene();
   const FieldJob job = job_of(scene);
-  compare_sampled(row, kernel_of(drawn_by_paths(scene)),
-                  kernel_of(drawn_from(job, covariance_sums(job, 32))), Numbers::other,
-                  Measure::sample, cpu_seconds);
-  return row;
+  return {kernel_of(drawn_by_paths(scene)), kernel_of(drawn_from(job, covariance_sums(job, 32)))};
 }
 
 /// Of two fields: their covariance would have to be found first, here to about 2 %.
-PlanRow covariance_of_few_fields(double cpu_seconds) {
+void covariance_of_few_fields(PlanRow& row, double cpu_seconds) {
   constexpr int fields = 2, batches = 8;
-  PlanRow row{.per = "field"};
   const Scene scene = viewed_scene();
   const FieldJob job = job_of(scene);
   const auto by_paths = drawn_by_paths(scene);
@@ -110,20 +104,18 @@ PlanRow covariance_of_few_fields(double cpu_seconds) {
     kernel.run(number, batch);
     sums.add(1, batch);
   }
-  row.difference = most_standard_errors(jackknife(covariance_sums(job, 32), mean_intensity),
-                                        jackknife(sums, kernel.estimator));
-  row.limit = 4;
-  row.difference_in = "standard errors";
-  return row;
+  compare_estimates(row, jackknife(covariance_sums(job, 32), mean_intensity),
+                    jackknife(sums, kernel.estimator));
 }
 
 }  // namespace
 
 std::vector<PlanCase> field_plan_cases() {
-  const std::string room = "fields", scene = "box_points, 256 views";
+  const std::string scene = "box_points, 256 views";
   return {
-      named(room, "light paths of each field", scene + ", many fields", light_paths_of_each_field),
-      named(room, "the covariance", scene + ", 2 fields", covariance_of_few_fields)};
+      case_of_samples({"fields", "light paths of each field", scene + ", many fields", "field"},
+                      Draws::other, Measure::sample, light_paths_of_each_field),
+      named({"fields", "the covariance", scene + ", 2 fields", "field"}, covariance_of_few_fields)};
 }
 
 }  // namespace flatspeckle::bench

@@ -1,8 +1,6 @@
 // Media found from measurements.
 
-#include <numbers>
 
-#include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/synthetic_slab.h"
 #include "mc/fit/model/slab_model.h"
@@ -38,28 +36,18 @@ struct Curves {
 };
 
 /// Transport to views that curves share, done again for each.
-PlanRow curves_one_by_one(double cpu_seconds) {
-  constexpr double rounding = 1e-11;
-  PlanRow row{.per = "model"};
+TwoWays curves_one_by_one(bool) {
   const Curves of(slab_task(standard_slab().exact()));
-  compare_values(
-      row, [&] { return of.one_by_one(); }, [&] { return of.joint(); }, rounding, cpu_seconds);
-  return row;
+  return {[=] { return of.one_by_one(); }, [=] { return of.joint(); }};
 }
 
 /// Light that goes paths backwards, where views are far from backscattering.
-PlanRow reversed_paths(double cpu_seconds) {
-  constexpr double negligible = 2e-3;
-  PlanRow row{.per = "model"};
-  const Curves of(slab_task(standard_slab().exact()));
-  const Scene& scene = of.media[2].scene;
-  const auto covariance = [&](bool reversed) {
+TwoWays reversed_paths(bool) {
+  const Scene scene = Curves(slab_task(standard_slab().exact())).media[2].scene;
+  const auto covariance = [=](bool reversed) {
     return mc::slab_covariance(scene, reversed, {1e-4}).value;
   };
-  compare_values(
-      row, [&] { return covariance(true); }, [&] { return covariance(false); }, negligible,
-      cpu_seconds);
-  return row;
+  return {[=] { return covariance(true); }, [=] { return covariance(false); }};
 }
 
 SceneSpec slab_of(double optical_depth) {
@@ -108,21 +96,19 @@ SampledKernel slopes_of_run() {
       }};
 }
 
-PlanRow differences_of_runs(double cpu_seconds) {
-  PlanRow row{.per = "1 % error"};
-  compare_sampled(row, difference_of_runs(), slopes_of_run(), Numbers::other, Measure::error,
-                  cpu_seconds);
-  return row;
-}
-
 }  // namespace
 
 std::vector<PlanCase> fit_plan_cases() {
-  const std::string room = "fit", slab = "slab, 4 curves and transmittance";
-  return {named(room, "curves one by one", slab, curves_one_by_one),
-          named(room, "reversed paths", "slab, a view in reflection", reversed_paths),
-          named(room, "differences of two runs", "slab, intensities by optical depth",
-                differences_of_runs)};
+  constexpr double rounding = 1e-11, negligible = 2e-3;
+  return {
+      case_of_values({"fit", "curves one by one", "slab, 4 curves and transmittance", "model"},
+                     rounding, curves_one_by_one),
+      case_of_values({"fit", "reversed paths", "slab, a view in reflection", "model"}, negligible,
+                     reversed_paths),
+      case_of_samples({"fit", "differences of two runs", "slab, intensities by optical depth", ""},
+                      Draws::other, Measure::error, []() -> TwoKernels {
+                        return {difference_of_runs(), slopes_of_run()};
+                      })};
 }
 
 }  // namespace flatspeckle::bench

@@ -2,7 +2,6 @@
 
 #include <Eigen/SVD>
 
-#include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/blinking_frames.h"
 #include "bench/scenes/imaged_points.h"
@@ -11,27 +10,19 @@ namespace flatspeckle::bench {
 
 namespace {
 
-const std::vector<double> marks{0, 40, 111, 163, 230, 255, 310};
-
-std::vector<Complex> found(const mc::PairPeaks& peaks, std::size_t beam) {
-  const auto fit = mc::sparse_search(peaks, {marks.size(), 1, beam});
-  return {fit.object.x.begin(), fit.object.x.end()};
-}
-
 /// Partial objects beyond a thousand.
-PlanRow more_objects(double cpu_seconds) {
+TwoWays more_objects(bool) {
   constexpr std::size_t kept = 1000, more = 8000;
-  PlanRow row{.per = "search"};
-  const mc::PairPeaks peaks = noisy_peaks(marks, 4, 1);
-  compare_values(
-      row, [&] { return found(peaks, more); }, [&] { return found(peaks, kept); }, 1e-11,
-      cpu_seconds);
-  return row;
+  const std::vector<double> marks{0, 40, 111, 163, 230, 255, 310};
+  const auto found = [marks, peaks = noisy_peaks(marks, 4, 1)](std::size_t beam) {
+    const auto fit = mc::sparse_search(peaks, {marks.size(), 1, beam});
+    return std::vector<Complex>{fit.object.x.begin(), fit.object.x.end()};
+  };
+  return {[=] { return found(more); }, [=] { return found(kept); }};
 }
 
 /// Singular vectors, and all but the products of frames.
-PlanRow products_of_frames(double cpu_seconds) {
-  PlanRow row{.per = "decomposition"};
+TwoWays products_of_frames(bool) {
   const auto made = blinking_frames({.pixels = 2000}, 1);
   Eigen::MatrixXd light(2000, static_cast<Eigen::Index>(made.frames.size()));
   for (Eigen::Index f = 0; f < light.cols(); ++f)
@@ -40,21 +31,20 @@ PlanRow products_of_frames(double cpu_seconds) {
   const auto complex = [](const auto& values) {
     return std::vector<Complex>(values.begin(), values.end());
   };
-  constexpr double of_products = 1e-7;  // the root of rounding
-  compare_values(
-      row, [&] { return complex(Eigen::BDCSVD<Eigen::MatrixXd>(light).singularValues()); },
-      [&] { return complex(mc::source_count(light, {}).singular_values); }, of_products,
-      cpu_seconds);
-  return row;
+  return {[=] { return complex(Eigen::BDCSVD<Eigen::MatrixXd>(light).singularValues()); },
+          [=] { return complex(mc::source_count(light, {}).singular_values); }};
 }
 
 }  // namespace
 
 std::vector<PlanCase> imaging_plan_cases() {
-  return {
-      named("imaging", "more partial objects", "7 points, peaks 4 times the noise", more_objects),
-      named("imaging", "pixels in singular values", "40 frames of 2000 pixels",
-            products_of_frames)};
+  constexpr double root_of_rounding = 1e-7;
+  return {case_of_values(
+              {"imaging", "more partial objects", "7 points, peaks 4 times the noise", "search"},
+              1e-11, more_objects),
+          case_of_values(
+              {"imaging", "pixels in singular values", "40 frames of 2000 pixels", "decomposition"},
+              root_of_rounding, products_of_frames)};
 }
 
 }  // namespace flatspeckle::bench

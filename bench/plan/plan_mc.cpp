@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "bench/oracles/discrete_ordinates.h"
-#include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
 #include "flatland/media/density_map.h"
@@ -19,7 +18,7 @@ namespace flatspeckle::bench {
 namespace {
 
 using mc::Plan;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr std::uint64_t seed = 1;
 
 SampledKernel kernel_of(const FieldJob& job) {
@@ -36,30 +35,36 @@ struct NamedScene {
   Scene scene;
 };
 
-/// General and special kernel of a row.
-using Kernels = std::function<std::pair<SampledKernel, SampledKernel>()>;
+/// Makes the general and the special kernel of a scene.
+using Kernels = TwoKernels (*)(const Scene& scene);
 
-PlanCase case_of(const std::string& left_out, const std::string& scene, Numbers numbers,
-                 Measure measure, Kernels kernels) {
-  return named("mc", left_out, scene, [=](double cpu_seconds) {
-    PlanRow row{.per = measure == Measure::sample ? "path" : "1 % error"};
-    const auto [general, special] = kernels();
-    compare_sampled(row, general, special, numbers, measure, cpu_seconds);
-    return row;
-  });
+PlanCase case_of(const std::string& left_out, const NamedScene& on, Draws numbers,
+                 Kernels kernels) {
+  return case_of_samples({"mc", left_out, on.name, "path"}, numbers, Measure::sample,
+                         [=, scene = on.scene] { return kernels(scene); });
 }
 
 /// The kernel that a scene would have against the one that `generalise` makes of its plan.
-PlanCase flag(const std::string& left_out, const NamedScene& on, Numbers numbers, Measure measure,
+PlanCase flag(const std::string& left_out, const NamedScene& on, Draws numbers, Measure measure,
               void (*generalise)(Plan&)) {
-  return case_of(left_out, on.name, numbers, measure, [=, scene = on.scene] {
-    const Plan special = plan_of(scene);
-    Plan general = special;
-    generalise(general);
-    const std::uint64_t other = numbers == Numbers::same ? seed : seed + 1;
-    return std::pair{kernel_of(mc::covariance_job(scene, general, seed)),
-                     kernel_of(mc::covariance_job(scene, special, other))};
-  });
+  return case_of_samples({"mc", left_out, on.name, "path"}, numbers, measure,
+                         [=, scene = on.scene]() -> TwoKernels {
+                           const Plan special = plan_of(scene);
+                           Plan general = special;
+                           generalise(general);
+                           const std::uint64_t other = numbers == Draws::same ? seed : seed + 1;
+                           return {kernel_of(mc::covariance_job(scene, general, seed)),
+                                   kernel_of(mc::covariance_job(scene, special, other))};
+                         });
+}
+
+/// A scene with something of no effect against the scene without it, whose single scattering is by
+/// paths as well where `sampled_single`.
+TwoKernels beside(const Scene& general, const Scene& special, bool sampled_single = false) {
+  Plan plan = plan_of(special);
+  plan.sampled_single |= sampled_single;
+  return {kernel_of(mc::covariance_job(general, plan_of(general), seed)),
+          kernel_of(mc::covariance_job(special, plan, seed + 1))};
 }
 
 /// All entries of a scene's channels.
@@ -84,125 +89,87 @@ Estimator picked(const Estimator& triangle, const std::vector<Entry>& entries) {
   };
 }
 
-PlanCase few_entries(const NamedScene& on) {
-  return case_of("the rest of the matrix", on.name, Numbers::same, Measure::sample,
-                 [scene = on.scene] {
-                   const Scene whole = with_whole_matrix(scene);
-                   Plan special = plan_of(scene), general = plan_of(whole);
-                   special.sampled_single = general.sampled_single = true;
-                   special.paths_per_batch = general.paths_per_batch;
-                   SampledKernel all = kernel_of(mc::covariance_job(whole, general, seed));
-                   all.estimator = picked(all.estimator, scene.request.entries);
-                   return std::pair{all, kernel_of(mc::covariance_job(scene, special, seed))};
-                 });
+TwoKernels few_entries(const Scene& scene) {
+  const Scene whole = with_whole_matrix(scene);
+  Plan special = plan_of(scene), general = plan_of(whole);
+  special.sampled_single = general.sampled_single = true;
+  special.paths_per_batch = general.paths_per_batch;
+  SampledKernel all = kernel_of(mc::covariance_job(whole, general, seed));
+  all.estimator = picked(all.estimator, scene.request.entries);
+  return {all, kernel_of(mc::covariance_job(scene, special, seed))};
 }
 
 /// The same phase function as one of the bulk that has no form of its own.
-PlanCase bulk_table(const NamedScene& on) {
-  return case_of(
-      "a table of the phase function", on.name, Numbers::other, Measure::sample,
-      [scene = on.scene] {
-        Scene table = scene;
-        table.scatterer.kind = Scatterer::Kind::other_bulk;
-        table.medium.phase = {oracles::henyey_greenstein(scene.scatterer.g), scene.scatterer.g, ""};
-        return std::pair{kernel_of(mc::covariance_job(table, plan_of(table), seed)),
-                         kernel_of(mc::covariance_job(scene, plan_of(scene), seed + 1))};
-      });
+TwoKernels bulk_table(const Scene& scene) {
+  Scene table = scene;
+  table.scatterer.kind = Scatterer::Kind::other_bulk;
+  table.medium.phase = {oracles::henyey_greenstein(scene.scatterer.g), scene.scatterer.g, ""};
+  return beside(table, scene);
 }
 
-/// The same medium as two layers, with single scattering by paths in both.
-PlanCase equal_layers(const NamedScene& on) {
-  return case_of("what varies with depth", on.name, Numbers::other, Measure::sample,
-                 [scene = on.scene] {
-                   Scene layered = scene;
-                   const double half = scene.domain.depth / 2;
-                   layered.profile = std::make_shared<const Layers>(
-                       std::vector<Material>(2, {scene.scatterer, scene.medium}),
-                       std::vector<double>{half, half});
-                   Plan special = plan_of(scene);
-                   special.sampled_single = true;
-                   return std::pair{kernel_of(mc::covariance_job(layered, plan_of(layered), seed)),
-                                    kernel_of(mc::covariance_job(scene, special, seed + 1))};
-                 });
+/// The same medium as two layers.
+TwoKernels equal_layers(const Scene& scene) {
+  Scene layered = scene;
+  const double half = scene.domain.depth / 2;
+  layered.profile = std::make_shared<const Layers>(
+      std::vector<Material>(2, {scene.scatterer, scene.medium}), std::vector<double>{half, half});
+  return beside(layered, scene, true);
 }
 
 /// Point sources and near sensors, in a field of hardly any gradient.
-PlanCase curved_rays(const NamedScene& on) {
-  return case_of("curved rays", on.name + ", near ends", Numbers::other, Measure::sample,
-                 [scene = on.scene]() mutable {
-                   scene.request = full_request({point_source({0, -4}), point_source({0.5, -4})},
-                                                {near_sensor({0, 14}), near_sensor({8, 14})});
-                   Scene graded = scene;
-                   graded.index.emplace();
-                   graded.index->kind = IndexField::Kind::linear;
-                   graded.index->slope = {0, 1e-9};
-                   return std::pair{kernel_of(mc::covariance_job(graded, plan_of(graded), seed)),
-                                    kernel_of(mc::covariance_job(scene, plan_of(scene), seed + 1))};
-                 });
+TwoKernels curved_rays(const Scene& scene) {
+  Scene straight = scene;
+  straight.request = full_request({point_source({0, -4}), point_source({0.5, -4})},
+                                  {near_sensor({0, 14}), near_sensor({8, 14})});
+  Scene graded = straight;
+  graded.index.emplace();
+  graded.index->kind = IndexField::Kind::linear;
+  graded.index->slope = {0, 1e-9};
+  return beside(graded, straight);
 }
 
-/// A map of density 1, with single scattering by paths in both.
-PlanCase even_map(const NamedScene& on) {
-  return case_of("a density map", on.name, Numbers::other, Measure::sample, [scene = on.scene] {
-    constexpr std::size_t rows = 8, columns = 16;
-    Scene mapped = scene;
-    mapped.profile =
-        std::make_shared<const CellDensity>(scene.domain, Material{scene.scatterer, scene.medium},
-                                            rows, std::vector<double>(rows * columns, 1));
-    Plan special = plan_of(scene);
-    special.sampled_single = true;
-    return std::pair{kernel_of(mc::covariance_job(mapped, plan_of(mapped), seed)),
-                     kernel_of(mc::covariance_job(scene, special, seed + 1))};
-  });
+/// A map of density 1.
+TwoKernels even_map(const Scene& scene) {
+  constexpr std::size_t rows = 8, columns = 16;
+  Scene mapped = scene;
+  mapped.profile =
+      std::make_shared<const CellDensity>(scene.domain, Material{scene.scatterer, scene.medium},
+                                          rows, std::vector<double>(rows * columns, 1));
+  return beside(mapped, scene, true);
 }
 
 /// By scatterers that do not shift the wavenumber.
-PlanCase refraction(const NamedScene& on) {
-  return case_of(
-      "refraction of the mean field", on.name, Numbers::other, Measure::sample, [scene = on.scene] {
-        Scene refracted = scene;
-        refracted.index.emplace().kind = IndexField::Kind::mean_field;
-        return std::pair{kernel_of(mc::covariance_job(refracted, plan_of(refracted), seed)),
-                         kernel_of(mc::covariance_job(scene, plan_of(scene), seed + 1))};
-      });
+TwoKernels refraction(const Scene& scene) {
+  Scene refracted = scene;
+  refracted.index.emplace().kind = IndexField::Kind::mean_field;
+  return beside(refracted, scene);
+}
+
+TwoKernels derivatives(const Scene& scene) {
+  const Plan plan = mc::gradient_plan(scene, mc::ReversedPaths::no);
+  return {kernel_of(mc::gradient_job(scene, plan, seed).field),
+          kernel_of(mc::covariance_job(scene, plan, seed))};
+}
+
+SampledKernel delays_of(const Scene& scene, const mc::Motion& motion = {}) {
+  const std::vector<double> times = {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2};
+  return kernel_of(mc::delay_job(scene, plan_of(scene), times, seed, motion).field);
+}
+
+TwoKernels delays(const Scene& scene) {
+  return {delays_of(scene), kernel_of(mc::covariance_job(scene, plan_of(scene), seed))};
 }
 
 /// Scatterers that flow by nothing beside diffusing.
-PlanCase flow(const NamedScene& on) {
-  return case_of(
-      "flow", on.name + ", 8 delays", Numbers::same, Measure::sample, [scene = on.scene] {
-        const Plan plan = plan_of(scene);
-        const std::vector<double> times = {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2};
-        return std::pair{
-            kernel_of(mc::delay_job(scene, plan, times, seed, {.velocity = {1e-300, 0}}).field),
-            kernel_of(mc::delay_job(scene, plan, times, seed).field)};
-      });
+TwoKernels flow(const Scene& scene) {
+  return {delays_of(scene, {.velocity = {1e-300, 0}}), delays_of(scene)};
 }
 
-PlanCase derivatives(const NamedScene& on) {
-  return case_of("derivatives", on.name, Numbers::same, Measure::sample, [scene = on.scene] {
-    const Plan plan = mc::gradient_plan(scene, mc::ReversedPaths::no);
-    return std::pair{kernel_of(mc::gradient_job(scene, plan, seed).field),
-                     kernel_of(mc::covariance_job(scene, plan, seed))};
-  });
-}
-
-PlanCase delays(const NamedScene& on) {
-  return case_of("8 delays", on.name, Numbers::same, Measure::sample, [scene = on.scene] {
-    const Plan plan = plan_of(scene);
-    const std::vector<double> times = {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2};
-    return std::pair{kernel_of(mc::delay_job(scene, plan, times, seed).field),
-                     kernel_of(mc::covariance_job(scene, plan, seed))};
-  });
-}
-
-PlanCase frequencies(const NamedScene& on) {
-  return case_of("8 frequency shifts", on.name, Numbers::same, Measure::sample, [scene = on.scene] {
-    const std::vector<double> shifts = {1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2};
-    const Plan plan = mc::frequency_plan(scene, mc::ReversedPaths::automatic);
-    return std::pair{kernel_of(mc::frequency_job(scene, plan, shifts, seed).field),
-                     kernel_of(mc::covariance_job(scene, plan, seed))};
-  });
+TwoKernels frequencies(const Scene& scene) {
+  const std::vector<double> shifts = {1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2};
+  const Plan plan = mc::frequency_plan(scene, mc::ReversedPaths::automatic);
+  return {kernel_of(mc::frequency_job(scene, plan, shifts, seed).field),
+          kernel_of(mc::covariance_job(scene, plan, seed))};
 }
 
 Scene with_request(Scene scene, CovarianceRequest request) {
@@ -219,15 +186,16 @@ std::vector<View> views_around(int count) {
 }  // namespace
 
 std::vector<PlanCase> mc_plan_cases() {
-  const auto standard = standard_scenes();
-  const NamedScene points{"box_points, 64 tilts", standard[0].scene};
-  const NamedScene slab{"slab_hg g 0, 64 tilts", standard[4].scene};
-  const NamedScene forward{"slab_hg g 0.9, 64 tilts", standard[5].scene};
+  const NamedScene points{"box_points, 64 tilts", box_points()};
+  const NamedScene slab{"slab_hg g 0, 64 tilts", slab_hg(0)};
+  const NamedScene forward{"slab_hg g 0.9, 64 tilts", slab_hg(0.9)};
   const NamedScene around{"box_points, 64 intensities",
                           with_request(points.scene, intensity_request({0}, views_around(64)))};
   const NamedScene full{"box_points, full, 128 channels",
                         with_request(points.scene, full_request({0, 0.1}, views_around(64)))};
-  constexpr auto same = Numbers::same, other = Numbers::other;
+  const NamedScene near{points.name + ", near ends", points.scene};
+  const NamedScene flowing{around.name + ", 8 delays", around.scene};
+  constexpr auto same = Draws::same, other = Draws::other;
   constexpr auto sample = Measure::sample, error = Measure::error;
   return {
       flag("anisotropy", points, other, sample,
@@ -237,22 +205,22 @@ std::vector<PlanCase> mc_plan_cases() {
       flag("absorption", points, other, sample, [](Plan& plan) { plan.weighted = true; }),
       flag("reversed paths", slab, other, sample, [](Plan& plan) { plan.reversed = true; }),
       flag("phases", around, same, sample, [](Plan& plan) { plan.phases = true; }),
-      few_entries(points),
+      case_of("the rest of the matrix", points, same, few_entries),
       flag("updates entry by entry", full, same, sample, [](Plan& plan) { plan.rank_k = false; }),
       flag("paths of one scatterer", points, other, error,
            [](Plan& plan) { plan.sampled_single = true; }),
       flag("scores that promise little", forward, other, error,
            [](Plan& plan) { plan.score_level = 0; }),
-      bulk_table(forward),
-      equal_layers(points),
-      equal_layers(forward),
-      even_map(points),
-      curved_rays(points),
-      refraction(slab),
-      derivatives(forward),
-      delays(around),
-      flow(around),
-      frequencies(around),
+      case_of("a table of the phase function", forward, other, bulk_table),
+      case_of("what varies with depth", points, other, equal_layers),
+      case_of("what varies with depth", forward, other, equal_layers),
+      case_of("a density map", points, other, even_map),
+      case_of("curved rays", near, other, curved_rays),
+      case_of("refraction of the mean field", slab, other, refraction),
+      case_of("derivatives", forward, same, derivatives),
+      case_of("8 delays", around, same, delays),
+      case_of("flow", flowing, same, flow),
+      case_of("8 frequency shifts", around, same, frequencies),
   };
 }
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <variant>
 
-#include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "grin/rays/marching/trace.h"
 #include "grin/render/flights/space.h"
@@ -16,12 +16,12 @@ using namespace grin;
 constexpr int rays = 200;
 constexpr double step = 0.05, max_length = 8;
 
-Vec3 random_direction(RandomStream& random) {
+Vec3 turned(RandomStream& random) {
   return random_turn(Vec3::UnitX(), 2 * random.uniform(), random);
 }
 /// In the ball of radius 0.95.
-PathPoint random_point(RandomStream& random) {
-  return {0.95 * std::cbrt(random.uniform()) * random_direction(random)};
+PathPoint place(RandomStream& random) {
+  return {0.95 * std::cbrt(random.uniform()) * turned(random)};
 }
 
 /// Appends what is known of a point on a way.
@@ -30,14 +30,14 @@ void note(std::vector<Complex>& values, const Vec3& x, double optical_path) {
 }
 
 /// Rays from anywhere in the unit ball to its surface.
-template <IndexField F>
+template <grin::IndexField F>
 std::vector<Complex> traced(const F& field) {
   const Surface ball = Sphere{};
   std::vector<Complex> values;
   RandomStream random(1, 0, 0);
   for (int i = 0; i < rays; ++i) {
-    const Vec3 from = random_point(random).x;
-    RayState ray = start_ray(field, from, random_direction(random));
+    const Vec3 from = place(random).x;
+    RayState ray = start_ray(field, from, turned(random));
     FixedSteps<Sharma> steps{step};
     trace(field, {&ball, 1}, {max_length, 1e-13}, steps, ray);
     note(values, ray.x, ray.optical_path);
@@ -50,8 +50,8 @@ std::vector<Complex> flown(const Space& space) {
   std::vector<Complex> values;
   RandomStream random(1, 0, 0);
   for (int i = 0; i < rays; ++i) {
-    const PathPoint from = random_point(random);
-    const Flight flight = space.fly(from, random_direction(random), random);
+    const PathPoint from = place(random);
+    const Flight flight = space.fly(from, turned(random), random);
     note(values, flight.point.x, flight.optical_path);
   }
   return values;
@@ -59,15 +59,15 @@ std::vector<Complex> flown(const Space& space) {
 
 /// Joins of pairs of points, the same in every space: per batch, sums of what the curves have, each
 /// weighted so that those not found count (C26).
-SampledKernel joins(const Space& space) {
+SampledKernel joins(const std::shared_ptr<const Space>& space) {
   constexpr int pairs = 50;
   return {2, pairs,
-          [&space](std::uint64_t number, std::span<Complex> sums) {
+          [=](std::uint64_t number, std::span<Complex> sums) {
             ConnectionStatistics statistics;
             RandomStream points(1, 0, number), random(1, 1, number);
             for (int i = 0; i < pairs; ++i) {
-              const PathPoint from = random_point(points), to = random_point(points);
-              const auto join = space.join(from, to, random, statistics);
+              const PathPoint from = place(points), to = place(points);
+              const auto join = space->join(from, to, random, statistics);
               if (!join) continue;
               sums[0] += join->multiplicity;
               sums[1] += join->multiplicity * Complex(join->spreading, join->optical_path);
@@ -100,34 +100,22 @@ ParabolicGuide constant_guide() {
   return ParabolicGuide({0.5, 0});
 }
 
-template <class General, class Special>
-PlanRow same_values(const General& general, const Special& special, const char* per, double limit,
-                    double cpu_seconds) {
-  PlanRow row{.per = per};
-  compare_values(row, general, special, limit, cpu_seconds);
-  row.general_s /= rays;
-  row.special_s /= rays;
-  return row;
+TwoWays curved_rays(bool) {
+  return {[] { return traced(constant_guide()); }, [] { return traced(Homogeneous{0.5}); }};
 }
 
-PlanRow curved_rays(double cpu_seconds) {
-  return same_values([] { return traced(constant_guide()); },
-                     [] { return traced(Homogeneous{0.5}); }, "ray", 1e-11, cpu_seconds);
+TwoWays kind_of_field(bool) {
+  return {[looked_up = LookedUpField{Luneburg({})}] { return traced(looked_up); },
+          [field = Luneburg({})] { return traced(field); }};
 }
 
-PlanRow kind_of_field(double cpu_seconds) {
-  const Luneburg field({});
-  const LookedUpField looked_up{field};
-  return same_values([&] { return traced(looked_up); }, [&] { return traced(field); }, "ray", 1e-14,
-                     cpu_seconds);
-}
-
-PlanRow spreading(double cpu_seconds) {
-  const Fisheye field({1, 1.5});
-  const auto full = make_space(field, foggy_ball_stage(), {step, max_length, Spreading::all});
-  const auto quick = make_space(field, foggy_ball_stage(), {step, max_length, Spreading::none});
-  return same_values([&] { return flown(*full); }, [&] { return flown(*quick); }, "flight", 1e-11,
-                     cpu_seconds);
+TwoWays spreading(bool) {
+  const auto flights = [](Spreading spreading) {
+    const std::shared_ptr<const Space> space =
+        make_space(Fisheye({1, 1.5}), foggy_ball_stage(), {step, max_length, spreading});
+    return [=] { return flown(*space); };
+  };
+  return {flights(Spreading::all), flights(Spreading::none)};
 }
 
 /// Rays from anywhere in a ball out of it.
@@ -137,8 +125,8 @@ std::vector<Complex> flown_out(const RayField& field, const Sphere& ball, double
   std::vector<Complex> values;
   RandomStream random(1, 0, 0);
   for (int i = 0; i < rays; ++i) {
-    const Vec3 from = ball.radius * random_point(random).x;
-    RayState ray = start_ray(field, from, random_direction(random));
+    const Vec3 from = ball.radius * place(random).x;
+    RayState ray = start_ray(field, from, turned(random));
     double weight = 1;
     field.fly({{{&surface, 1}}, clear, h}, 10 * ball.radius, weight, random, ray, nullptr);
     note(values, ray.x, ray.optical_path);
@@ -146,22 +134,23 @@ std::vector<Complex> flown_out(const RayField& field, const Sphere& ball, double
   return values;
 }
 
-PlanRow closed_forms(double cpu_seconds) {
+Way rays_out(const std::shared_ptr<const RayField>& field, const Sphere& ball, double h) {
+  return [=] { return flown_out(*field, ball, h); };
+}
+
+TwoWays closed_forms(bool) {
   const Sphere ball;
   const Surface rim = ball;
-  const auto by_steps = make_ray_field(Luneburg({1, LuneburgProfile::for_stops}));
-  const auto closed = make_ray_field(Luneburg({}), {&rim, 1});
-  return same_values([&] { return flown_out(*by_steps, ball, step); },
-                     [&] { return flown_out(*closed, ball, step); }, "ray", 1e-6, cpu_seconds);
+  return {rays_out(make_ray_field(Luneburg({1, LuneburgProfile::for_stops})), ball, step),
+          rays_out(make_ray_field(Luneburg({}), {&rim, 1}), ball, step)};
 }
 
 /// Both to steps that render would choose.
-PlanRow leapfrogs(double cpu_seconds) {
+TwoWays leapfrogs(bool) {
   const StandingWave field(0.33, 1e-3, 0, 3.4, 20);
-  const auto by_sharma = make_ray_field(field), by_leaps = make_ray_field(field, {}, true);
   const Sphere ball{Vec3::Zero(), 15};
-  return same_values([&] { return flown_out(*by_sharma, ball, 0.88); },
-                     [&] { return flown_out(*by_leaps, ball, 0.7); }, "ray", 2e-4, cpu_seconds);
+  return {rays_out(make_ray_field(field), ball, 0.88),
+          rays_out(make_ray_field(field, {}, true), ball, 0.7)};
 }
 
 /// So many steps of a bundle, far from everything.
@@ -171,7 +160,7 @@ std::vector<Complex> went_on(const RayField& field, const Go& go) {
   std::fill_n(bundle.step, lanes, step);
   RandomStream random(1, 0, 0);
   for (int lane = 0; lane < lanes; ++lane)
-    bundle.put(lane, start_ray(field, random_point(random).x, random_direction(random)));
+    bundle.put(lane, start_ray(field, place(random).x, turned(random)));
   go(bundle);
   std::vector<Complex> values;
   for (int lane = 0; lane < lanes; ++lane)
@@ -179,49 +168,43 @@ std::vector<Complex> went_on(const RayField& field, const Go& go) {
   return values;
 }
 
-PlanRow one_ray_at_a_time(double cpu_seconds) {
+TwoWays one_ray_at_a_time(bool) {
   constexpr int steps = 200;
-  const auto field = make_ray_field(StandingWave(0.33, 1e-3, 0, 3.4, 20), {}, true);
-  const auto one_by_one = [&](RayLanes& bundle) {
+  const std::shared_ptr<const RayField> field =
+      make_ray_field(StandingWave(0.33, 1e-3, 0, 3.4, 20), {}, true);
+  const auto one_by_one = [=](RayLanes& bundle) {
     for (int lane = 0; lane < lanes; ++lane) {
       RayState ray = bundle.at(lane);
       field->advance(steps * step, steps, ray, nullptr);
       bundle.put(lane, ray);
     }
   };
-  const auto in_lanes = [&](RayLanes& bundle) { field->advance_lanes(steps, bundle); };
-  PlanRow row{.per = "ray"};
-  compare_values(
-      row, [&] { return went_on(*field, one_by_one); }, [&] { return went_on(*field, in_lanes); },
-      1e-12, cpu_seconds);
-  row.general_s /= lanes;
-  row.special_s /= lanes;
-  return row;
+  const auto in_lanes = [=](RayLanes& bundle) { field->advance_lanes(steps, bundle); };
+  return {[=] { return went_on(*field, one_by_one); }, [=] { return went_on(*field, in_lanes); }};
 }
 
-PlanRow search_for_curves(double cpu_seconds) {
-  PlanRow row{.per = "join"};
-  const auto general =
-      make_space(constant_guide(), foggy_ball_stage(), {step, max_length, Spreading::all});
-  const Space special(Homogeneous{0.5}, foggy_ball_stage());
-  compare_sampled(row, joins(*general), joins(special), Numbers::other, Measure::sample,
-                  cpu_seconds);
-  return row;
+TwoKernels search_for_curves() {
+  return {joins(make_space(constant_guide(), foggy_ball_stage(), {step, max_length})),
+          joins(make_space(Homogeneous{0.5}, foggy_ball_stage()))};
 }
 
 }  // namespace
 
 std::vector<PlanCase> ray_plan_cases() {
-  const auto row = [](const std::string& left_out, const std::string& scene, const auto& run) {
-    return named("grin rays", left_out, scene, run);
+  const auto row = [](const std::string& left_out, const std::string& scene, const std::string& per,
+                      double limit, TwoWays (*make)(bool), int count = rays) {
+    return case_of_values({"grin rays", left_out, scene, per}, limit, make, count);
   };
-  return {row("curvature", "constant index, rays out of a ball", curved_rays),
-          row("search for curves", "constant index, joins in a ball", search_for_curves),
-          row("|J| of flights", "fisheye", spreading),
-          row("steps", "Luneburg ball, rays in closed form", closed_forms),
-          row("two forces of three a step", "weak sound, by leapfrog", leapfrogs),
-          row("waiting for a ray's last step", "sound, rays side by side", one_ray_at_a_time),
-          row("kind of field at every step", "Luneburg ball", kind_of_field)};
+  return {
+      row("curvature", "constant index, rays out of a ball", "ray", 1e-11, curved_rays),
+      case_of_samples({"grin rays", "search for curves", "constant index, joins in a ball", "join"},
+                      Draws::other, Measure::sample, search_for_curves),
+      row("|J| of flights", "fisheye", "flight", 1e-11, spreading),
+      row("steps", "Luneburg ball, rays in closed form", "ray", 1e-6, closed_forms),
+      row("two forces of three a step", "weak sound, by leapfrog", "ray", 2e-4, leapfrogs),
+      row("waiting for a ray's last step", "sound, rays side by side", "ray", 1e-12,
+          one_ray_at_a_time, lanes),
+      row("kind of field at every step", "Luneburg ball", "ray", 1e-14, kind_of_field)};
 }
 
 }  // namespace flatspeckle::bench

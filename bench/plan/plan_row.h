@@ -18,10 +18,7 @@ struct PlanRow {
                                         ///< random numbers
 };
 
-struct PlanCase {
-  std::string room, left_out, scene;
-  std::function<PlanRow(double cpu_seconds)> run;
-};
+using PlanCase = std::function<PlanRow(double cpu_seconds)>;
 
 /// Rows of mc, transport, fields, fit, imaging, wave solver, rays and render.
 std::vector<PlanCase> plan_cases();

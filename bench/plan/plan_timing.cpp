@@ -20,6 +20,16 @@ double quartile_distance(std::vector<double> values) {
   return values[values.size() - 1 - quarter] - values[quarter];
 }
 
+/// Largest |a - b| relative to the largest |b|.
+double relative_difference(std::span<const Complex> a, std::span<const Complex> b) {
+  double difference = 0, largest = 0;
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    difference = std::max(difference, std::abs(a[i] - b[i]));
+    largest = std::max(largest, std::abs(b[i]));
+  }
+  return difference / largest;
+}
+
 /// A kernel at work: its batches in order, and the sums of the first of them.
 class Contestant {
  public:
@@ -101,52 +111,75 @@ void compare_times(PlanRow& row, const Slice& general, const Slice& special, dou
   row.ratio_spread = quartile_distance(ratio) / 2;
 }
 
-double relative_difference(std::span<const Complex> a, std::span<const Complex> b) {
-  double difference = 0, largest = 0;
-  for (std::size_t i = 0; i < b.size(); ++i) {
-    difference = std::max(difference, std::abs(a[i] - b[i]));
-    largest = std::max(largest, std::abs(b[i]));
-  }
-  return difference / largest;
+void compare_estimates(PlanRow& row, const Estimate& general, const Estimate& special) {
+  for (std::size_t e = 0; e < general.value.size(); ++e)
+    if (const double off = std::abs(general.value[e] - special.value[e]); off > 0)
+      row.difference =
+          std::max(row.difference, off / std::hypot(general.error[e], special.error[e]));
+  row.limit = 4;
+  row.difference_in = "standard errors";
 }
 
-double most_standard_errors(const Estimate& a, const Estimate& b) {
-  double most = 0;
-  for (std::size_t e = 0; e < a.value.size(); ++e)
-    if (const double off = std::abs(a.value[e] - b.value[e]); off > 0)
-      most = std::max(most, off / std::hypot(a.error[e], b.error[e]));
-  return most;
+PlanCase named(const PlanName& name,
+               const std::function<void(PlanRow& row, double cpu_seconds)>& run) {
+  return [=](double cpu_seconds) {
+    PlanRow row{name.room, name.left_out, name.scene, name.per};
+    run(row, cpu_seconds);
+    return row;
+  };
 }
 
-void compare_values(PlanRow& row, const Values& general, const Values& special, double limit,
-                    double cpu_seconds) {
-  std::vector<Complex> a, b;
-  compare_times(row, timed([&] { a = general(); }), timed([&] { b = special(); }), cpu_seconds);
-  row.difference = relative_difference(a, b);
-  row.limit = limit;
-  row.difference_in = "relative";
+PlanCase case_of_values(const PlanName& name, double limit, const MakeWays& make, int count) {
+  return named(name, [=](PlanRow& row, double cpu_seconds) {
+    const auto [general, special] = make(cpu_seconds < quick);
+    std::vector<Complex> a, b;
+    compare_times(row, timed([&, &way = general] { a = way(); }),
+                  timed([&, &way = special] { b = way(); }), cpu_seconds);
+    row.general_s /= count;
+    row.special_s /= count;
+    row.difference = relative_difference(a, b);
+    row.limit = limit;
+    row.difference_in = "relative";
+  });
 }
 
-void compare_sampled(PlanRow& row, const SampledKernel& general, const SampledKernel& special,
-                     Numbers numbers, Measure measure, double cpu_seconds) {
-  constexpr double rounding = 1e-11, standard_errors = 4;
+PlanCase case_of_samples(const PlanName& name, Draws numbers, Measure measure,
+                         const std::function<TwoKernels()>& make) {
+  constexpr double rounding = 1e-11;
   constexpr int batches_for_an_error = 48;
-  const std::uint64_t compared = cpu_seconds < quick ? 32 : 64;
-  Contestant one(general, compared), other(special, compared);
-  if (measure == Measure::sample)
-    compare_times(
-        row, [&](int batches) { return one.seconds_per_sample(batches); },
-        [&](int batches) { return other.seconds_per_sample(batches); }, cpu_seconds);
-  else
-    compare_times(
-        row, [&](int batches) { return one.seconds_to_error(batches); },
-        [&](int batches) { return other.seconds_to_error(batches); }, cpu_seconds,
-        batches_for_an_error);
-  const Estimate a = one.estimate(), b = other.estimate();
-  const bool same = numbers == Numbers::same;
-  row.difference = same ? relative_difference(a.value, b.value) : most_standard_errors(a, b);
-  row.limit = same ? rounding : standard_errors;
-  row.difference_in = same ? "relative" : "standard errors";
+  const bool to_error = measure == Measure::error;
+  const std::string per = to_error ? "1 % error" : name.per;
+  return named({name.room, name.left_out, name.scene, per}, [=](PlanRow& row, double cpu_seconds) {
+    const auto [general, special] = make();
+    const std::uint64_t compared = cpu_seconds < quick ? 32 : 64;
+    Contestant one(general, compared), other(special, compared);
+    const auto slice_of = [&](Contestant& contestant) -> Slice {
+      return [&](int batches) {
+        return to_error ? contestant.seconds_to_error(batches)
+                        : contestant.seconds_per_sample(batches);
+      };
+    };
+    compare_times(row, slice_of(one), slice_of(other), cpu_seconds,
+                  to_error ? batches_for_an_error : 1);
+    const Estimate a = one.estimate(), b = other.estimate();
+    if (numbers == Draws::other) return compare_estimates(row, a, b);
+    row.difference = relative_difference(a.value, b.value);
+    row.limit = rounding;
+    row.difference_in = "relative";
+  });
+}
+
+std::vector<PlanCase> plan_cases() {
+  std::vector<PlanCase> cases;
+  for (const auto& room :
+       {mc_plan_cases, transport_plan_cases, field_plan_cases, fit_plan_cases, imaging_plan_cases,
+        wave_plan_cases, ray_plan_cases, render_plan_cases, design_plan_cases})
+    for (PlanCase& plan_case : room()) cases.push_back(std::move(plan_case));
+  return cases;
+}
+
+bool passes(const PlanRow& row) {
+  return row.difference <= row.limit;
 }
 
 }  // namespace flatspeckle::bench

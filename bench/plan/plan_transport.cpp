@@ -1,6 +1,5 @@
 // Slabs without chance.
 
-#include "bench/plan/plan_rooms.h"
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
 #include "mc/slab/adding/space_scene.h"
@@ -12,11 +11,6 @@ namespace {
 
 constexpr double tolerance = 1e-6, in_space_tolerance = 1e-3;
 
-Scene with_entries(Scene scene, std::vector<Entry> entries) {
-  scene.request.entries = std::move(entries);
-  return scene;
-}
-
 std::vector<Complex> covariance(const Scene& slab, const mc::FieldChange& change = {}) {
   return mc::slab_covariance(slab, false, {tolerance}, change).value;
 }
@@ -26,71 +20,51 @@ std::vector<Complex> covariance_in_space(const Scene& slab) {
 }
 
 /// What tilts share, done again for each.
-std::vector<Complex> one_by_one(const Scene& slab,
-                                std::vector<Complex> (*covariance_of)(const Scene&)) {
+template <class CovarianceOf>
+std::vector<Complex> one_by_one(const Scene& slab, const CovarianceOf& covariance_of) {
   std::vector<Complex> values;
-  for (const Entry& entry : slab.request.entries)
-    values.push_back(covariance_of(with_entries(slab, {entry})).front());
+  Scene single = slab;
+  for (const Entry& entry : slab.request.entries) {
+    single.request.entries = {entry};
+    values.push_back(covariance_of(single).front());
+  }
   return values;
 }
 
-PlanRow tilts_alone(const Scene& slab, double cpu_seconds) {
-  PlanRow row{.per = "solution"};
-  const auto of = [](const Scene& scene) { return covariance(scene); };
-  compare_values(
-      row, [&] { return one_by_one(slab, of); }, [&] { return covariance(slab); }, tolerance,
-      cpu_seconds);
-  return row;
-}
-
-PlanRow tilts_alone_in_space(const Scene& slab, double cpu_seconds) {
-  PlanRow row{.per = "solution"};
-  compare_values(
-      row, [&] { return one_by_one(slab, covariance_in_space); },
-      [&] { return covariance_in_space(slab); }, in_space_tolerance, cpu_seconds);
-  return row;
-}
-
-/// Complex numbers throughout.
-PlanRow second_frequency(const Scene& slab, double cpu_seconds) {
-  PlanRow row{.per = "solution"};
-  compare_values(
-      row, [&] { return covariance(slab, {.shift = 1e-14}); }, [&] { return covariance(slab); },
-      tolerance, cpu_seconds);
-  return row;
-}
-
-PlanRow derivatives(const Scene& slab, double cpu_seconds) {
-  PlanRow row{.per = "solution"};
-  const auto with_slopes = [&] {
-    auto values = mc::slab_slopes(slab, false, {tolerance}, mc::BulkParameter::mu_t).value;
-    values.resize(slab.request.entries.size());
-    return values;
-  };
-  compare_values(
-      row, with_slopes, [&] { return covariance(slab); }, tolerance, cpu_seconds);
-  return row;
+std::vector<Complex> with_slopes(const Scene& slab) {
+  auto values = mc::slab_slopes(slab, false, {tolerance}, mc::BulkParameter::mu_t).value;
+  values.resize(slab.request.entries.size());
+  return values;
 }
 
 }  // namespace
 
 std::vector<PlanCase> transport_plan_cases() {
-  const Scene slab = standard_scenes()[5].scene;
+  const Scene slab = slab_hg(0.9);
   SceneSpec spec;
   spec.scatterer = "hg";
   spec.g = 0.9;
   Scene few = slab;
   few.request.entries.resize(8);
   const Scene space = mc::in_space(few, spec);
-  const std::string room = "transport", plane = "slab_hg g 0.9, 64 tilts";
-  const auto on = [](const Scene& scene, PlanRow (*row)(const Scene&, double)) {
-    return [=](double cpu_seconds) { return row(scene, cpu_seconds); };
+  const auto alone = [](const Scene& scene) { return covariance(scene); };
+  const auto on_slab = [&](const std::string& left_out, const Way& general) {
+    return case_of_values({"transport", left_out, "slab_hg g 0.9, 64 tilts", "solution"}, tolerance,
+                          [=](bool) -> TwoWays {
+                            return {general, [=] { return alone(slab); }};
+                          });
   };
-  return {named(room, "tilts one by one", plane, on(slab, tilts_alone)),
-          named(room, "tilts one by one", "slab_hg g 0.9, 8 tilts in space",
-                on(space, tilts_alone_in_space)),
-          named(room, "a second frequency", plane, on(slab, second_frequency)),
-          named(room, "derivatives", plane, on(slab, derivatives))};
+  return {on_slab("tilts one by one", [=] { return one_by_one(slab, alone); }),
+          case_of_values(
+              {"transport", "tilts one by one", "slab_hg g 0.9, 8 tilts in space", "solution"},
+              in_space_tolerance,
+              [=](bool) -> TwoWays {
+                return {[=] { return one_by_one(space, covariance_in_space); },
+                        [=] { return covariance_in_space(space); }};
+              }),
+          // complex numbers throughout
+          on_slab("a second frequency", [=] { return covariance(slab, {.shift = 1e-14}); }),
+          on_slab("derivatives", [=] { return with_slopes(slab); })};
 }
 
 }  // namespace flatspeckle::bench

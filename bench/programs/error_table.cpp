@@ -8,8 +8,7 @@
 
 #include <omp.h>
 
-#include "bench/error/error_boxes.h"
-#include "bench/error/error_render.h"
+#include "bench/error/error_rooms.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::bench;
@@ -19,7 +18,7 @@ namespace {
 constexpr std::uint64_t seed = 1'000'000;  // no curve's
 
 void print(const LongRun& run, double cpu_seconds) {
-  Trial trial = run.trial(seed);
+  ErrorTrial trial = run.trial(seed);
   trial.batches.relative_error = [](const GroupedSums&) { return 1.0; };  // not asked for
   RunState state{GroupedSums(trial.batches.size), {}};
   RunOptions options;

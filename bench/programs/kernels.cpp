@@ -9,6 +9,7 @@
 #include "core/numbers/hankel_array.h"
 #include "core/numbers/phasor.h"
 #include "flatland/scene/scene.h"
+#include "grin/render/flights/space.h"
 #include "mc/paths/estimators/covariance_estimator.h"
 #include "wave_solver/solutions/wave_solution.h"
 
@@ -151,5 +152,53 @@ void exact_points(benchmark::State& state) {
     benchmark::DoNotOptimize(wave::solve(placement, scene.k, {0}, options).far_field(0));
 }
 BENCHMARK(exact_points)->Arg(31)->Arg(250)->Arg(1000)->Unit(benchmark::kMillisecond);
+
+/// Items: steps of a ray.
+template <class Integrator, class Field>
+void ray_steps(benchmark::State& state, const Field& field) {
+  constexpr int steps = 400;
+  const auto start = grin::start_ray(field, grin::Vec3(0.1, 0.2, 0), grin::Vec3::UnitZ());
+  for (auto _ : state) {
+    grin::RayState ray = start;
+    for (int i = 0; i < steps; ++i) Integrator::step(field, ray, 0.005);
+    benchmark::DoNotOptimize(ray);
+  }
+  state.SetItemsProcessed(state.iterations() * steps);
+}
+const grin::StandingWave sound(0.33, 0.01, 0, 7, 4);
+BENCHMARK_CAPTURE(ray_steps<grin::Leapfrog>, sound, sound);
+BENCHMARK_CAPTURE(ray_steps<grin::Yoshida4>, sound, sound);
+BENCHMARK_CAPTURE(ray_steps<grin::Sharma>, sound, sound);
+BENCHMARK_CAPTURE(ray_steps<grin::Sharma>, fisheye, grin::Fisheye({0.33, 5}));
+
+const grin::Stage foggy_ball{.boundary = grin::Sphere{}, .medium = {.mu_s = 2}};
+const std::shared_ptr<const grin::Space> straight_fog =
+    grin::make_space(grin::Homogeneous{}, foggy_ball);
+const std::shared_ptr<const grin::Space> fisheye_fog =
+    grin::make_space(grin::Fisheye({1, 1.5}), foggy_ball, {0.05, 8});
+
+grin::PathPoint random_place(RandomStream& random) {
+  const auto place = [&] { return random.uniform() - 0.5; };
+  return {{place(), place(), place()}};
+}
+
+void flights(benchmark::State& state, const std::shared_ptr<const grin::Space>& space) {
+  RandomStream random(1, 1, 0);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(space->fly(random_place(random), grin::Vec3::UnitZ(), random));
+}
+BENCHMARK_CAPTURE(flights, straight, straight_fog);
+BENCHMARK_CAPTURE(flights, fisheye, fisheye_fog);
+
+void joins(benchmark::State& state, const std::shared_ptr<const grin::Space>& space) {
+  RandomStream random(1, 1, 0);
+  grin::ConnectionStatistics statistics;
+  for (auto _ : state) {
+    const grin::PathPoint from = random_place(random), to = random_place(random);
+    benchmark::DoNotOptimize(space->join(from, to, random, statistics));
+  }
+}
+BENCHMARK_CAPTURE(joins, straight, straight_fog);
+BENCHMARK_CAPTURE(joins, fisheye, fisheye_fog);
 
 }  // namespace

@@ -2,11 +2,8 @@
 
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <utility>
-
-#include "bench/scenes/random_fields.h"
 
 namespace flatspeckle::bench {
 
@@ -14,20 +11,6 @@ using namespace grin;
 
 Surface unit_box() {
   return Box{Vec3::Constant(-1), Vec3::Constant(1)};
-}
-Surface ball_stage() {
-  return Sphere{Vec3::Zero(), 1.5};
-}
-
-ScatteringMedium fog(double mu_s, double mu_a, double g) {
-  return {mu_s, mu_a, {HgPhase{g}}};
-}
-
-ScatteringMedium grid_medium() {
-  const FieldGrid grid{Vec3::Constant(-0.8), Vec3::Constant(0.4), {5, 5, 5}};
-  std::vector<double> density(grid.size());
-  for (std::size_t i = 0; i < density.size(); ++i) density[i] = static_cast<double>(i * 7 % 11) / 5;
-  return {2, 0.2, {RayleighPhase{}}, std::make_shared<DensityGrid>(grid, density)};
 }
 
 Light environment() {
@@ -41,44 +24,6 @@ AreaDetector whole_face() {
 RenderScene scene_in(AnyIndexField field, Stage stage, Light light, Sensor sensor) {
   return {std::move(field),   0.05, 60, false, std::move(stage), {std::move(light)},
           {std::move(sensor)}};
-}
-
-std::vector<NamedRender> furnaces(const ScatteringMedium& medium) {
-  const Stage stage{unit_box(), medium};
-  Stage with_ball = stage;
-  with_ball.bodies.push_back({Sphere{Vec3(0.1, 0, 0.1), 0.6}, medium});
-  RandomStream random(5, 93, 0);
-  AnySum sum;
-  sum.add(random_blobs(random, 0.1)).add(random_spline(random, 0.03)).add(Homogeneous{0.2});
-  const auto in = [](AnyIndexField field, const Stage& where) {
-    return scene_in(std::move(field), where, environment(), whole_face());
-  };
-  std::vector<NamedRender> all{
-      {"homogeneous", in(Homogeneous{0.3}, stage)},
-      {"Luneburg", in(Luneburg(LuneburgProfile{.radius = 0.6}, Vec3(0.1, 0, 0.1)), with_ball)},
-      {"fisheye", in(Fisheye({.centre_excess = 1, .radius = 1.5}), stage)},
-      {"guide", in(ParabolicGuide({.axis_excess = 0.5, .alpha = 0.6}), stage)},
-      {"sound", in(StandingWave(0.3, 0.1, 0, 4.0, 3.0), stage)},
-      {"blobs and spline", in(sum, stage)},
-      {"glass ball", in(Homogeneous{0.5}, with_ball)},
-      {"clear ball", in(Homogeneous{}, with_ball)}};
-  all[4].scene.random_phase = true;
-  return all;
-}
-
-std::vector<NamedRender> furnaces_of_bodies(const ScatteringMedium& medium) {
-  Stage balls{unit_box(), medium};  // one inside of another, one beside
-  balls.bodies.push_back({Sphere{Vec3(0.1, 0, 0.1), 0.6}, medium});
-  balls.bodies.push_back({Sphere{Vec3(0.2, 0, 0.2), 0.3}, medium, 0.1});
-  balls.bodies.push_back({Sphere{Vec3(-0.6, -0.6, 0.5), 0.3}, medium, 0.8});
-  Stage layers{unit_box(), medium};  // that touch
-  layers.bodies.push_back({Box{{-0.7, -0.8, -0.5}, {0.9, 0.8, 0.6}}, medium});
-  layers.bodies.push_back({Box{{-0.7, -0.8, -0.5}, {0.9, 0.8, 0.3}}, medium, 0.2});
-  layers.bodies.push_back({Box{{-0.7, -0.8, -0.5}, {0.9, 0.8, -0.1}}, medium, 0.6});
-  const Luneburg luneburg(LuneburgProfile{.radius = 0.6}, Vec3(0.1, 0, 0.1));
-  return {{"ball in a ball", scene_in(Homogeneous{0.5}, balls, environment(), whole_face())},
-          {"ball in a Luneburg ball", scene_in(luneburg, balls, environment(), whole_face())},
-          {"layers", scene_in(Homogeneous{0.4}, layers, environment(), whole_face())}};
 }
 
 double mean_square_index(const RenderScene& scene) {

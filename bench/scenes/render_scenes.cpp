@@ -9,37 +9,8 @@ namespace flatspeckle::bench {
 
 using namespace grin;
 
-namespace {
-
 ScatteringMedium fog(double mu_s, double mu_a, double g) {
-  ScatteringMedium medium;
-  medium.mu_s = mu_s;
-  medium.mu_a = mu_a;
-  medium.phase = {HgPhase{g}};
-  return medium;
-}
-
-Camera side_camera() {
-  Camera camera{};
-  camera.x = {-3, 0, 0};
-  camera.forward = {1, 0, 0};
-  camera.up = {0, 1, 0};
-  camera.field_of_view = 0.8;
-  camera.pixels = {24, 24};
-  camera.lens_radius = 0.1;
-  camera.focus_distance = 3;
-  return camera;
-}
-
-RenderScene ball_under_beam() {
-  RenderScene scene{};
-  scene.step = 0.1;
-  scene.max_length = 100;
-  scene.stage.boundary = Box{{-3, -3, -3}, {3, 3, 3}};
-  scene.stage.bodies.push_back({Sphere{}, fog(0.5, 0, 0.5)});
-  scene.lights = {BeamLight{{0, 0, -3}, {0, 0, 1}, 0.8}};
-  scene.sensors = {side_camera()};
-  return scene;
+  return {mu_s, mu_a, {HgPhase{g}}};
 }
 
 RenderScene waveguide() {
@@ -55,49 +26,19 @@ RenderScene waveguide() {
   return scene;
 }
 
-RenderScene luneburg_from_outside() {
-  RenderScene scene = ball_under_beam();
-  scene.field = Luneburg({});
-  return scene;
-}
-
-RenderScene filled_ball() {
-  RenderScene scene{};
-  scene.field = Luneburg({});
-  scene.step = 0.1;
-  scene.max_length = 100;
-  scene.stage.boundary = Sphere{};
-  scene.stage.medium = fog(0.5, 0, 0.5);
-  return scene;
-}
-
-RenderScene luneburg() {
-  RenderScene scene = filled_ball();
-  struct Pencil {
-    double x, z, dx, dz;
-  };
-  for (const Pencil& p : {Pencil{0.746253, -0.5583, -0.0703927, 0.997519},
-                          {0.497502, -0.761865, -0.0461076, 0.998936},
-                          {0.248751, -0.863575, -0.0228566, 0.999739}})
-    for (const double side : {-1, 1})
-      scene.lights.push_back(BeamLight{{side * p.x, 0, p.z}, {side * p.dx, 0, p.dz}, 0.03});
-  scene.lights.push_back(BeamLight{{0, 0, -0.895171}, {0, 0, 1}, 0.03});
-  Camera camera{};
-  camera.x = {0, 0.6, 0};
-  camera.forward = {0, -1, 0};
-  camera.up = {1, 0, 0};
-  camera.field_of_view = 2.52;
-  camera.pixels = {48, 36};
-  scene.sensors = {camera};
-  return scene;
-}
+namespace {
 
 AreaDetector detector(const Vec3& centre, double size) {
   return {centre, {0, 1, 0}, size, size, {8, 8}, std::numbers::pi / 2};
 }
 
 RenderScene luneburg_lamp() {
-  RenderScene scene = filled_ball();
+  RenderScene scene{};
+  scene.field = Luneburg({});
+  scene.step = 0.1;
+  scene.max_length = 100;
+  scene.stage.boundary = Sphere{};
+  scene.stage.medium = fog(0.5, 0, 0.5);
   scene.lights = {FaceLight{{0, 0, -1}, 0.6}};
   scene.sensors = {detector({0, 0, 1}, 1)};
   return scene;
@@ -135,25 +76,7 @@ RenderScene glass_ball_lamp() {
   return scene;
 }
 
-RenderScene luneburg_wide_beam() {
-  RenderScene scene = filled_ball();
-  scene.lights = {BeamLight{{0, 0, -0.55}, {0, 0, 1}, 0.8}};
-  Camera camera = side_camera();
-  camera.x = {-0.95, 0, 0};
-  camera.field_of_view = 1.2;
-  camera.lens_radius = 0;
-  scene.sensors = {camera};
-  return scene;
-}
-
 }  // namespace
-
-std::vector<NamedRender> render_scenes() {
-  return {{"luneburg", luneburg()},
-          {"waveguide", waveguide()},
-          {"luneburg_wide_beam", luneburg_wide_beam()},
-          {"luneburg_from_outside", luneburg_from_outside()}};
-}
 
 std::vector<NamedRender> lamp_scenes() {
   return {{"luneburg", luneburg_lamp()},
@@ -189,13 +112,6 @@ RenderScene beam_on_glass_ball() {
   RenderScene scene = glass_ball_lamp();
   scene.lights = {BeamLight{{0, 0, -10}, {0, 0, 1}, 2}};
   scene.sensors = {detector({10, 0, 0}, 10)};
-  return scene;
-}
-
-RenderScene foggy_ball() {
-  RenderScene scene = ball_under_beam();
-  scene.field = Homogeneous{0.5};
-  scene.stage.medium = fog(0.2, 0, 0.5);
   return scene;
 }
 

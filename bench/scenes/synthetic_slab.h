@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -123,15 +124,24 @@ class SyntheticSlab {
   std::vector<mc::Measurement> exact_;
 };
 
-/// The three that describe a slab; from grids of starts.
-inline mc::FitTask slab_task(std::vector<mc::Measurement> measurements, double thickest = 20) {
+/// Fit of these parameters; `tell` writes into the scene of each curve what else is known of it.
+inline mc::FitTask slab_task(
+    std::vector<mc::Measurement> measurements, const std::vector<std::string>& free,
+    const std::function<void(mc::MovingSpec& scene)>& tell = [](mc::MovingSpec&) {}) {
   mc::MovingSpec none;
   none.scatterer = "hg";
   mc::FitTask task;
-  task.free = mc::read_free_parameters(
-      {"g=0.5:0.95", "albedo=0.9:1", "optical_depth=1:" + std::to_string(thickest)}, none);
+  task.free = mc::read_free_parameters(free, none);
+  for (mc::Measurement& one : measurements)
+    for (mc::Curve& curve : one.curves) tell(curve.scene);
   task.measurements = std::move(measurements);
   return task;
+}
+
+/// The three that describe a slab; from grids of starts.
+inline mc::FitTask slab_task(std::vector<mc::Measurement> measurements, double thickest = 20) {
+  return slab_task(std::move(measurements),
+                   {"g=0.5:0.95", "albedo=0.9:1", "optical_depth=1:" + std::to_string(thickest)});
 }
 
 /// Two views in transmission and two in reflection, and the transmittance.

@@ -11,14 +11,25 @@
 namespace flatspeckle::bench {
 
 std::vector<ExtremeCase> extreme_cases() {
-  std::vector<ExtremeCase> all;
-  for (const auto& room :
-       {function_extremes, flatland_extremes, wave_extremes, wave_point_extremes,
-        wave_cluster_extremes, mc_theory_extremes, mc_slab_extremes, mc_transport_extremes,
-        mc_box_extremes, mc_varying_extremes, mc_imaging_extremes, index_extremes, ray_extremes,
-        connection_extremes, flight_extremes, render_extremes, mesh_extremes, design_extremes})
-    for (ExtremeCase& row : room()) all.push_back(std::move(row));
-  return all;
+  struct Part {
+    const char* room;
+    void (*add)(ExtremeRows& rows);
+  };
+  constexpr Part parts[] = {{"functions", function_extremes}, {"flatland", flatland_extremes},
+                            {"wave_solver", wave_extremes},   {"wave_solver", wave_point_extremes},
+                            {"mc", mc_theory_extremes},       {"mc", mc_slab_extremes},
+                            {"mc", mc_transport_extremes},    {"mc", mc_box_extremes},
+                            {"mc", mc_varying_extremes},      {"mc imaging", mc_imaging_extremes},
+                            {"grin", index_extremes},         {"grin", ray_extremes},
+                            {"grin", connection_extremes},    {"grin", flight_extremes},
+                            {"grin", render_extremes},        {"grin", mesh_extremes},
+                            {"grin", design_extremes}};
+  ExtremeRows rows;
+  for (const auto& [room, add] : parts) {
+    rows.begin_room(room);
+    add(rows);
+  }
+  return std::move(rows).rows();
 }
 
 Finding examine(const ExtremeCase& extreme) {
@@ -49,6 +60,25 @@ Finding in_errors(Complex found, double error, Complex expected, double largest_
   const double size = std::abs(expected), off = std::abs(found - expected) - accuracy * size;
   if (!(error <= largest_error * size)) return {std::numeric_limits<double>::infinity(), limit};
   return {off <= 0 ? 0 : off / error, limit};
+}
+
+Finding in_errors(const Estimate& found, const Estimate& expected, double largest_error,
+                  double scale) {
+  Finding worst{0, 4};
+  for (std::size_t i = 0; i < found.value.size(); ++i)
+    worst = worse(worst, in_errors(scale * found.value[i],
+                                   std::hypot(scale * found.error[i], expected.error[i]),
+                                   expected.value[i], largest_error));
+  return worst;
+}
+
+Finding in_errors(const Estimate& found, const std::vector<Complex>& expected, double largest_error,
+                  double accuracy) {
+  Finding worst{0, 4};
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    worst = worse(worst,
+                  in_errors(found.value[i], found.error[i], expected[i], largest_error, accuracy));
+  return worst;
 }
 
 Finding worse(const Finding& a, const Finding& b) {

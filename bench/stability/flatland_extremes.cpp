@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bench/oracles/multiprecision.h"
+#include "bench/scenes/standard_scenes.h"
 #include "bench/stability/extreme_rows.h"
 #include "flatland/media/structure_factor.h"
 #include "flatland/placement/equilibrium_disks.h"
@@ -17,15 +18,7 @@ namespace {
 using namespace oracles;
 
 using Kind = Scatterer::Kind;
-constexpr double pi = std::numbers::pi, k = 2 * pi;
-
-Scatterer disk(Kind kind, double ka, Complex index = 1.5) {
-  Scatterer scatterer;
-  scatterer.kind = kind;
-  scatterer.radius = ka / k;
-  scatterer.index = index;
-  return scatterer;
-}
+using std::numbers::pi;
 
 /// T_n up to where it is 1e-15 of the largest, and some beyond.
 double t_matrix_error(const Scatterer& scatterer) {
@@ -38,10 +31,8 @@ double t_matrix_error(const Scatterer& scatterer) {
 }
 
 Finding t_matrix_row(Kind kind, Complex index, double limit) {
-  double worst = 0;
-  for (const double ka : {1e-4, 1.0, 100.0})
-    worst = larger(worst, t_matrix_error(disk(kind, ka, index)));
-  return {worst, limit};
+  return worst_of({1e-4, 1.0, 100.0}, limit,
+                  [&](double ka) { return t_matrix_error(disk(kind, ka, index)); });
 }
 
 /// |1 + 2 T_n| = 1
@@ -120,12 +111,10 @@ Finding absorption() {
 }
 
 Finding transport_lengths() {
-  double worst = 0;
-  for (const double g : {-0.999, 0.0, 0.999}) {
+  return worst_of({-0.999, 0.0, 0.999}, 1e-12, [&](double g) {
     const BulkMedium medium = make_scene(hg(g, 1)).medium;
-    worst = larger(worst, std::abs(medium.transport_mean_free_path() * medium.mu_t * (1 - g) - 1));
-  }
-  return {worst, 1e-12};
+    return std::abs(medium.transport_mean_free_path() * medium.mu_t * (1 - g) - 1);
+  });
 }
 
 /// Nobody, and one.
@@ -220,50 +209,38 @@ Finding dense_fluid() {
 
 void add_scatterers(ExtremeRows& rows) {
   const std::string sizes = ", k a 1e-4, 1, 100: T_n", digits = "C7 in 50 digits";
+  const std::string lossless_t = "|1 + 2 T_n| = 1", area = "integrals of |A|^2";
+  const Complex metal(0.1, 5);
   for (const auto& [name, kind] : {std::pair("TM", Kind::tm), {"TE", Kind::te}}) {
     const std::string disks = name;
     // half of the digits of m - 1 are gone where m was rounded to double, for both sides alike
-    rows.add(disks + ", index 1 + 1e-8" + sizes, digits,
-             [kind = kind] { return t_matrix_row(kind, 1 + 1e-8, 1e-9); });
-    rows.add(disks + ", index 10" + sizes, digits,
-             [kind = kind] { return t_matrix_row(kind, 10, 1e-12); });
-    rows.add(disks + ", index 0.1 + 5i" + sizes, digits, [kind = kind] {
-      return t_matrix_row(kind, {0.1, 5}, 1e-12);
-    });
-    rows.add(disks + ", index 10, k a 1000", "|1 + 2 T_n| = 1",
-             [kind = kind] { return lossless(disk(kind, 1000, 10), 1e-13); });
+    rows.add(disks + ", index 1 + 1e-8" + sizes, digits, t_matrix_row, kind, 1 + 1e-8, 1e-9);
+    rows.add(disks + ", index 10" + sizes, digits, t_matrix_row, kind, 10.0, 1e-12);
+    rows.add(disks + ", index 0.1 + 5i" + sizes, digits, t_matrix_row, kind, metal, 1e-12);
+    rows.add(disks + ", index 10, k a 1000", lossless_t, lossless, disk(kind, 1000, 10), 1e-13);
   }
   for (const auto& [name, kind] : {std::pair("soft", Kind::soft), {"hard", Kind::hard}}) {
-    rows.add(name + sizes, digits, [kind = kind] { return t_matrix_row(kind, 1, 1e-12); });
-    rows.add(std::string(name) + ", k a 10000", "|1 + 2 T_n| = 1",
-             [kind = kind] { return lossless(disk(kind, 1e4), 1e-13); });
+    rows.add(name + sizes, digits, t_matrix_row, kind, 1.0, 1e-12);
+    rows.add(std::string(name) + ", k a 10000", lossless_t, lossless, disk(kind, 1e4), 1e-13);
   }
-  rows.add("TM, index 0.1 + 5i, k a 100: sigma_s and g", "integrals of |A|^2", [] {
-    return integrals(disk(Kind::tm, 100, {0.1, 5}), 1e-11);
-  });
-  rows.add("TE, k a 1000: sigma_s and g", "integrals of |A|^2",
-           [] { return integrals(disk(Kind::te, 1000), 1e-9); });  // rounding of order squared
+  rows.add("TM, index 0.1 + 5i, k a 100: sigma_s and g", area, integrals,
+           disk(Kind::tm, 100, metal), 1e-11);
+  rows.add("TE, k a 1000: sigma_s and g", area, integrals, disk(Kind::te, 1000),
+           1e-9);  // rounding of order squared
 }
 
 void add_scenes(ExtremeRows& rows) {
   rows.add("optical depths 1e-12 to 1e4, stated", "mu_t depth", optical_depths);
   rows.add("albedo 1 - 1e-9", "mu_t - mu_s = mu_t (1 - albedo)", absorption);
   rows.add("g -0.999, 0, 0.999", "transport mean free path", transport_lengths);
-  rows.add("no scatterer", "count, mu_t", [] { return few_scatterers(0); });
-  rows.add("one scatterer", "count, mu_t, its place", [] { return few_scatterers(1); });
+  rows.add("no scatterer", "count, mu_t", few_scatterers, 0);
+  rows.add("one scatterer", "count, mu_t, its place", few_scatterers, 1);
   rows.add("views matched to tilts of 1e-12 to 1e-3", "phase over k L = 1e6", matched_views);
   rows.add("tilt 0, light and view grazing", "the same channel", no_tilt);
   rows.add("distance to the edge along the edge, and from corners", "closed form", edges);
-  for (const double eta : {1e-9, 0.69})
-    rows.add("structure factor of disks, packing " + short_number(eta), "S(0), S(infinity)",
-             [=] { return compressibility(eta); });
+  rows.add_each("structure factor of disks, packing ", {1e-9, 0.69}, "", "S(0), S(infinity)",
+                compressibility);
   rows.add("equilibrium disks, packing 0.68", "overlap of any two", dense_fluid);
-}
-
-void refuse(ExtremeRows& rows, std::string name, std::string must_say, SceneSpec spec,
-            const std::function<void(SceneSpec&)>& change) {
-  change(spec);
-  rows.add_refused(std::move(name), std::move(must_say), [spec] { make_scene(spec); });
 }
 
 void add_refusals(ExtremeRows& rows) {
@@ -273,38 +250,38 @@ void add_refusals(ExtremeRows& rows) {
                    [] {
                      memory_effect_request(k, 0, {0.1, 1.5}, {0.2});
                    });
-  refuse(rows, "g = 1", "g = 1: must be in (-1, 1)", hg(0, 1), [](auto& s) { s.g = 1; });
-  refuse(rows, "albedo 1 + 2e-16", "must be from 0 to 1", hg(0, 1),
-         [](auto& s) { s.albedo = 1 + 0x1p-52; });
-  refuse(rows, "optical depth 0", "optical_depth = 0: must be positive", hg(0, 1),
+  const auto refuse = [&](const char* name, const char* must_say, SceneSpec spec,
+                          const std::function<void(SceneSpec & s)>& change) {
+    change(spec);
+    rows.add_refused(
+        name, must_say, [](const SceneSpec& of) { make_scene(of); }, spec);
+  };
+  const SceneSpec slab = hg(0, 1);
+  SceneSpec disks = box();
+  disks.scatterer = "tm";
+  disks.radius = 0.2;
+  disks.index = "1.5";
+  refuse("g = 1", "g = 1: must be in (-1, 1)", slab, [](auto& s) { s.g = 1; });
+  refuse("albedo 1 + 2e-16", "must be from 0 to 1", slab, [](auto& s) { s.albedo = 1 + 0x1p-52; });
+  refuse("optical depth 0", "optical_depth = 0: must be positive", slab,
          [](auto& s) { s.optical_depth = 0; });
-  refuse(rows, "optical depth NaN", "optical_depth", hg(0, 1),
+  refuse("optical depth NaN", "optical_depth", slab,
          [](auto& s) { s.optical_depth = std::nan(""); });
-  refuse(rows, "a box of 1e9 wavelengths", "at most 1e8 wavelengths", box(), [](auto& s) {
+  refuse("a box of 1e9 wavelengths", "at most 1e8 wavelengths", box(), [](auto& s) {
     s.width = 1e9;
     s.count = 1;
   });
-  const auto disks = [](auto& s) {
-    s.scatterer = "tm";
-    s.radius = 0.2;
-    s.index = "1.5";
-  };
-  refuse(rows, "disks of index 1.5 - 1e-12i", "must not be 0 nor amplify", box(), [=](auto& s) {
-    disks(s);
-    s.index = "1.5-1e-12i";
-  });
-  refuse(rows, "random hard disks, packing 0.55", "packing fraction", box(), [=](auto& s) {
-    disks(s);
-    s.density = 0.55 / (pi * 0.04);
-  });
-  refuse(rows, "equilibrium disks, packing 0.7", "freezes near 0.7", box(), [=](auto& s) {
-    disks(s);
+  refuse("disks of index 1.5 - 1e-12i", "must not be 0 nor amplify", disks,
+         [](auto& s) { s.index = "1.5-1e-12i"; });
+  refuse("random hard disks, packing 0.55", "packing fraction", disks,
+         [](auto& s) { s.density = 0.55 / (pi * 0.04); });
+  refuse("equilibrium disks, packing 0.7", "freezes near 0.7", disks, [](auto& s) {
     s.placement = "equilibrium";
     s.density = 0.7 / (pi * 0.04);
   });
-  refuse(rows, "light along a slab from below, 3 pi / 4", "light enters a slab at z = 0", hg(0, 1),
+  refuse("light along a slab from below, 3 pi / 4", "light enters a slab at z = 0", slab,
          [](auto& s) { s.light_angles = {3 * pi / 4}; });
-  refuse(rows, "full covariance of 1e6 channels", "GB, there are", box(), [](auto& s) {
+  refuse("full covariance of 1e6 channels", "GB, there are", box(), [](auto& s) {
     s.count = 1;
     s.covariance = "full";
     s.view_angles.clear();
@@ -314,12 +291,10 @@ void add_refusals(ExtremeRows& rows) {
 
 }  // namespace
 
-std::vector<ExtremeCase> flatland_extremes() {
-  ExtremeRows rows("flatland");
+void flatland_extremes(ExtremeRows& rows) {
   add_scatterers(rows);
   add_scenes(rows);
   add_refusals(rows);
-  return std::move(rows).rows();
 }
 
 }  // namespace flatspeckle::bench

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "bench/oracles/multiprecision.h"
 #include "bench/stability/extreme_rows.h"
@@ -24,15 +23,13 @@ Finding cylinder_row(double x, const std::vector<int>& orders) {
   const int last = *std::max_element(orders.begin(), orders.end());
   const auto h = scaled_hankel(last, x);
   const auto j = scaled_bessel_j(last, x);
-  double worst = 0;
-  for (const int n : orders) {
+  return worst_of(orders, 1e-14, [&](int n) {
     const auto exact = bessel_oracle(n, x);
     const Wide size = exact.size(), j_size = n > x ? abs(exact.j) : size;
     const Wide off_h = abs(wide(h[n]) - WideComplex(exact.j, exact.y)) / size,
                off_j = abs(wide(j[n]) - exact.j) / j_size;
-    worst = larger({worst, static_cast<double>(off_h), static_cast<double>(off_j)});
-  }
-  return {worst, 1e-14};
+    return larger({static_cast<double>(off_h), static_cast<double>(off_j)});
+  });
 }
 
 /// The vectorised sets, over arguments of all sizes at once.
@@ -112,7 +109,7 @@ Finding jackknife_row() {
 /// 1 would be an infinite flight.
 Finding uniform_row() {
   const double least = RandomStream::uniform(0), most = RandomStream::uniform(~std::uint64_t{0});
-  return {least > 0 && most < 1 ? 0.0 : 1.0, 0};
+  return yes(least > 0 && most < 1);
 }
 
 std::vector<int> orders_to(int last) {
@@ -124,28 +121,23 @@ std::vector<int> orders_to(int last) {
 
 }  // namespace
 
-std::vector<ExtremeCase> function_extremes() {
-  ExtremeRows rows("functions");
+void function_extremes(ExtremeRows& rows) {
   const std::string digits = "against 50 digits";
   for (const auto& [x, order] :
        {std::pair(1e-300, 60), {1e-8, 60}, {1e-4, 4000}, {1e6, 60}, {1e15, 60}})
     rows.add("J_n, H_n, argument " + short_number(x) + ", orders to " + std::to_string(order),
-             digits, [x = x, order = order] { return cylinder_row(x, orders_to(order)); });
-  rows.add("J_n, H_n, argument 1000, at the turning point n = 990 .. 1030", digits, [] {
-    return cylinder_row(1000, {990, 998, 999, 1000, 1001, 1002, 1010, 1030});
-  });
+             digits, cylinder_row, x, orders_to(order));
+  rows.add("J_n, H_n, argument 1000, at the turning point n = 990 .. 1030", digits, cylinder_row,
+           1000, std::vector{990, 998, 999, 1000, 1001, 1002, 1010, 1030});
   rows.add("H_n of arrays, arguments 1e-300 to 1e15", digits, hankel_sets_row);
-  rows.add("J_{n+1}/J_n, argument 10 + 1000i, orders to 200", digits, [] {
-    return ratio_row({10, 1000});
-  });
-  rows.add("J_{n+1}/J_n, argument 1e-8 (1 + i), orders to 200", digits, [] {
-    return ratio_row({1e-8L, 1e-8L});
-  });
+  rows.add("J_{n+1}/J_n, argument 10 + 1000i, orders to 200", digits, ratio_row,
+           ExtendedComplex(10, 1000));
+  rows.add("J_{n+1}/J_n, argument 1e-8 (1 + i), orders to 200", digits, ratio_row,
+           ExtendedComplex(1e-8L, 1e-8L));
   rows.add("phases up to 1e12, also next to 0", "against long double", phasor_row);
   rows.add("damping exp(-x), x from 1e-300 to 1e300", "against libm", damping_row);
   rows.add("error bar where the mean is 1e8 spreads", "as without the mean", jackknife_row);
   rows.add("uniform numbers of the least and largest bits", "within (0, 1)", uniform_row);
-  return std::move(rows).rows();
 }
 
 }  // namespace flatspeckle::bench

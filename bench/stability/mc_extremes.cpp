@@ -41,6 +41,13 @@ GroupedSums summed(const BatchJob& job, std::uint64_t samples) {
   return std::move(state.sums);
 }
 
+double total_magnitude(const Estimate& found) {
+  double sum = 0;
+  for (std::size_t e = 0; e < found.value.size(); ++e)
+    sum += std::abs(found.value[e]) + found.error[e];
+  return sum;
+}
+
 Estimate covariance(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t paths,
                     std::uint64_t seed) {
   const FieldJob job = mc::covariance_job(scene, mc::make_plan(scene, reversed), seed);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "bench/scenes/standard_scenes.h"
 #include "flatland/scene/scene.h"
 #include "mc/paths/estimators/covariance_estimator.h"
 
@@ -17,6 +18,9 @@ Scene hg_box(double width, const Bulk& bulk, const CovarianceRequest& request);
 
 /// On this thread.
 GroupedSums summed(const BatchJob& job, std::uint64_t samples);
+
+/// Of values and errors.
+double total_magnitude(const Estimate& found);
 
 /// A covariance by its plan, with errors.
 Estimate covariance(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t paths,

@@ -14,7 +14,7 @@ namespace flatspeckle::bench {
 namespace {
 
 using mc::ReversedPaths;
-constexpr double pi = std::numbers::pi, k = 2 * pi;
+using std::numbers::pi;
 
 /// Single scattering alone: mu_s p area.
 Finding speck() {
@@ -39,11 +39,7 @@ Finding quarter_turn() {
   const Bulk needle{1e3, 0.5, 0.9, 1e3}, sheet{1e-3, 0.5, 0.9, 1e-3};
   const Estimate a = covariance(hg_box(1e-3, needle, across), ReversedPaths::no, 16000, 1);
   const Estimate b = covariance(hg_box(1e3, sheet, through), ReversedPaths::no, 16000, 2);
-  Finding worst{0, 4};
-  for (std::size_t c = 0; c < a.value.size(); ++c)
-    worst =
-        worse(worst, in_errors(a.value[c], std::hypot(a.error[c], b.error[c]), b.value[c], 0.1));
-  return worst;
+  return in_errors(a, b, 0.1);
 }
 
 /// The needle lit and seen along itself, 1000 mean free paths: |C_ab|^2 <= C_aa C_bb, but for
@@ -66,19 +62,15 @@ Finding along_needle() {
 Finding near_reciprocity(Vec2 point) {
   const std::vector<double> views{0.3, pi - 0.4};
   const Bulk bulk{2.5, 0.5};
-  Lights back;
+  flatspeckle::Lights back;
   for (const double view : views) back.push_back(plane_wave(view + pi));
-  const Estimate from =
-      covariance(hg_box(20, bulk, intensity_request(Lights{point_source(point)}, far_views(views))),
-                 ReversedPaths::automatic, 40000, 1);
+  const Estimate from = covariance(
+      hg_box(20, bulk,
+             intensity_request(flatspeckle::Lights{point_source(point)}, far_views(views))),
+      ReversedPaths::automatic, 40000, 1);
   const Estimate to = covariance(hg_box(20, bulk, intensity_request(back, {near_sensor(point)})),
                                  ReversedPaths::automatic, 40000, 2);
-  Finding worst{0, 4};
-  for (std::size_t c = 0; c < views.size(); ++c)
-    worst = worse(
-        worst, in_errors(8 * pi * k * from.value[c],
-                         std::hypot(8 * pi * k * from.error[c], to.error[c]), to.value[c], 0.15));
-  return worst;
+  return in_errors(from, to, 0.15, 8 * pi * k);
 }
 
 /// Intensity at a sensor where it passes through a face or a corner.
@@ -97,17 +89,12 @@ Finding far_source() {
   const auto views = far_views({0.2, 1.3, pi - 0.2});
   const Bulk bulk{2.5, 0.5};
   const Estimate source = covariance(
-      hg_box(20, bulk, intensity_request(Lights{point_source(-r * direction(0.6))}, views)),
+      hg_box(20, bulk,
+             intensity_request(flatspeckle::Lights{point_source(-r * direction(0.6))}, views)),
       ReversedPaths::automatic, 20000, 3);
   const Estimate wave = covariance(hg_box(20, bulk, intensity_request({0.6}, views)),
                                    ReversedPaths::automatic, 20000, 4);
-  const double scale = 8 * pi * k * r;
-  Finding worst{0, 4};
-  for (std::size_t c = 0; c < views.size(); ++c)
-    worst = worse(
-        worst, in_errors(scale * source.value[c],
-                         std::hypot(scale * source.error[c], wave.error[c]), wave.value[c], 0.1));
-  return worst;
+  return in_errors(source, wave, 0.1, 8 * pi * k * r);
 }
 
 Finding empty_box() {
@@ -118,9 +105,7 @@ Finding empty_box() {
   Scene scene = make_scene(spec);
   scene.request = full_request({0, pi / 2}, far_views({0, pi}));
   const Estimate found = covariance(scene, ReversedPaths::yes, 4000);
-  double sum = 0;
-  for (std::size_t e = 0; e < found.value.size(); ++e)
-    sum += std::abs(found.value[e]) + found.error[e];
+  double sum = total_magnitude(found);
   for (const Complex mean : mc::coherent_field(scene)) sum += std::abs(mean);
   return {sum, 0};
 }
@@ -129,37 +114,32 @@ Finding empty_box() {
 Finding turns(double g) {
   const mc::HenyeyGreensteinScattering scattering{{g}};
   RandomStream random(3, 1, 0);
-  constexpr int count = 400000;
-  double sum = 0, squares = 0;
-  for (int i = 0; i < count; ++i) {
-    const Vec2 from = direction(0.3 * i), step = scattering.sample(from, random) - from;
-    const double turn = dot(step, step) / 2;
-    sum += turn / count;
-    squares += turn * turn / count;
-  }
-  return in_errors(sum, std::sqrt((squares - sum * sum) / count), 1 - g, 0.1);
+  return mean_in_errors(
+      400000,
+      [&](int i) {
+        const Vec2 from = direction(0.3 * i), step = scattering.sample(from, random) - from;
+        return dot(step, step) / 2;
+      },
+      1 - g, 0.1);
 }
 
 /// The density between directions a hair apart, which 1 - cos would lose.
 Finding forward_density() {
   const double g = 0.999;
   const mc::HenyeyGreensteinScattering scattering{{g}};
-  double worst = 0;
-  for (const double turn : {0.0, 1e-12, 1e-8, 1e-4, 1e-3}) {
+  return worst_of({0.0, 1e-12, 1e-8, 1e-4, 1e-3}, 1e-12, [&](double turn) {
     const long double h = std::sin(static_cast<long double>(turn) / 2),
                       rest = 1 - static_cast<long double>(g);
     const long double exact =
         rest * (1 + g) / (2 * std::numbers::pi_v<long double> * (rest * rest + 4 * g * h * h));
     const double found = scattering.density(direction(1), direction(1 + turn));
-    worst = larger(worst, static_cast<double>(std::abs(found / exact - 1)));
-  }
-  return {worst, 1e-12};
+    return static_cast<double>(std::abs(found / exact - 1));
+  });
 }
 
 }  // namespace
 
-std::vector<ExtremeCase> mc_box_extremes() {
-  ExtremeRows rows("mc");
+void mc_box_extremes(ExtremeRows& rows) {
   rows.add("box of 1e-6 mean free paths", "mu_s p area", speck);
   rows.add("needle of 1e-3 x 1e3 mean free paths", "the sheet turned, in errors", quarter_turn);
   rows.add("needle along itself, OD 1000, grazing", "Cauchy-Schwarz, entry by entry", along_needle);
@@ -172,11 +152,8 @@ std::vector<ExtremeCase> mc_box_extremes() {
   rows.add("sensor through the front face", steady, [] { return across_edge({0.5, 0}, {0, -1}); });
   rows.add("sensor through a corner", steady, [] { return across_edge({10, 10}, {1, 1}); });
   rows.add("source 1e9 wavelengths away", "plane wave, in errors", far_source);
-  for (const double g : {-0.999, 0.0, 0.999})
-    rows.add("turns of g " + short_number(g), "mean of 1 - cos, in errors",
-             [=] { return turns(g); });
+  rows.add_each("turns of g ", {-0.999, 0.0, 0.999}, "", "mean of 1 - cos, in errors", turns);
   rows.add("g 0.999, turns of 0 to 1e-3", "phase function in long double", forward_density);
-  return std::move(rows).rows();
 }
 
 }  // namespace flatspeckle::bench

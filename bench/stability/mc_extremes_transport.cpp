@@ -1,11 +1,11 @@
-// Slabs without chance, in the plane and in space, as thin, deep and peaked as they come.
+// Slabs without chance, in the plane and in space, as thin, deep and peaked as they come; media
+// found again from their own curves.
 
 #include <cmath>
 
+#include "bench/scenes/synthetic_slab.h"
 #include "bench/stability/extreme_rows.h"
 #include "bench/stability/mc_extremes.h"
-#include "bench/stability/mc_extremes_fit.h"
-#include "grin/media/scattering/phase_function.h"
 #include "mc/jobs/flux_job.h"
 #include "mc/slab/adding/space_scene.h"
 #include "mc/slab/slab_covariance.h"
@@ -17,43 +17,31 @@ namespace {
 
 using mc::ReversedPaths;
 
-/// Without absorption.
-Finding lossless_in_plane(const Bulk& bulk) {
-  const Scene scene = hg_slab(bulk, intensity_request({0}, {far_view(0)}));
-  const auto shares = mc::slab_flux(scene, 0, {1e-6}).value;
-  const Complex left = shares[mc::reflected] + shares[mc::transmitted];
-  return {std::abs(left + std::expm1(-bulk.optical_depth)), 1e-9};
-}
-
-double lost_in_space(const Scene& scene, double optical_depth) {
-  const auto shares = mc::slab_flux(scene, 0, {1e-6}).value;
-  return std::abs(shares[mc::reflected] + shares[mc::transmitted] + std::expm1(-optical_depth));
-}
-
-Finding lossless_in_space(const Bulk& bulk) {
+Scene viewed_slab(const Bulk& bulk, double view, int dimension) {
+  const Scene slab = hg_slab(bulk, intensity_request({0}, {far_view(view)}));
   SceneSpec spec;
   spec.scatterer = "hg";
   spec.g = bulk.g;
-  const Scene scene = mc::in_space(hg_slab(bulk, intensity_request({0}, {far_view(0)})), spec);
-  return {lost_in_space(scene, bulk.optical_depth), 1e-9};
+  return dimension == 3 ? mc::in_space(slab, spec) : slab;
+}
+
+/// Reflected and transmitted without absorption, over what is scattered.
+Finding lossless_scene(const Scene& scene, double optical_depth) {
+  const auto shares = mc::slab_flux(scene, 0, {1e-6}).value;
+  const Complex left = shares[mc::reflected] + shares[mc::transmitted];
+  return {std::abs(left + std::expm1(-optical_depth)), 1e-9};
+}
+
+Finding lossless(const Bulk& bulk, int dimension) {
+  return lossless_scene(viewed_slab(bulk, 0, dimension), bulk.optical_depth);
 }
 
 /// Intensities of Monte Carlo, in errors.
-Finding by_paths(const Bulk& bulk, double view, std::uint64_t paths) {
-  const Scene scene = hg_slab(bulk, intensity_request({0}, {far_view(view)}));
-  const auto exact = mc::slab_covariance(scene, false, {1e-4}).value;
-  const Estimate found = covariance(scene, ReversedPaths::no, paths);
-  return in_errors(found.value[0], found.error[0], exact[0], 0.1, 1e-4);
-}
-
-Finding by_paths_in_space(const Bulk& bulk, double view, std::uint64_t paths) {
-  SceneSpec spec;
-  spec.scatterer = "hg";
-  spec.g = bulk.g;
-  const Scene scene = mc::in_space(hg_slab(bulk, intensity_request({0}, {far_view(view)})), spec);
-  const auto exact = mc::slab_covariance(scene, false, {1e-3}).value;
-  const Estimate found = covariance(scene, ReversedPaths::no, paths);
-  return in_errors(found.value[0], found.error[0], exact[0], 0.1, 1e-3);
+Finding by_paths(const Bulk& bulk, int dimension) {
+  const Scene scene = viewed_slab(bulk, 0.3, dimension);
+  const double tolerance = dimension == 3 ? 1e-3 : 1e-4;
+  return in_errors(covariance(scene, ReversedPaths::no, 20000),
+                   mc::slab_covariance(scene, false, {tolerance}).value, 0.1, tolerance);
 }
 
 /// Spheres, without absorption.
@@ -66,53 +54,120 @@ Finding lossless_spheres(double optical_depth, double radius) {
   spec.scatterer = "mie";
   spec.radius = radius;
   spec.index = "1.33";
-  return {lost_in_space(mc::in_space(make_scene(spec), spec), optical_depth), 1e-9};
+  return lossless_scene(mc::in_space(make_scene(spec), spec), optical_depth);
 }
 
 /// Frequencies that differ by nothing to speak of, over the intensity; values are complex then.
 Finding same_frequencies(const Bulk& bulk, int dimension) {
-  Scene scene = hg_slab(bulk, intensity_request({0}, {far_view(0)}));
-  SceneSpec spec;
-  spec.scatterer = "hg";
-  spec.g = bulk.g;
-  if (dimension == 3) scene = mc::in_space(scene, spec);
+  const Scene scene = viewed_slab(bulk, 0, dimension);
   const auto solve = [&](double shift) {
     return mc::slab_covariance(scene, false, {1e-6}, {.shift = shift}).value[0];
   };
-  const Complex intensity = solve(0);
-  return {std::abs(solve(1e-18) / intensity - 1.0), 1e-5};
+  return {std::abs(solve(1e-18) / solve(0) - 1.0), 1e-5};
+}
+
+struct Truth {
+  double g, albedo, optical_depth;
+};
+
+/// How far the parameters are off, in these errors.
+Finding misfit(const mc::MediumFit& fit, const Eigen::VectorXd& truth,
+               const Eigen::VectorXd& errors, double limit) {
+  const Eigen::VectorXd in_errors = (fit.estimates - truth).cwiseQuotient(errors);
+  return {fit.converged ? in_errors.cwiseAbs().maxCoeff() : 1e9, limit};
+}
+
+/// In the errors that 1 % of noise would give them.
+Finding found_again(const Truth& truth, const std::vector<std::string>& free) {
+  constexpr double depth = 20000;  // few paths walked backwards count
+  SyntheticSlab slab(depth, truth.g, truth.albedo, truth.optical_depth);
+  for (const double view : {0.2, std::numbers::pi - 0.6}) slab.add_curve(view, {1, 2, 4, 8});
+  slab.add_transmittance();
+  const mc::MediumFit fit = mc::fit_medium(slab_task(slab.exact(), free));
+  return misfit(fit, Eigen::VectorXd{{truth.g, truth.albedo, truth.optical_depth}}, fit.errors,
+                0.2);
+}
+
+/// g alone, by paths: in standard errors of their chance.
+Finding found_by_paths(const Truth& truth) {
+  SyntheticSlab slab(2000, truth.g, truth.albedo, truth.optical_depth);
+  for (const double view : {0.3, std::numbers::pi - 0.6}) slab.add_curve(view, {1, 2, 4, 8});
+  mc::FitTask task = slab_task(slab.exact(), {"g=-0.5:0.99"}, [&](mc::MovingSpec& scene) {
+    scene.albedo = truth.albedo;
+    scene.optical_depth = truth.optical_depth;
+  });
+  task.paths.emplace();
+  const mc::MediumFit fit = mc::fit_medium(task);
+  return misfit(fit, Eigen::VectorXd{{truth.g}}, fit.by_chance.diagonal().cwiseSqrt(), 4);
+}
+
+/// The diffusion that a decay tells of, in a medium that is known.
+Finding diffusion_again(double optical_depth, const std::vector<double>& delays) {
+  SyntheticSlab slab(2000, 0.8, 1, optical_depth);
+  slab.add_decay(0.2, delays);
+  const auto known = [=](mc::MovingSpec& scene) {
+    scene.g = 0.8;
+    scene.optical_depth = optical_depth;
+  };
+  const mc::MediumFit fit =
+      mc::fit_medium(slab_task(slab.exact(), {"diffusion=0.001:1000"}, known));
+  return misfit(fit, Eigen::VectorXd{{1.0}}, fit.errors, 0.2);
+}
+
+void add_fits(ExtremeRows& rows) {
+  const auto add = [&](const std::string& name, const Truth& truth,
+                       const std::vector<std::string>& free) {
+    rows.add_slow("fit of a slab, " + name,
+                  "parameters of exact curves, in standard errors of 1 % noise", found_again, truth,
+                  free);
+  };
+  const std::string albedo = "albedo=0.8:1";
+  add("OD 0.1, g 0.9", {0.9, 0.95, 0.1}, {"g=0.3:0.98", albedo, "optical_depth=0.01:3"});
+  add("OD 15, g 0.95", {0.95, 0.99, 15}, {"g=0.3:0.99", albedo, "optical_depth=1:60"});
+  add("OD 10, g 0", {0, 0.9, 10}, {"g=-0.5:0.9", albedo, "optical_depth=1:60"});
+  const auto add_paths = [&](const std::string& name, const Truth& truth) {
+    rows.add_slow("fit by paths, " + name, "g of exact curves, in standard errors of chance",
+                  found_by_paths, truth);
+  };
+  add_paths("OD 0.05, g 0.9", {0.9, 0.95, 0.05});
+  add_paths("OD 20, g 0.95", {0.95, 0.99, 20});
+  add_paths("OD 10, albedo 1e-3", {0.3, 1e-3, 10});
+  const auto add_diffusion = [&](const std::string& name, double optical_depth,
+                                 const std::vector<double>& delays) {
+    rows.add_slow("fit of a decay, " + name, "diffusion, in standard errors of 1 % noise",
+                  diffusion_again, optical_depth, delays);
+  };
+  add_diffusion("OD 0.01, single scattering", 0.01, {1, 5, 20});
+  add_diffusion("OD 60, most of it gone", 60, {1e-4, 1e-3, 1e-2});
+  add("albedo 1, its bound", {0.7, 1, 5}, {"g=0.3:0.98", albedo, "optical_depth=1:60"});
 }
 
 }  // namespace
 
-std::vector<ExtremeCase> mc_transport_extremes() {
-  ExtremeRows rows("mc");
+void mc_transport_extremes(ExtremeRows& rows) {
   const std::string energy = "reflected + transmitted = scattered", errors = "paths, in errors";
-  for (const Bulk& bulk : {Bulk{1e-3}, Bulk{1e4}, Bulk{5, 0.99}}) {
-    const std::string name =
-        "OD " + short_number(bulk.optical_depth) + ", g " + short_number(bulk.g);
-    rows.add("transport, " + name, energy, [=] { return lossless_in_plane(bulk); });
-    rows.add("transport in space, " + name, energy, [=] { return lossless_in_space(bulk); });
-  }
-  for (const Bulk& bulk : {Bulk{1e-3, 0.5}, Bulk{30, 0, 0.8}}) {
-    const std::string name =
-        "OD " + short_number(bulk.optical_depth) + ", albedo " + short_number(bulk.albedo);
-    rows.add("transport, " + name, errors, [=] { return by_paths(bulk, 0.3, 20000); });
-    rows.add("transport in space, " + name, errors,
-             [=] { return by_paths_in_space(bulk, 0.3, 20000); });
-  }
+  const auto both = [&](const std::string& what, const std::string& invariant, const auto& check,
+                        const Bulk& bulk) {
+    rows.add("transport, " + what, invariant, check, bulk, 2);
+    rows.add("transport in space, " + what, invariant, check, bulk, 3);
+  };
+  for (const Bulk& bulk : {Bulk{1e-3}, Bulk{1e4}, Bulk{5, 0.99}})
+    both("OD " + short_number(bulk.optical_depth) + ", g " + short_number(bulk.g), energy, lossless,
+         bulk);
+  for (const Bulk& bulk : {Bulk{1e-3, 0.5}, Bulk{30, 0, 0.8}})
+    both("OD " + short_number(bulk.optical_depth) + ", albedo " + short_number(bulk.albedo), errors,
+         by_paths, bulk);
   for (const double optical_depth : {1e-3, 1e4})
     for (const double radius : {1e-3, 1.0})
       rows.add("transport, spheres, OD " + short_number(optical_depth) + ", radius " +
                    short_number(radius),
-               energy, [=] { return lossless_spheres(optical_depth, radius); });
+               energy, lossless_spheres, optical_depth, radius);
   for (const Bulk& bulk : {Bulk{1e-3}, Bulk{1e4}, Bulk{300, 0, 0.9}})
     for (const int dimension : {2, 3})
       rows.add("transport, two frequencies, OD " + short_number(bulk.optical_depth) + ", albedo " +
                    short_number(bulk.albedo) + (dimension == 3 ? ", in space" : ""),
-               "shift 1e-18 = none", [=] { return same_frequencies(bulk, dimension); });
+               "shift 1e-18 = none", same_frequencies, bulk, dimension);
   add_fits(rows);
-  return std::move(rows).rows();
 }
 
 }  // namespace flatspeckle::bench

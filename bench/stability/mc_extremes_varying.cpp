@@ -16,7 +16,7 @@ namespace flatspeckle::bench {
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// The slab that a row is about, and layers in its place.
 Finding as_undivided(const std::vector<double>& densities, const std::vector<double>& depths) {
@@ -146,15 +146,13 @@ void focused_light() {
 
 }  // namespace
 
-std::vector<ExtremeCase> mc_varying_extremes() {
-  ExtremeRows rows("mc");
+void mc_varying_extremes(ExtremeRows& rows) {
+  using Layered = std::vector<double>;
   for (const double share : {1e-9, 0.3})
-    rows.add("layers, one of " + short_number(share) + " of the depth", "the undivided slab", [=] {
-      return as_undivided({1, 1}, {share, 1 - share});
-    });
-  rows.add("layers, one of 1e-12 of the density", "without it", [] {
-    return as_undivided({1e-12, 1}, {1, 1});
-  });
+    rows.add("layers, one of " + short_number(share) + " of the depth", "the undivided slab",
+             as_undivided, Layered{1, 1}, Layered{share, 1 - share});
+  rows.add("layers, one of 1e-12 of the density", "without it", as_undivided, Layered{1e-12, 1},
+           Layered{1, 1});
   rows.add("density map, cells of 0 to 1e6", "reach of an optical depth", rugged_map);
   rows.add("n^2 linear, ends 1e-9 to 20 apart", "the curve back", curves_both_ways);
   rows.add("n^2 falling to 1e-6", "parabola", nearly_turning);
@@ -163,7 +161,6 @@ std::vector<ExtremeCase> mc_varying_extremes() {
   rows.add_refused("light beyond a focus of a guide", "caustic", focused_light);
   rows.add_refused("grazing light on a mean field of index below 1", "reflected at the face",
                    grazing_mean_field);
-  return std::move(rows).rows();
 }
 
 }  // namespace flatspeckle::bench

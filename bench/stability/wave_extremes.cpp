@@ -1,42 +1,16 @@
-#include <algorithm>
+#include "bench/stability/wave_extremes.h"
+
 #include <cmath>
-#include <cstdio>
 #include <math.h>  // jn and yn are POSIX
-#include <numbers>
 #include <string>
 #include <utility>
 
-#include "bench/stability/extreme_rows.h"
-#include "core/numbers/random.h"
-#include "wave_solver/solutions/wave_solution.h"
-
 namespace flatspeckle::bench {
 
-namespace {
-
-using namespace wave;
-
-using Kind = Scatterer::Kind;
-constexpr double pi = std::numbers::pi, k = 2 * pi;
-const std::vector<double> lights{0.3, 1.4 + pi};
-
-Scatterer disk(Kind kind, double ka, Complex index = 1.5) {
-  Scatterer scatterer;
-  scatterer.kind = kind;
-  scatterer.radius = ka / k;
-  scatterer.index = index;
-  return scatterer;
-}
-
-// Two equal disks, the origin between them; gap in radii. Askew, as along an axis half of a
-// translation is 0.
-Placement pair(const Scatterer& scatterer, double gap, double axis = 0.7) {
-  const Vec2 half = (1 + gap / 2) * scatterer.radius * direction(axis);
-  return {{-half, scatterer}, {half, scatterer}};
-}
-
-WaveSolution solved(const Placement& placement, double tolerance, bool diagnose = false) {
-  return solve(placement, k, lights, {.tolerance = tolerance, .sensors = {}, .diagnose = diagnose});
+Finding reciprocity(const Placement& placement, const SolveOptions& options, double limit) {
+  const auto solution = solve(placement, k, two_lights, options);
+  return off(solution.far_field(two_lights[0] + pi, 1), solution.far_field(two_lights[1] - pi, 0),
+             limit);
 }
 
 std::vector<View> views_around() {
@@ -45,20 +19,29 @@ std::vector<View> views_around() {
   return views;
 }
 
+Complex far_amplitude(Complex sum) {
+  return std::polar(std::sqrt(2 / (pi * k)), -pi / 4) * sum;
+}
+
+namespace {
+
+// Two equal disks, the origin between them; gap in radii. Askew, as along an axis half of a
+// translation is 0.
+Placement pair(const Scatterer& scatterer, double gap, double axis = 0.7) {
+  const Vec2 half = (1 + gap / 2) * scatterer.radius * direction(axis);
+  return {{-half, scatterer}, {half, scatterer}};
+}
+
+WaveSolution solved(const Placement& placement, double tolerance) {
+  return solve(placement, k, two_lights, to(tolerance));
+}
+
 // Far fields at two tolerances: the basis orders differ.
 Finding convergence(const Placement& placement, double tolerance, double finer) {
   const auto views = views_around();
   return {relative_difference(solved(placement, tolerance).fields(views),
                               solved(placement, finer).fields(views)),
-          tolerance,
-          {}};
-}
-
-Finding reciprocity(const Placement& placement, double limit) {
-  const auto solution = solved(placement, 1e-12);
-  const Complex there = solution.far_field(lights[1] - pi, 0),
-                back = solution.far_field(lights[0] + pi, 1);
-  return {std::abs(there - back) / std::abs(there), limit, {}};
+          tolerance};
 }
 
 // Scattered against extinct power (C9); lossless disks only.
@@ -67,13 +50,15 @@ Finding energy(const Placement& placement, int views, double limit) {
   double scattered = 0;
   for (int i = 0; i < views; ++i)
     scattered += std::norm(solution.far_field(2 * pi * i / views)) * 2 * pi / views;
-  const Complex forward = solution.far_field(lights[0]) * std::polar(1.0, pi / 4);
+  const Complex forward = solution.far_field(two_lights[0]) * std::polar(1.0, pi / 4);
   const double lost = -std::sqrt(8 * pi / k) * forward.real();
-  return {std::abs(scattered / lost - 1), limit, {}};
+  return {std::abs(scattered / lost - 1), limit};
 }
 
 Finding boundary(const Placement& placement, double tolerance, double limit) {
-  return {solved(placement, tolerance, true).diagnosis().boundary_residual, limit, {}};
+  SolveOptions options = to(tolerance);
+  options.diagnose = true;
+  return {solve(placement, k, two_lights, options).diagnosis().boundary_residual, limit};
 }
 
 // C7 word for word, with D_n = J_n'/J_n (mx) from J_n'/J_n = -(n/z) + 1 / (n-1)/z - D_{n-1}) turned
@@ -95,10 +80,8 @@ Finding mie(const Scatterer& cylinder, double limit) {
   const double x = k * cylinder.radius, view = 2.0;
   Complex sum = textbook_t(cylinder, 0);
   for (int n = 1; n < x + 15 * std::cbrt(x) + 15; ++n)
-    sum += 2.0 * textbook_t(cylinder, n) * std::cos(n * (view - lights[0]));
-  const Complex expected = std::polar(std::sqrt(2 / (pi * k)), -pi / 4) * sum;
-  const Complex found = solved({{{0, 0}, cylinder}}, 1e-14).far_field(view);
-  return {std::abs(found - expected) / std::abs(expected), limit, {}};
+    sum += 2.0 * textbook_t(cylinder, n) * std::cos(n * (view - two_lights[0]));
+  return off(solved({{{0, 0}, cylinder}}, 1e-14).far_field(view), far_amplitude(sum), limit);
 }
 
 // Statics: a pair's dipole moment, over that of two disks apart, is the sum over images
@@ -120,13 +103,11 @@ Finding dipole(const Scatterer& small, double gap, Complex reflection, bool acro
                double tolerance, double limit) {
   const double angle = across ? pi / 2 : 0;
   const auto moment = [&](const Placement& placement) {
-    const auto solution =
-        solve(placement, k, {angle}, {.tolerance = tolerance, .sensors = {}, .diagnose = false});
+    const auto solution = solve(placement, k, {angle}, to(tolerance));
     return solution.far_field(angle) - solution.far_field(angle + pi);
   };
   const Complex found = moment(pair(small, gap, 0)) / (2.0 * moment({{{0, 0}, small}}));
-  const Complex expected = image_sum(gap, across ? -reflection : reflection);
-  return {std::abs(found - expected) / std::abs(expected), limit, {}};
+  return off(found, image_sum(gap, across ? -reflection : reflection), limit);
 }
 
 // Monopoles: b = T_0 (a + H_0(kd) b), light across the axis.
@@ -135,10 +116,8 @@ Finding monopoles(const Scatterer& small, double limit) {
   const double kd = k * length(two[1].position - two[0].position);
   const Complex t = static_cast<Complex>(t_matrix(small, k, 0)[0]);
   const Complex b = t / (1.0 - t * Complex(::j0(kd), ::y0(kd)));
-  const Complex expected = std::polar(std::sqrt(2 / (pi * k)), -pi / 4) * 2.0 * b;
-  const auto solution =
-      solve(two, k, {pi / 2}, {.tolerance = 1e-12, .sensors = {}, .diagnose = false});
-  return {std::abs(solution.far_field(pi / 2) - expected) / std::abs(expected), limit, {}};
+  const auto solution = solve(two, k, {pi / 2}, to(1e-12));
+  return off(solution.far_field(pi / 2), far_amplitude(2.0 * b), limit);
 }
 
 // Almost invisible disks scatter independently.
@@ -150,10 +129,11 @@ Finding independent(const Scatterer& faint, double limit) {
     found.push_back(solution.far_field(view.angle));
     Complex phases = 0;
     for (const auto& [position, scatterer] : two)
-      phases += std::polar(1.0, k * dot(direction(lights[0]) - direction(view.angle), position));
+      phases +=
+          std::polar(1.0, k * dot(direction(two_lights[0]) - direction(view.angle), position));
     expected.push_back(lone.far_field(view.angle) * phases);
   }
-  return {relative_difference(found, expected), limit, {}};
+  return {relative_difference(found, expected), limit};
 }
 
 // The size parameter near `guess` at which order n of a disk of index 10 resonates: T_n = -1.
@@ -181,19 +161,18 @@ const std::string far_at_1e6 = "far field at 1e-6 against 1e-12";
 
 void add_gaps(ExtremeRows& rows) {
   for (const Kind kind : all_disks) {
-    const Scatterer one = disk(kind, 1);
-    rows.add(named("k a 1, gap 1e-3", kind), "far field at 1e-6 against 1e-9",
-             [=] { return convergence(pair(one, 1e-3), 1e-6, 1e-9); });
-    rows.add_slow(named("k a 1, gap 1e-3", kind), "boundary residual",
-                  [=] { return boundary(pair(one, 1e-3), 1e-9, 1e-3); });
+    const Placement near = pair(disk(kind, 1), 1e-3), nearer = pair(disk(kind, 1), 1e-6);
+    rows.add(named("k a 1, gap 1e-3", kind), "far field at 1e-6 against 1e-9", convergence, near,
+             1e-6, 1e-9);
+    rows.add_slow(named("k a 1, gap 1e-3", kind), "boundary residual", boundary, near, 1e-9, 1e-3);
     if (kind != Kind::hard)
-      rows.add(named("k a 1, gap 1e-6", kind), "far field at 1e-9 against 1e-12",
-               [=] { return convergence(pair(one, 1e-6), 1e-9, 1e-12); });
+      rows.add(named("k a 1, gap 1e-6", kind), "far field at 1e-9 against 1e-12", convergence,
+               nearer, 1e-9, 1e-12);
   }
   for (const double ka : {0.01, 1.0, 10.0})
     // 7.0e3: ln(1e6) / (2 xi), xi = 1e-3, with the gap rounded down
-    rows.add_refused("hard, k a " + short_number(ka) + ", gap 1e-6", "basis order 70",
-                     [=] { boundary(pair(disk(Kind::hard, ka), 1e-6), 1e-6, 0); });
+    rows.add_refused("hard, k a " + short_number(ka) + ", gap 1e-6", "basis order 70", boundary,
+                     pair(disk(Kind::hard, ka), 1e-6), 1e-6, 0);
 }
 
 void add_statics(ExtremeRows& rows) {
@@ -203,29 +182,25 @@ void add_statics(ExtremeRows& rows) {
     for (const double gap : {1e-2, 1e-4}) {
       // a small gap takes so high an order that less is asked of it
       const double tolerance = gap < 1e-3 ? 1e-4 : 1e-9, limit = gap < 1e-3 ? 1e-4 : 1e-6;
-      const auto run = [=] {
-        return dipole(disk(Kind::hard, 1e-4), gap, -1, across, tolerance, limit);
-      };
-      const std::string name = "hard, k a 1e-4, gap " + short_number(gap);
-      gap < 1e-3 ? rows.add_slow(name, what, run) : rows.add(name, what, run);
+      rows.add_timed(gap < 1e-3, "hard, k a 1e-4, gap " + short_number(gap), what, dipole,
+                     disk(Kind::hard, 1e-4), gap, -1, across, tolerance, limit);
     }
     const double te = -(1.5 * 1.5 - 1) / (1.5 * 1.5 + 1);
-    rows.add("TE, k a 1e-4, gap 1e-6", what,
-             [=] { return dipole(disk(Kind::te, 1e-4), 1e-6, te, across, 1e-9, 1e-6); });
+    rows.add("TE, k a 1e-4, gap 1e-6", what, dipole, disk(Kind::te, 1e-4), 1e-6, te, across, 1e-9,
+             1e-6);
   }
   for (const Kind kind : {Kind::soft, Kind::tm})
-    rows.add(named("k a 1e-4, gap 2000", kind), "two coupled monopoles",
-             [=] { return monopoles(disk(kind, 1e-4), 1e-6); });
+    rows.add(named("k a 1e-4, gap 2000", kind), "two coupled monopoles", monopoles,
+             disk(kind, 1e-4), 1e-6);
 }
 
 void add_sizes(ExtremeRows& rows) {
   for (const Kind kind : all_disks) {
-    rows.add(named("k a 1e-4, gap 0.5", kind), "light and view exchanged",
-             [=] { return reciprocity(pair(disk(kind, 1e-4), 0.5), 1e-12); });
-    rows.add(named("k a 100, gap 0.5", kind), "energy",
-             [=] { return energy(pair(disk(kind, 100), 0.5), 2000, 1e-11); });
-    rows.add(named("k a 100, gap 0.5", kind), far_at_1e6,
-             [=] { return convergence(pair(disk(kind, 100), 0.5), 1e-6, 1e-12); });
+    const Placement small = pair(disk(kind, 1e-4), 0.5), large = pair(disk(kind, 100), 0.5);
+    rows.add(named("k a 1e-4, gap 0.5", kind), "light and view exchanged", reciprocity, small,
+             to(1e-12), 1e-12);
+    rows.add(named("k a 100, gap 0.5", kind), "energy", energy, large, 2000, 1e-11);
+    rows.add(named("k a 100, gap 0.5", kind), far_at_1e6, convergence, large, 1e-6, 1e-12);
   }
 }
 
@@ -235,17 +210,15 @@ void add_indices(ExtremeRows& rows) {
     for (const double x : {1e-4, 1.0, 100.0})
       // the second scattering is left out: as large as the phase that one disk adds, 2 k a 1e-8
       rows.add(named("k a " + short_number(x) + ", index 1 + 1e-8", kind), "independent scattering",
-               [=] { return independent(disk(kind, x, 1 + 1e-8), x > 1 ? 1e-5 : 1e-7); });
-    rows.add_slow(named("k a 1000, index 0.1 + 5i", kind), "Mie series from J'/J of the textbook",
-                  [=] { return mie(disk(kind, 1000, metal), 1e-9); });
-    rows.add(named("k a 100, index 10", kind), "Mie series from J'/J of the textbook",
-             [=] { return mie(disk(kind, 100, 10), 1e-9); });
+               independent, disk(kind, x, 1 + 1e-8), x > 1 ? 1e-5 : 1e-7);
+    const std::string textbook = "Mie series from J'/J of the textbook";
+    rows.add_slow(named("k a 1000, index 0.1 + 5i", kind), textbook, mie, disk(kind, 1000, metal),
+                  1e-9);
+    rows.add(named("k a 100, index 10", kind), textbook, mie, disk(kind, 100, 10), 1e-9);
     for (const double x : {1e-4, 1.0, 10.0}) {
-      const std::string size = "k a " + short_number(x);
-      rows.add(named(size + ", index 0.1 + 5i, gap 0.1", kind), far_at_1e6,
-               [=] { return convergence(pair(disk(kind, x, metal), 0.1), 1e-6, 1e-12); });
-      rows.add(named(size + ", index 10, gap 0.1", kind), far_at_1e6,
-               [=] { return convergence(pair(disk(kind, x, 10), 0.1), 1e-6, 1e-12); });
+      for (const auto& [name, index] : {std::pair("0.1 + 5i", metal), {"10", 10}})
+        rows.add(named("k a " + short_number(x) + ", index " + name + ", gap 0.1", kind),
+                 far_at_1e6, convergence, pair(disk(kind, x, index), 0.1), 1e-6, 1e-12);
     }
   }
 }
@@ -272,15 +245,13 @@ void add_overlaps(ExtremeRows& rows) {
 
 }  // namespace
 
-std::vector<ExtremeCase> wave_extremes() {
-  ExtremeRows rows("wave_solver");
+void wave_extremes(ExtremeRows& rows) {
   add_gaps(rows);
   add_statics(rows);
   add_sizes(rows);
   add_indices(rows);
   add_resonances(rows);
   add_overlaps(rows);
-  return std::move(rows).rows();
 }
 
 }  // namespace flatspeckle::bench

@@ -1,32 +1,22 @@
 // Points as near, as far and as many as they come; fields next to rims; units; what is refused.
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <tuple>
 
-#include "bench/stability/extreme_rows.h"
+#include "bench/scenes/copied_cluster.h"
+#include "bench/stability/wave_extremes.h"
 #include "core/numbers/bessel.h"
 #include "core/numbers/random.h"
+#include "wave_solver/clusters/cluster_solution.h"
 #include "wave_solver/solutions/ensemble.h"
-#include "wave_solver/solutions/wave_solution.h"
 #include "wave_solver/sums/helmholtz_sum.h"
 
 namespace flatspeckle::bench {
 
 namespace {
 
-using namespace wave;
-using Kind = Scatterer::Kind;
-constexpr double pi = std::numbers::pi, k = 2 * pi;
-const std::vector<double> lights{0.3, 1.4 + pi};
-
-SolveOptions to(double tolerance, Method method = Method::automatic) {
-  return {.tolerance = tolerance, .sensors = {}, .diagnose = false, .method = method};
-}
-
 Placement many_points(std::size_t count, double width, double phase_shift) {
-  Scatterer point;
-  point.phase_shift = phase_shift;
+  const Scatterer point{.phase_shift = phase_shift};
   RandomStream random(1, 0, 0);
   Placement points;
   while (points.size() < count) {
@@ -34,13 +24,6 @@ Placement many_points(std::size_t count, double width, double phase_shift) {
     points.push_back({{width * x, width * z}, point});
   }
   return points;
-}
-
-Finding reciprocity(const Placement& placement, const SolveOptions& options, double limit) {
-  const auto solution = solve(placement, k, lights, options);
-  const Complex there = solution.far_field(lights[1] - pi, 0),
-                back = solution.far_field(lights[0] + pi, 1);
-  return {std::abs(there - back) / std::abs(there), limit};
 }
 
 /// Two resonant points at kd, light and view at pi/2 and along the axis, by hand in extended
@@ -57,33 +40,26 @@ Finding two_points(double kd, double light, double view, double limit) {
                         odd = t * ExtendedComplex(0, std::sin(in)) / (Real{1} + t * h);
   const ExtendedComplex sum =
       Real{2} * (even * std::cos(out) - odd * ExtendedComplex(0, std::sin(out)));
-  const Complex expected = std::polar(std::sqrt(2 / (pi * k)), -pi / 4) * Complex(sum);
-  return {std::abs(solution.far_field(view) - expected) / std::abs(expected), limit};
+  return off(solution.far_field(view), far_amplitude(Complex(sum)), limit);
 }
 
 Placement three_disks(double unit) {
-  Scatterer one;
-  one.kind = Kind::tm;
-  one.radius = 0.2 * unit;
+  const Scatterer one{.kind = Kind::tm, .radius = 0.2 * unit};
   return {{{0, 0}, one}, {{0.1 * unit, 0.45 * unit}, one}, {{-0.5 * unit, 0.1 * unit}, one}};
 }
 
 /// |A|^2 is a length.
 Finding unit_of_length(double unit) {
-  const auto here = solve(three_disks(1), k, lights, to(1e-12));
-  const auto there = solve(three_disks(unit), k / unit, lights, to(1e-12));
-  double worst = 0;
-  for (const double view : {0.0, 1.1, 2.9})
-    worst = larger(
-        worst, std::abs(there.far_field(view) / (std::sqrt(unit) * here.far_field(view)) - 1.0));
-  return {worst, 1e-11};
+  const auto here = solve(three_disks(1), k, two_lights, to(1e-12));
+  const auto there = solve(three_disks(unit), k / unit, two_lights, to(1e-12));
+  return worst_of({0.0, 1.1, 2.9}, 1e-11, [&](double view) {
+    return std::abs(there.far_field(view) / (std::sqrt(unit) * here.far_field(view)) - 1.0);
+  });
 }
 
 /// u = 0 on the rim: what is left at 1e-9 radii from it is that far times the slope, about 2 k.
 Finding soft_rim() {
-  Scatterer one;
-  one.kind = Kind::soft;
-  one.radius = 5 / k;
+  const Scatterer one = disk(Kind::soft, 5);
   const Placement placement{{{0, 0}, one}, {{2 * one.radius, 2 * one.radius}, one}};
   double worst = 0;
   std::vector<Vec2> sensors;
@@ -124,6 +100,43 @@ Finding clustered_sum() {
   return {std::sqrt(difference / size), 1e-10};
 }
 
+// Four disks about the origin, the farthest point of them at 3 radii.
+constexpr double tolerance = 1e-9;
+Placement four_disks(double radius, Complex index) {
+  const Scatterer disk{.kind = Scatterer::Kind::tm, .radius = radius, .index = index};
+  const double out = 2 * radius;
+  return {{{out, 0}, disk}, {{0, out}, disk}, {{-out, 0}, disk}, {{0, -0.9 * out}, disk}};
+}
+
+// Two copies whose circles are a gap apart, in the circle's radii.
+Finding against_all_disks(double radius, Complex index, double gap, double limit) {
+  const Placement disks = four_disks(radius, index);
+  const auto cluster = cluster_t_matrix(disks, k, gap * 3 * radius, tolerance);
+  const auto places = rows_of_places(1, 2, 2 * cluster.radius + 1.01 * cluster.gap);
+  const std::vector<double> lights{0.3, 1.9};
+  const std::vector<View> views = views_around();
+  const SolveOptions options = to(tolerance);
+  const auto whole = solve(copies(disks, places), k, two_lights, options).fields(views);
+  const auto found = ClusterSolution(cluster, places, two_lights, options).fields(views);
+  return {relative_difference(found, whole), limit};
+}
+
+void add_clusters(ExtremeRows& rows) {
+  for (const auto& [name, ka, index, gap] : {std::tuple("k a 1e-3", 1e-3, Complex(1.5), 0.5),
+                                             {"k a 1", 1, 1.5, 0.5},
+                                             {"k a 10", 10, 1.5, 0.5},
+                                             {"k a 1, gap of 0.1 radii", 1, 1.5, 0.1},
+                                             {"k a 1, index 10", 1, 10, 0.5},
+                                             {"k a 1, index 1 + 1e-8", 1, 1 + 1e-8, 0.5},
+                                             {"k a 1, index 0.1 + 5i", 1, {0.1, 5}, 0.5}})
+    rows.add("two copies of a cluster, disks of " + std::string(name), "all disks in one",
+             against_all_disks, ka / k, index, gap, 1e-7);
+  rows.add_refused("copies closer than the gap of their T-matrix", "gap", [] {
+    const auto cluster = cluster_t_matrix(four_disks(1 / k, 1.5), k, 0.5, tolerance);
+    ClusterSolution(cluster, rows_of_places(1, 2, 2 * cluster.radius), {0});
+  });
+}
+
 void add_points(ExtremeRows& rows) {
   for (const double kd : {1e-12, 1e-6, 1.0, 1e6})
     for (const auto& [where, light] : {std::pair("along", 0.0), {"across", pi / 2}})
@@ -132,11 +145,11 @@ void add_points(ExtremeRows& rows) {
                "closed form in extended precision",
                [=, light = light] { return two_points(kd, light, 2.0, kd > 1e3 ? 1e-9 : 1e-12); });
   rows.add("no scatterer", "no field", [] {
-    const auto solution = solve({}, k, lights, {});
+    const auto solution = solve({}, k, two_lights, {});
     return Finding{std::abs(solution.far_field(1)) + solution.diagnosis().residual, 0};
   });
   rows.add("one resonant point", "cross-section 4/k", [] {
-    const double amplitude = std::abs(solve({{{1, 2}, Scatterer{}}}, k, lights).far_field(1));
+    const double amplitude = std::abs(solve({{{1, 2}, Scatterer{}}}, k, two_lights).far_field(1));
     return Finding{std::abs(2 * pi * amplitude * amplitude * k / 4 - 1), 1e-14};
   });
   rows.add("500 resonant points in a box of 3 wavelengths", "light and view exchanged",
@@ -150,27 +163,22 @@ void add_points(ExtremeRows& rows) {
 }
 
 void add_fields(ExtremeRows& rows) {
-  for (const double unit : {1e-9, 1e9})
-    rows.add("three TM disks in a unit of length of " + short_number(unit), "far field scales",
-             [=] { return unit_of_length(unit); });
+  rows.add_each("three TM disks in a unit of length of ", {1e-9, 1e9}, "", "far field scales",
+                unit_of_length);
   rows.add("two soft disks, 1e-9 radii from a rim", "the field there, of 1", soft_rim);
   rows.add("H_0 sum over clusters of 1e-7 wavelengths, 300 apart", "pair by pair, long double",
            clustered_sum);
 }
 
 void add_refusals(ExtremeRows& rows) {
-  Scatterer one;
-  one.kind = Kind::tm;
-  one.radius = 0.2;
+  const Scatterer one{.kind = Kind::tm, .radius = 0.2};
   rows.add_refused("sensor within a disk", "outside every scatterer", [=] {
     auto options = to(1e-6);
     options.sensors = {{0.1, 0}};
     solve({{{0, 0}, one}}, k, {0}, options).near_field({0.1, 0});
   });
-  rows.add_refused("disk of k a 1e5", "at most 10000", [one] {
-    Scatterer large = one;
-    large.radius = 1e5 / k;
-    solve({{{0, 0}, large}}, k, {0}, to(1e-6));
+  rows.add_refused("disk of k a 1e5", "at most 10000", [] {
+    solve({{{0, 0}, disk(Kind::tm, 1e5)}}, k, {0}, to(1e-6));
   });
   rows.add_refused("3e5 points by a dense matrix", "1440000000000 bytes",
                    [] { solve(many_points(300'000, 1000, 1), k, {0}, to(1e-6, Method::dense)); });
@@ -193,12 +201,11 @@ void add_refusals(ExtremeRows& rows) {
 
 }  // namespace
 
-std::vector<ExtremeCase> wave_point_extremes() {
-  ExtremeRows rows("wave_solver");
+void wave_point_extremes(ExtremeRows& rows) {
   add_points(rows);
   add_fields(rows);
   add_refusals(rows);
-  return std::move(rows).rows();
+  add_clusters(rows);
 }
 
 }  // namespace flatspeckle::bench

@@ -196,7 +196,7 @@ void Key::check() const {
   if (!words_.empty())
     for (const std::string& word : value())
       if (std::find(words_.begin(), words_.end(), word) == words_.end())
-        throw InputError(name_, word, accepted());
+        throw InputError(name_, word, accepted() + gone_);
   const auto texts = value();
   if (file_)
     for (const std::string& path : texts)

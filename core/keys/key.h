@@ -37,6 +37,8 @@ class Key {
   /// Radians: who writes 45 means degrees.
   Key& angle() { return from(-2 * std::numbers::pi, 2 * std::numbers::pi).unit("rad"); }
   Key& one_of(std::vector<std::string> words) { return with(words_, std::move(words)); }
+  /// What became of words that are accepted no more: ends the line that refuses a word.
+  Key& gone(std::string text) { return with(gone_, std::move(text)); }
   /// So many numbers for each thing, in words.
   Key& each_of(std::size_t numbers, std::string what) {
     return with(each_, numbers).with(shape_, std::move(what));
@@ -111,7 +113,7 @@ class Key {
   }
   void check(double value, const std::string& shown) const;
 
-  std::string name_, group_, help_, unit_, only_of_, shape_;
+  std::string name_, group_, help_, unit_, only_of_, shape_, gone_;
   KeyMember member_;
   std::vector<std::string> default_, words_;
   Range range_;

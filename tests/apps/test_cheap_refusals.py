@@ -95,7 +95,7 @@ CASES = [
     ("render", RENDER, {"sensor_at": [0, 0, 3]}, ["sensor_at = 0 0 3", "boundary"]),
     ("render", RENDER, {"density": "thin.h5"}, ["density: thin.h5"]),
     ("render", RENDER, {"mu_s": 1e7}, ["mu_s = 1e+07", "too dense"]),
-    ("render", LENS, {"photon_radius": 0.1}, ["photon_radius", "is a key of"]),
+    ("render", LENS, {"focus_distance": 3}, ["focus_distance", "is a key of"]),
     ("render", LENS, {"index": 1.5}, ["index"]),
     ("merge", {}, {"shards": "none"}, ["shards = none"]),
     ("merge", {}, {"out": None}, ["out is not given"]),

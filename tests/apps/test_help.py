@@ -38,13 +38,12 @@ KEYS = {
                "most_index", "index", "delta", "goal", "focus", "directions", "rays_per_direction",
                "aperture", "modes", "ray_count", "pictures", "view_directions", "beam_width",
                "beam_waist", "screen_width", "screen_distance", "rays_across", "measured", "method",
-               "rate", "step", "iterations", "target", "noise", "roughness", "threads", "resume"],
+               "step", "iterations", "target", "noise", "roughness", "threads", "resume"],
     "render": FIELD + SPACE_MEDIUM + ["body_" + key for key in SPACE_MEDIUM] + RUN + [
         "stage_box", "stage_sphere", "body_box", "body_sphere", "index_around", "ball", "block", "point_light",
         "beam_light", "face_light", "environment", "sensor", "sensor_at", "sensor_direction",
         "sensor_up", "sensor_size", "pixels", "field_of_view", "lens_radius", "focus_distance",
-        "acceptance", "half_angle", "path_bins", "length_unit", "method", "photon_radius",
-        "max_scatterings", "random_phase", "step", "max_length"],
+        "acceptance", "half_angle", "path_bins", "length_unit", "method", "max_scatterings", "random_phase", "step", "max_length"],
     "sweep": SCENE + ["structure", "tilts"] + RUN,
 }
 

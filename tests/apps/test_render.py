@@ -9,7 +9,7 @@ from program import attributes, datasets
 from renders import AREA, BEAM, BOX, CAMERA, FIBRE, FOG, SCENES, RenderTest, write_density
 
 NAMES = ["luneburg", "fisheye", "grin_fibre", "waveguide", "glass_ball", "luneburg_pulse", "slab"]
-METHODS = ["path", "light", "bidirectional", "photon_map"]
+METHODS = ["path", "light", "bidirectional"]
 LIGHT_SPEED = 299792458
 NEVER = 1e-12
 
@@ -24,11 +24,10 @@ class Maps(RenderTest):
         self.assertIn("largest fluence", self.output)
         self.assertNotIn("image", alone)
         for method in METHODS:
-            if method != "photon_map":  # of larger batches
-                beside = self.render(**self.LAMP, **self.RINGS, **CAMERA, method=method)
-                for name in ("map/fluence", "map/absorbed"):
-                    self.assert_within(beside[name], beside[name + "_error"] +
-                                       alone[name + "_error"], alone[name])
+            beside = self.render(**self.LAMP, **self.RINGS, **CAMERA, method=method)
+            for name in ("map/fluence", "map/absorbed"):
+                self.assert_within(beside[name], beside[name + "_error"] +
+                                   alone[name + "_error"], alone[name])
         np.testing.assert_allclose(alone["map/absorbed"], FOG["mu_a"] * alone["map/fluence"])
 
     def test_target(self):
@@ -188,10 +187,8 @@ class ClosedForms(RenderTest):
             for method in METHODS:
                 with self.subTest(field=field, method=method):
                     found = self.render(**BOX, **field, **CAMERA, mu_s=0.3, environment=1.5,
-                                        method=method, samples=8000, photon_radius=0.4
-                                        if method == "photon_map" else None)
-                    if method != "photon_map":
-                        self.assert_within(found["mean"], found["mean_error"], 1.5)
+                                        method=method, samples=8000)
+                    self.assert_within(found["mean"], found["mean_error"], 1.5)
                     if method == "light" and field:
                         self.assertTrue(found["mean_rare"])
                     else:
@@ -285,9 +282,8 @@ class Energy(RenderTest):
                           absorbed_body=(1 - reflected) * (1 - kept) / (1 - reflected * kept))
 
     def test_only_of_methods_that_end_light(self):
-        for method in ("path", "photon_map"):
-            found = self.render(**BOX, **self.POINT_INSIDE, **FOG, **AREA, method=method)
-            self.assertFalse([name for name in found if name.startswith("energy")])
+        found = self.render(**BOX, **self.POINT_INSIDE, **FOG, **AREA, method="path")
+        self.assertFalse([name for name in found if name.startswith("energy")])
 
 
 class Axes(RenderTest):

@@ -73,7 +73,7 @@ SCENES = [
     ("render", {**STAGE, **AREA, "samples": 2000}),
     ("render", {**STAGE, **CAMERA, **FIBRE, "samples": 500, "path_bins": [3, 8, 5]}),
     ("render", {**STAGE, **AREA, "samples": 2000, "density": "density.h5", "phase":
-                "henyey_greenstein", "g": 0.5, "method": "photon_map", "photon_radius": 0.4}),
+                "henyey_greenstein", "g": 0.5, "method": "path"}),
     ("render", {**STAGE, **CAMERA, "body_sphere": [0, 0, 2, 0.5], "index": 1.5, "samples": 500}),
     ("fit", {"free": ["g=0:0.8"], "depth": 100, "optical_depth": 2, "measurement": "curve.csv"}),
     ("fit", {"free": ["g=0:0.8"], "depth": 100, "optical_depth": 2, "measurement": "curve.csv", "method": "mc"}),

@@ -19,10 +19,10 @@ constexpr std::uint64_t stream = 2001;
 
 /// Means of numbers drawn by `draw`, about 0, against a reference of 1 in 16 entries.
 template <class Draw>
-Method toy(Draw draw, double offset = 0) {
+ErrorMethod toy(Draw draw, double offset = 0) {
   constexpr std::size_t entries = 16;
   return {"toy", "toy", [=](std::uint64_t seed) {
-            Trial trial{{}, sample_mean};
+            ErrorTrial trial{{}, sample_mean};
             trial.batches.size = entries;
             trial.batches.run = [=](std::uint64_t number, std::span<Complex> sums) {
               RandomStream random(seed, stream, number);

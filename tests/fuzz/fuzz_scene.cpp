@@ -67,7 +67,6 @@ bool is_small(const grin::RenderScene& scene, const grin::RenderRequest& request
   const grin::Box box = bounds(scene.stage.boundary);
   const double size = (box.high - box.low).norm();
   return request.max_scatterings >= 1 && request.max_scatterings <= 3 &&
-         request.method != grin::RenderMethod::photon_map &&
          count * static_cast<double>(scene.bins.sums()) <= most_values &&
          size <= most_steps * scene.step && scene.max_length <= 3 * most_steps * scene.step;
 }

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/oracles/photon_walk.h"
 #include "grin/render/pictures/render_job.h"
+#include "tests/oracles/photon_walk.h"
 
 namespace flatspeckle::grin::tests {
 

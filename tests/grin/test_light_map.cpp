@@ -2,11 +2,10 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/oracles/infinite_medium.h"
 #include "bench/oracles/lamp_map.h"
 #include "grin/render/pictures/energy_datasets.h"
 #include "grin/render/pictures/map_datasets.h"
-#include "tests/grin/furnace.h"
+#include "tests/grin/furnace_scenes.h"
 
 namespace flatspeckle::grin::tests::test_light_map {
 

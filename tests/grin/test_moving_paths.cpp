@@ -196,7 +196,7 @@ TEST_CASE("derivatives by the medium stand before those by the field") {
 }
 
 TEST_CASE("the kernel of edges has no second moment") {
-  oracles::Quadrature points;
+  oracles::GaussPanels points;
   points.add(-1, 1);
   const auto moment = [&](int power) {
     double sum = 0;

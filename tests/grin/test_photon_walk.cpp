@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "bench/oracles/peierls_slab.h"
-#include "bench/oracles/photon_walk.h"
+#include "tests/oracles/photon_walk.h"
 
 // The oracle itself, and its references, against what is known for certain.
 

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include "tests/grin/furnace_scenes.h"
 #include "tests/grin/render_agreement.h"
 
 namespace flatspeckle::grin::tests::test_render_agreement {

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "tests/grin/furnace.h"
+#include "tests/grin/furnace_scenes.h"
 
 namespace flatspeckle::grin::tests::test_render_furnace {
 

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "bench/oracles/fisheye_curves.h"
+#include "tests/grin/fisheye_curves.h"
 #include "tests/grin/furnace.h"
 
 namespace flatspeckle::grin::tests::test_single_scattering {

@@ -12,8 +12,8 @@ namespace {
 
 using tests::pi;
 
-oracles::Quadrature all_views() {
-  oracles::Quadrature views;
+oracles::GaussPanels all_views() {
+  oracles::GaussPanels views;
   for (const double start : {-pi, -pi / 2, 0.0, pi / 2}) views.add(start, start + pi / 2, 2);
   return views;
 }

@@ -97,7 +97,7 @@ TEST_CASE("without scattering there is no covariance, and no NaN") {
 TEST_CASE("extreme asymmetry: finite, and the power adds up") {
   for (const double g : {-0.999, 0.999}) {
     // around the lobe at 0 or pi finely, elsewhere coarsely
-    oracles::Quadrature views;
+    oracles::GaussPanels views;
     for (const double lobe : {0.0, pi}) {
       double inner = 0;
       for (const double outer : {0.002, 0.01, 0.05, 0.3, pi / 2}) {

@@ -167,7 +167,7 @@ TEST_CASE("exit angles follow the distribution of discrete ordinates") {
   constexpr std::uint64_t photons = 400000;
   const Scene scene = tests::lit_slab(optical_depth, 1, g, {light});
   const auto flux = tests::run_flux(scene, paths(photons), 3, bins).flux;
-  oracles::Quadrature views;
+  oracles::GaussPanels views;
   for (std::size_t bin = 0; bin < bins; ++bin) {
     const double from = 2 * pi * static_cast<double>(bin) / bins - pi;
     views.add(from, from + 2 * pi / bins);

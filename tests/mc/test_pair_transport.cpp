@@ -3,10 +3,10 @@
 #include <doctest/doctest.h>
 
 #include "bench/oracles/discrete_ordinates.h"
-#include "bench/oracles/pair_transport.h"
 #include "bench/oracles/slab_theory.h"
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
+#include "tests/oracles/pair_transport.h"
 
 namespace flatspeckle::mc::test_pair_transport {
 

@@ -55,7 +55,7 @@ TEST_CASE("slab theory conserves energy and its kernel is normalised") {
   for (const double optical_depth : {0.1, 1.0, 10.0}) {
     for (const double light : {0.0, 1.1}) {
       const oracles::IsotropicSlab slab(k, 10, optical_depth / 10, 1);
-      oracles::Quadrature views;
+      oracles::GaussPanels views;
       for (const double side : {0.0, pi}) {
         views.add(side - pi / 2, side, 8);
         views.add(side, side + pi / 2, 8);

@@ -15,14 +15,13 @@
 #include "flatland/scene/frequency_shift.h"
 #include "wave_solver/equations/wave_equations.h"
 #include "wave_solver/graded/graded_fields.h"
-#include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::wave {
 
 namespace {
 
-SolveOptions batch_options(const Scene& scene, double tolerance) {
-  SolveOptions options{.tolerance = tolerance, .sensors = {}, .diagnose = false};
+SolveOptions batch_options(const Scene& scene, double tolerance, Method method) {
+  SolveOptions options{.tolerance = tolerance, .sensors = {}, .diagnose = false, .method = method};
   for (const View& view : scene.request.views)
     if (view.near) options.sensors.push_back(view.point);
   for (const Light& light : scene.request.lights)
@@ -44,8 +43,8 @@ struct Fields {
   SolveOptions options;
   std::optional<GradedFields> graded;  // where the index varies
 
-  Fields(const Scene& of, double tolerance)
-      : scene(of), plan(field_plan(of, tolerance)), options(batch_options(of, tolerance)) {
+  Fields(const Scene& of, double tolerance, Method method)
+      : scene(of), plan(field_plan(of, tolerance)), options(batch_options(of, tolerance, method)) {
     if (scene.index && scene.index->is_around()) graded = graded_fields(scene);
   }
 
@@ -66,9 +65,10 @@ struct Fields {
 // changing entry, with u_b at that frequency, u_b and u_a u_b*.
 class Ensemble {
  public:
-  Ensemble(const Scene& scene, const std::vector<double>& shifts, double tolerance)
-      : first_(scene, tolerance), changing_(changing_entries(scene.request)) {
-    for (const double shift : shifts) others_.emplace_back(at_frequency(scene, shift), tolerance);
+  Ensemble(const Scene& scene, const std::vector<double>& shifts, double tolerance, Method method)
+      : first_(scene, tolerance, method), changing_(changing_entries(scene.request)) {
+    for (const double shift : shifts)
+      others_.emplace_back(at_frequency(scene, shift), tolerance, method);
   }
 
   std::size_t channels() const { return request().channels.size(); }
@@ -168,17 +168,17 @@ void require_memory(const Scene& scene, double tolerance) {
 
 }  // namespace
 
-FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance) {
-  return frequency_job(scene, {}, seed, tolerance).field;
+FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance, Method method) {
+  return frequency_job(scene, {}, seed, tolerance, method).field;
 }
 
 FrequencyJob frequency_job(const Scene& scene, const std::vector<double>& shifts,
-                           std::uint64_t seed, double tolerance) {
+                           std::uint64_t seed, double tolerance, Method method) {
   require_solvable(scene);
   require_placeable(scene.placement);
   require_memory(scene, tolerance);
   blas_single_thread();  // says now what it lacks
-  const auto ensemble = std::make_shared<const Ensemble>(scene, shifts, tolerance);
+  const auto ensemble = std::make_shared<const Ensemble>(scene, shifts, tolerance, method);
   const auto estimator = [&](auto of) -> Estimator {
     return [=](double samples, std::span<const Complex> sums) {
       return ((*ensemble).*of)(samples, sums);

@@ -5,6 +5,7 @@
 
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
+#include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::wave {
 
@@ -15,7 +16,8 @@ namespace flatspeckle::wave {
 /// Throws InputError for a slab and the bulk, which have no finite placement and no T-matrix, and
 /// for near sensors and sources that a cylinder may cover, and where the matrices of all threads
 /// surely need more memory than there is.
-FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance);
+FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance,
+                  Method method = Method::automatic);
 
 /// The same, each placement solved at shifted frequencies too (conventions, C39; checked by
 /// check_frequency_shifts()). all: the entries, then those with the second field at each shifted
@@ -26,6 +28,6 @@ struct FrequencyJob {
   Estimator all;
 };
 FrequencyJob frequency_job(const Scene& scene, const std::vector<double>& shifts,
-                           std::uint64_t seed, double tolerance);
+                           std::uint64_t seed, double tolerance, Method method = Method::automatic);
 
 }  // namespace flatspeckle::wave

@@ -26,7 +26,7 @@ namespace {
 using namespace grin;
 using oracles::HarmonicBall;
 using oracles::HarmonicCurve;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const WholeSpace everywhere;
 
@@ -45,6 +45,7 @@ Listed listed(const F& field, const R& region, const Vec3& p, const Vec3& q,
 }
 
 const HarmonicBall ball{{}};
+const Fisheye eye({.centre_excess = 0.7, .radius = 0.8});
 const Vec3 ball_from(0.3, 0.2, -0.4), ball_to(-0.1, 0.5, 0.2);
 
 /// The four up to arc length 6, of 2 ellipses both ways round.
@@ -78,17 +79,13 @@ Finding sum_of_four() {
   for (const HarmonicCurve& curve : four_curves()) exact += 1 / curve.spreading();
   const ConnectionTrial trial(ball, everywhere, ball_from, ball_to,
                               {.step = 0.2, .max_length = 6, .start = {.chord_share = 0.1}});
-  constexpr int count = 3000;
-  double sum = 0, squares = 0;
   ConnectionStatistics statistics;
-  for (int i = 0; i < count; ++i) {
+  const auto estimate = [&](int i) {
     RandomStream random(2, 0, i);
-    const auto estimate = connect(trial, random, statistics);
-    const double f = estimate.curve ? estimate.multiplicity / estimate.curve->spreading : 0;
-    sum += f / count;
-    squares += f * f / count;
-  }
-  return in_errors(sum, std::sqrt((squares - sum * sum) / count), exact, 0.1);
+    const auto one = connect(trial, random, statistics);
+    return one.curve ? one.multiplicity / one.curve->spreading : 0;
+  };
+  return mean_in_errors(3000, estimate, exact, 0.1);
 }
 
 /// No ellipse joins them.
@@ -106,10 +103,9 @@ Finding none() {
 
 /// A point and its image in a fisheye: all rays join them, |J| = 0, and none counts.
 Finding continuum() {
-  const Fisheye field({.centre_excess = 0.7, .radius = 0.8});
   const Vec3 image = -0.64 / ball_from.squaredNorm() * ball_from;
   const Listed list =
-      listed(field, everywhere, ball_from, image, {.step = 0.02, .max_length = 10}, 50);
+      listed(eye, everywhere, ball_from, image, {.step = 0.02, .max_length = 10}, 50);
   return {static_cast<double>(list.curves.size()) +
               (list.statistics.count(TrialOutcome::degenerate) < 40 ? 1 : 0),
           0};
@@ -117,9 +113,8 @@ Finding continuum() {
 
 /// The two arcs of a great circle.
 Finding great_circle() {
-  const Fisheye field({.centre_excess = 0.7, .radius = 0.8});
   const Listed list =
-      listed(field, everywhere, ball_from, ball_to, {.step = 0.02, .max_length = 8}, 100);
+      listed(eye, everywhere, ball_from, ball_to, {.step = 0.02, .max_length = 8}, 100);
   if (list.curves.size() < 2) return {infinity, 1e-6};
   const double whole = 2 * pi * 1.7 * 0.8 / 2;
   const double paths = list.curves[0].curve.optical_path + list.curves[1].curve.optical_path;
@@ -141,9 +136,8 @@ Finding close_points(double gap, double unit) {
 }
 
 Finding same_point() {
-  const Fisheye field({.centre_excess = 0.7, .radius = 0.8});
   const Listed list =
-      listed(field, everywhere, ball_from, ball_from, {.step = 0.05, .max_length = 1}, 30);
+      listed(eye, everywhere, ball_from, ball_from, {.step = 0.05, .max_length = 1}, 30);
   return {static_cast<double>(list.curves.size()), 0};
 }
 
@@ -214,8 +208,7 @@ Finding no_index() {
 
 }  // namespace
 
-std::vector<ExtremeCase> connection_extremes() {
-  ExtremeRows rows("grin");
+void connection_extremes(ExtremeRows& rows) {
   rows.add("four curves between two points of Luneburg's ball", "paths, |J|, caustics", all_four);
   rows.add("four curves, one drawn at a time", "sum of 1/|J|, in errors", sum_of_four);
   rows.add("points of Luneburg's ball that no curve joins", "nothing found", none);
@@ -225,7 +218,7 @@ std::vector<ExtremeCase> connection_extremes() {
   for (const double unit : {1.0, 1e-6})
     for (const double gap : {1e-9, 1e-6})
       rows.add("points " + short_number(gap) + " apart, unit of length " + short_number(unit),
-               "|J| = distance^2", [=] { return close_points(gap, unit); });
+               "|J| = distance^2", close_points, gap, unit);
   rows.add("a point and itself", "degenerate, none counts", same_point);
   rows.add("two strong lenses, seven curves", "sum of orientations 1", lenses);
   rows.add("blobs of n - 1 = 1e-6", "bend proportional to n - 1", faint_bend);
@@ -240,7 +233,6 @@ std::vector<ExtremeCase> connection_extremes() {
     values.stops.step = 0;
     make_trace_scene(values);
   });
-  return std::move(rows).rows();
 }
 
 }  // namespace flatspeckle::bench

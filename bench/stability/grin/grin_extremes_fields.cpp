@@ -21,7 +21,7 @@ namespace {
 
 using namespace grin;
 using namespace oracles;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 /// n = n0 / (1 + r^2), that keeps 1e-16 of 1, and its gradient -2 r n / (1 + r^2), that keeps its
 /// own digits.
@@ -53,16 +53,14 @@ Finding luneburg_rim() {
 Finding faint_guide() {
   const double excess = 1e-6, alpha = 1e-3;
   const ParabolicGuide guide({excess, alpha});
-  double worst = 0;
-  for (const double rho : {0.0, 1e-9, 0.5, 1.0, 1.41}) {
+  return worst_of({0.0, 1e-9, 0.5, 1.0, 1.41}, 1e-15, [&](double rho) {
     const Wide n0 = 1 + Wide(excess), square = n0 * n0 - Wide(alpha) * alpha * rho * rho;
     const Wide exact = sqrt(square) - 1;
     const double slope = static_cast<double>(-Wide(alpha) * alpha * rho / sqrt(square));
     const auto at = guide.gradient({0, rho, 3});
-    worst = larger({worst, static_cast<double>(abs(Wide(at.excess) - exact)) / excess,
-                    std::abs(at.gradient[1] - slope) / (alpha * alpha)});
-  }
-  return {worst, 1e-15};
+    return larger({static_cast<double>(abs(Wide(at.excess) - exact)) / excess,
+                   std::abs(at.gradient[1] - slope) / (alpha * alpha)});
+  });
 }
 
 /// Where n = n0 sech vanishes: no less than 0, no NaN while cosh is a number.
@@ -144,14 +142,10 @@ Finding snell() {
 
 void add_fields(ExtremeRows& rows) {
   rows.add("Luneburg rim from within and from without", "n - 1 and grad n", luneburg_rim);
-  for (const double r : {1e3, 1e6})
-    rows.add("fisheye " + short_number(r) + " radii out, n to 1e-12", "n and grad n",
-             [=] { return fisheye_far_out(r); });
+  rows.add_each("fisheye ", {1e3, 1e6}, " radii out, n to 1e-12", "n and grad n", fisheye_far_out);
   rows.add("guide of n - 1 = 1e-6", "n - 1 and grad n in 50 digits", faint_guide);
   rows.add("sech guide, alpha rho to 700, n to 1e-304", "0 <= n, bounds", sech_far_out);
-  for (const double width : {1e-9, 1e-100})
-    rows.add("ramp of width " + short_number(width), "slope, ends",
-             [=] { return steep_ramp(width); });
+  rows.add_each("ramp of width ", {1e-9, 1e-100}, "", "slope, ends", steep_ramp);
 }
 
 void add_sound(ExtremeRows& rows) {
@@ -161,7 +155,7 @@ void add_sound(ExtremeRows& rows) {
              [=] { return worse(sound_on_axis(m, 0), sound_on_axis(m, 1e-160)); });
   for (const auto& [m, x] : {std::pair(0, 300.0), {64, 60.0}, {0, 1e6}, {64, 3e4}})
     rows.add("ultrasound of order " + std::to_string(m) + " at kr rho = " + short_number(x),
-             "J_m in 50 digits", [m = m, x = x] { return sound_far_out(m, x); });
+             "J_m in 50 digits", sound_far_out, m, x);
   rows.add_refused("ultrasound of order 65", "must be from 0 to 64", [] {
     grin::TraceValues values;
     values.field.of<grin::UltrasoundValues>().sound_order = 65;
@@ -171,27 +165,25 @@ void add_sound(ExtremeRows& rows) {
 
 void add_jumps(ExtremeRows& rows) {
   const std::string digits = "Fresnel in 50 digits";
-  rows.add("jump of 1e-12, normal incidence: 2.5e-25 reflected", digits,
-           [] { return reflectance(0, 1e-12, 1, 1e-14); });
+  rows.add("jump of 1e-12, normal incidence: 2.5e-25 reflected", digits, reflectance, 0, 1e-12, 1,
+           1e-14);
   // the double next to pi/2
-  rows.add("jump of 0.5, at exactly pi/2", digits,
-           [] { return reflectance(0, 0.5, std::cos(pi / 2), 1e-14); });
+  rows.add("jump of 0.5, at exactly pi/2", digits, reflectance, 0, 0.5, std::cos(pi / 2), 1e-14);
   // q2^2 = 1.5e-12, the difference of numbers of about 1, keeps 1e-4, and 1 - R = 4 q2 / q1
-  rows.add("jump of -0.5, cosine 1e-12 below the critical angle", digits,
-           [] { return reflectance(0.5, 0, std::sqrt(1 - 1 / 2.25) + 1e-12, 1e-9); });
-  rows.add("jump of -0.5, cosine 1e-12 beyond the critical angle", digits,
-           [] { return reflectance(0.5, 0, std::sqrt(1 - 1 / 2.25) - 1e-12, 0); });
+  const double critical = std::sqrt(1 - 1 / 2.25);
+  rows.add("jump of -0.5, cosine 1e-12 below the critical angle", digits, reflectance, 0.5, 0,
+           critical + 1e-12, 1e-9);
+  rows.add("jump of -0.5, cosine 1e-12 beyond the critical angle", digits, reflectance, 0.5, 0,
+           critical - 1e-12, 0);
   rows.add("jumps of 1e-9 and 0.5, cosines 1 to 1e-9", "|v| = n, tangential part", snell);
 }
 
 }  // namespace
 
-std::vector<ExtremeCase> index_extremes() {
-  ExtremeRows rows("grin");
+void index_extremes(ExtremeRows& rows) {
   add_fields(rows);
   add_sound(rows);
   add_jumps(rows);
-  return std::move(rows).rows();
 }
 
 }  // namespace flatspeckle::bench

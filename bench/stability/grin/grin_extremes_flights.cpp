@@ -20,7 +20,7 @@ namespace {
 
 using namespace grin;
 using namespace oracles;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 /// With the least and largest of RandomStream.
 constexpr double uniforms[] = {0x1p-54, 1e-9, 0.25,     0.5 - 0x1p-53,
                                0.5,     0.75, 1 - 1e-9, 1 - 0x1p-53};
@@ -56,28 +56,24 @@ Finding stretched_flight(double optical_depth) {
 /// The distribution of the sampled angle is u. Next to pi an angle is rounded by 4e-16, where a
 /// density of 318 (g = -0.999) makes 1.4e-13 of it.
 Finding flat_inverse(double g) {
-  double worst = 0;
-  for (const double u : uniforms) {
+  return worst_of(uniforms, g < 0 ? 2e-13 : 1e-15, [&](double u) {
     const Wide half = Wide(HenyeyGreenstein<2>{g}.sample(u)) / 2;
     const Wide share = Wide(0.5) + atan2((1 + Wide(g)) * sin(half), (1 - Wide(g)) * cos(half)) /
                                        boost::math::constants::pi<Wide>();
-    worst = larger(worst, static_cast<double>(abs(share - u)));
-  }
-  return {worst, g < 0 ? 2e-13 : 1e-15};
+    return static_cast<double>(abs(share - u));
+  });
 }
 
 /// In space, by 1 - cos, which next to 2 is rounded by 4e-16 where its density is 1e6 (g = -0.999).
 Finding space_inverse(double g) {
-  double worst = 0;
-  for (const double u : uniforms) {
+  return worst_of(uniforms, g < 0 ? 5e-10 : 1e-15, [&](double u) {
     const Wide gap(HenyeyGreenstein<3>{g}.sample_one_minus_cosine(u)), wide_g(g);
     const Wide rest = 1 - wide_g, root = sqrt(rest * rest + 2 * wide_g * gap);
     // (1 - g^2) / (2 g) [1/root - 1/(1 + g)], without dividing by g
     const Wide share =
         g == 0 ? Wide(1 - gap / 2) : Wide(rest * (2 - gap) / (root * (1 + wide_g + root)));
-    worst = larger(worst, static_cast<double>(abs(share - u)));
-  }
-  return {worst, g < 0 ? 5e-10 : 1e-15};
+    return static_cast<double>(abs(share - u));
+  });
 }
 
 /// Over all directions 1, the mean cosine g. Backwards 1 - cos, about 2, is rounded by 4e-16 beside
@@ -144,15 +140,10 @@ Finding beside_spike() {
   const Space space(Homogeneous{0}, spike(0.3));
   RandomStream random(5, 90, 0);
   ConnectionStatistics statistics;
-  constexpr int count = 25;
-  double sum = 0, squares = 0;
-  for (int i = 0; i < count; ++i) {
-    const auto join =
-        space.join({Vec3(0.5, 0.01, 0.5)}, {Vec3(0.5, 0.99, 0.5)}, random, statistics);
-    sum += join->transmittance / count;
-    squares += join->transmittance * join->transmittance / count;
-  }
-  return in_errors(sum, std::sqrt((squares - sum * sum) / count), std::exp(-0.3 * 0.98), 0.01);
+  const PathPoint from{Vec3(0.5, 0.01, 0.5)}, to{Vec3(0.5, 0.99, 0.5)};
+  return mean_in_errors(
+      25, [&](int) { return space.join(from, to, random, statistics)->transmittance; },
+      std::exp(-0.3 * 0.98), 0.01);
 }
 
 Finding through_vacuum() {
@@ -166,21 +157,20 @@ Finding through_vacuum() {
 }
 
 void add_flights(ExtremeRows& rows) {
-  for (const double depth : {0.0, 1e-280, 1e-12, 1.0, 40.0, 1e4})
-    rows.add("free flight within OD " + short_number(depth), "distribution, density in 50 digits",
-             [=] { return bounded_flight(depth); });
+  rows.add_each("free flight within OD ", {0.0, 1e-280, 1e-12, 1.0, 40.0, 1e4}, "",
+                "distribution, density in 50 digits", bounded_flight);
   for (const double depth : {1e-12, 1e4})
-    rows.add("stretched flight within OD " + short_number(depth), "mean weight",
-             [=] { return stretched_flight(depth); });
+    rows.add("stretched flight within OD " + short_number(depth), "mean weight", stretched_flight,
+             depth);
 }
 
 void add_phases(ExtremeRows& rows) {
   for (const double g : {-0.999, 0.0, 1e-300, 0.999}) {
     const std::string name = "Henyey-Greenstein, g " + short_number(g);
     rows.add(name + ", flatland, u to 2^-54", "inverse of its distribution, 50 digits",
-             [=] { return flat_inverse(g); });
-    rows.add(name + ", space, u to 2^-54", "inverse of its distribution, 50 digits",
-             [=] { return space_inverse(g); });
+             flat_inverse, g);
+    rows.add(name + ", space, u to 2^-54", "inverse of its distribution, 50 digits", space_inverse,
+             g);
     rows.add(name + ", both", "integral 1, mean cosine g",
              [=] { return worse(normalisation<2>(g), normalisation<3>(g)); });
   }
@@ -189,8 +179,7 @@ void add_phases(ExtremeRows& rows) {
 
 }  // namespace
 
-std::vector<ExtremeCase> flight_extremes() {
-  ExtremeRows rows("grin");
+void flight_extremes(ExtremeRows& rows) {
   add_flights(rows);
   add_phases(rows);
   rows.add("density of contrast 1e6, through its spike", "exp(-OD), in errors",
@@ -202,7 +191,6 @@ std::vector<ExtremeCase> flight_extremes() {
   });
   rows.add("density of contrast 1e6, beside its spike", "exp(-OD), in errors", beside_spike);
   rows.add("density 0 everywhere, mu_s 1e6", "flies through", through_vacuum);
-  return std::move(rows).rows();
 }
 
 }  // namespace flatspeckle::bench

@@ -73,26 +73,21 @@ Finding lost_by_grazing() {
 
 }  // namespace
 
-std::vector<ExtremeCase> mesh_extremes() {
-  ExtremeRows rows("grin");
+void mesh_extremes(ExtremeRows& rows) {
   const std::string on_it = "lines cross it where it is, in units of the spacing";
-  rows.add("torus of triangles", on_it, [] { return crossings(1, Vec3::Zero(), 1e-13); });
-  rows.add("torus of triangles, 1e-9 wide", on_it,
-           [] { return crossings(1e-9, Vec3::Zero(), 1e-13); });
-  rows.add("torus of triangles, 1e9 wide", on_it,
-           [] { return crossings(1e9, Vec3::Zero(), 1e-13); });
-  rows.add("torus of triangles, 1e5 of its sizes away", on_it,
-           [] { return crossings(1, Vec3::Constant(1e5), 1e-8); });
-  for (const double index : {1.0, 1.4, 0.7})
-    rows.add("cube of triangles, index " + short_number(index) + ", light along its faces",
-             "share of light that is lost", [=] { return along_faces(index); });
+  rows.add("torus of triangles", on_it, crossings, 1, Vec3(0, 0, 0), 1e-13);
+  rows.add("torus of triangles, 1e-9 wide", on_it, crossings, 1e-9, Vec3(0, 0, 0), 1e-13);
+  rows.add("torus of triangles, 1e9 wide", on_it, crossings, 1e9, Vec3(0, 0, 0), 1e-13);
+  rows.add("torus of triangles, 1e5 of its sizes away", on_it, crossings, 1, Vec3(1e5, 1e5, 1e5),
+           1e-8);
+  rows.add_each("cube of triangles, index ", {1.0, 1.4, 0.7}, ", light along its faces",
+                "share of light that is lost", along_faces);
   rows.add("ball of triangles, light that grazes it", "share of light that is lost",
            lost_by_grazing);
   rows.add_refused("triangles that are not closed", "not a closed surface", [] {
     closed_mesh({Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()});
   });
   rows.add_refused("a spacing as wide as a torus", "too coarse", [] { smooth(torus_mesh(), 0.8); });
-  return std::move(rows).rows();
 }
 
 }  // namespace flatspeckle::bench

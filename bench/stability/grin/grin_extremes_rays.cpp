@@ -28,16 +28,12 @@ namespace {
 using namespace grin;
 using oracles::HarmonicBall;
 using oracles::HarmonicCurve;
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 const std::vector<Surface> nothing;
+const ParabolicGuide guide({0.5, 1});  // no index beyond rho = 1.5
 
 ControlledSteps<Sharma> controlled(double tolerance, double longest) {
   return {tolerance, 0.01, longest};
-}
-
-/// 1: what should have happened did not.
-Finding yes(bool happened) {
-  return {happened ? 0.0 : 1.0, 0};
 }
 
 /// From the plane of a beam to the focus on the far rim: place, and optical path pi/2 + 1.
@@ -66,7 +62,7 @@ Finding beside_the_rim() {
 /// index is angle^2/4. Place, and optical path pi n0 a / 2; what v^2 - n^2 loses far out, where n
 /// is small, weighs the more further in, and n = 1 + excess is rounded to 2^-53 there in each of
 /// nine looks at it of every step.
-Finding fisheye_far_out(double angle) {
+Finding ray_far_out(double angle) {
   const Fisheye eye(FisheyeProfile{0.5, 1});
   auto steps = controlled(1e-12, 1e9);
   const Vec3 start = Vec3(1, 2, 2) / 3, across = Vec3(2, 1, -2) / 3;
@@ -119,7 +115,6 @@ Finding critical_angle(double width) {
 /// |v| - n over 1e4 oscillations at 40 steps each: bounded, as steps are symplectic; what is along
 /// the guide is kept to the last bit.
 Finding guide_index() {
-  const ParabolicGuide guide({0.5, 1});
   RayState ray = start_ray(guide, {0.5, 0, 0}, {0.1, 0.3, 1});
   const double along = ray.v[2];
   double worst = 0;
@@ -132,7 +127,6 @@ Finding guide_index() {
 
 /// Place after 1e4 oscillations at 400 steps each: a phase error of 0.1 h^4 a radian.
 Finding guide_phase() {
-  const ParabolicGuide guide({0.5, 1});
   RayState ray = start_ray(guide, {0.5, 0, 0}, {0.1, 0.3, 1});
   const RayState start = ray;
   const double h = 2 * pi / 400;
@@ -144,7 +138,6 @@ Finding guide_phase() {
 
 /// 1e4 oscillations and as many back.
 Finding guide_and_back() {
-  const ParabolicGuide guide({0.5, 1});
   RayState ray = start_ray(guide, {0.5, 0, 0}, {0.1, 0.3, 1});
   const RayState start = ray;
   for (const double h : {2 * pi / 40, -2 * pi / 40})
@@ -155,7 +148,6 @@ Finding guide_and_back() {
 
 /// dx/dv0 across the guide is sin(sigma) after 100 oscillations and a quarter.
 Finding guide_tangent() {
-  const ParabolicGuide guide({0.5, 1});
   RayState ray = start_ray(guide, {0.3, 0, 0}, {0.1, 0.2, 1});
   RayTangent tangent;
   const double h = 2 * pi / 400;
@@ -167,7 +159,7 @@ Finding guide_tangent() {
 }
 
 /// Period 2 pi 1e4; the optical path beyond the length is 1e-7 of it.
-Finding faint_guide() {
+Finding ray_in_faint_guide() {
   const ParabolicGuide guide({1e-6, 1e-4});
   RayState ray = start_ray(guide, {0.3, 0, 0}, Vec3::UnitZ());
   const double beta = ray.v[2], sigma = 1.25 * 2 * pi / 1e-4, n0 = 1 + 1e-6;
@@ -196,7 +188,6 @@ Finding sech_dispersion() {
 /// At 1e8 coordinates are rounded to 1e-8 and steps must not shrink for it.
 Finding far_from_origin() {
   const double start = 1e8;
-  const ParabolicGuide guide({0.5, 1});
   const std::vector<Surface> end{Plane{{0, 0, start + 10}, Vec3::UnitZ()}};
   auto steps = controlled(1e-11, 1);
   RayState ray = start_ray(guide, {0, 0, start}, {0.2, 0, 1});
@@ -205,13 +196,13 @@ Finding far_from_origin() {
   return {std::abs(ray.x[0] - v[0] * std::sin(10 / v[2])), 1e-6};
 }
 
-struct Beam {
+struct TracedBeam {
   RayState end;
   double spreading;
   int caustics;
 };
 template <IndexField F>
-Beam beam(const F& field, RayState ray, double sigma, int steps) {
+TracedBeam beam(const F& field, RayState ray, double sigma, int steps) {
   const RayState start = ray;
   RayTangent tangent;
   CausticCount caustics(start.v.norm(), start.v);
@@ -228,7 +219,7 @@ Finding ball_focus(double beyond) {
   const HarmonicBall field{{}};
   const RayState start = start_ray(field, {0.3, 0.2, -0.4}, {0.5, -0.3, 0.6});
   const HarmonicCurve exact{start.x, start.v, pi + beyond};
-  const Beam found = beam(field, start, exact.sigma, 3000);
+  const TracedBeam found = beam(field, start, exact.sigma, 3000);
   if (beyond == 0) return {std::abs(found.spreading), 1e-20};
   if (found.caustics != exact.caustics()) return yes(false);
   return {std::abs(std::abs(found.spreading) / exact.spreading() - 1), 1e-6};
@@ -271,7 +262,7 @@ Finding sound_axis() {
 }
 
 /// n = 1 - z: straight up a ray creeps towards z = 1; aside it is turned back in time.
-Finding no_index() {
+Finding ray_without_index() {
   const LinearRamp ramp{0, {0, 0, -1}};
   auto careful = controlled(1e-10, 1);
   RayState up = start_ray(ramp, Vec3::Zero(), Vec3::UnitZ());
@@ -283,7 +274,6 @@ Finding no_index() {
 }
 
 Finding beyond_the_guide() {
-  const ParabolicGuide guide({0.5, 1});  // no index beyond rho = 1.5
   FixedSteps<Sharma> wide{2};
   RayState out{{1, 0, 0}, {3, 0, 1}};
   return yes(trace(guide, nothing, {1e3, 1e-11}, wide, out).stop == Stop::lost);
@@ -335,45 +325,37 @@ Finding weak_lens(double radius) {
 }
 
 void add_bodies(ExtremeRows& rows) {
-  for (const double height : {1e-9, 0.7, 1 - 1e-9})
-    rows.add("ball of glass, beam at height " + short_number(height), "angle it is turned by",
-             [=] { return ball_lens(height, 0.5, 1e-7); });
-  rows.add("ball of n - 1 = 1e-9", "angle it is turned by",
-           [] { return ball_lens(0.7, 1e-9, 1e-6); });
-  for (const double beyond : {-1e-12, 1e-12})
-    rows.add("plate, " + short_number(beyond) + " beyond the critical angle",
-             "leaves, or stays for ever", [=] { return at_critical_angle(beyond); });
+  rows.add_each("ball of glass, beam at height ", {1e-9, 0.7, 1 - 1e-9}, "",
+                "angle it is turned by", ball_lens, 0.5, 1e-7);
+  rows.add("ball of n - 1 = 1e-9", "angle it is turned by", ball_lens, 0.7, 1e-9, 1e-6);
+  rows.add_each("plate, ", {-1e-12, 1e-12}, " beyond the critical angle",
+                "leaves, or stays for ever", at_critical_angle);
   for (const double radius : {1e3, 1e9})
-    rows.add("lens of a face of radius " + short_number(radius), "angle it is turned by",
-             [=] { return weak_lens(radius); });
+    rows.add("lens of a face of radius " + short_number(radius), "angle it is turned by", weak_lens,
+             radius);
 }
 
 void add_lenses(ExtremeRows& rows) {
-  for (const double height : {0.0, 0.7, 0.999})
-    rows.add("Luneburg lens, beam at height " + short_number(height), "focus, optical path",
-             [=] { return luneburg(height, 1e-10); });
+  rows.add_each("Luneburg lens, beam at height ", {0.0, 0.7, 0.999}, "", "focus, optical path",
+                luneburg, 1e-10);
   // the rim, met at 4e-5 rad, is found to 1e-12 across and so to 2e-8 along
-  rows.add("Luneburg lens, beam at height 1 - 1e-9, rim grazed", "focus, optical path",
-           [] { return luneburg(1 - 1e-9, 1e-7); });
+  rows.add("Luneburg lens, beam at height 1 - 1e-9, rim grazed", "focus, optical path", luneburg,
+           1 - 1e-9, 1e-7);
   rows.add("Luneburg lens, beam at height 1 + 1e-9", "passes straight", beside_the_rim);
   for (const double angle : {0.02, 0.002, 0.0002})
     rows.add("fisheye, circle of " + short_number(1 / angle) + " radii", "image, optical path",
-             [=] { return fisheye_far_out(angle); });
+             ray_far_out, angle);
   rows.add("fisheye, beam from a point to its image", "image, |J| = 0", fisheye_focus);
-  for (const double beyond : {0.0, -1e-6, 1e-6, 1e-3})
-    rows.add("caustic of Luneburg's ball, " + short_number(beyond) + " beyond sigma = pi",
-             "|J|, caustics passed", [=] { return ball_focus(beyond); });
+  rows.add_each("caustic of Luneburg's ball, ", {0.0, -1e-6, 1e-6, 1e-3}, " beyond sigma = pi",
+                "|J|, caustics passed", ball_focus);
 }
 
 void add_ramps(ExtremeRows& rows) {
-  for (const double slope : {-1e-6, -1.0, -1e6})
-    rows.add("turning point, slope " + short_number(slope), "catenary",
-             [=] { return turning_point(slope, 0.6); });
-  rows.add("turning point, at exactly pi/2", "catenary", [] { return turning_point(-1, 0); });
-  for (const double width : {1e-3, 1e-6})
-    rows.add("ramp of width " + short_number(width) + ", 1e-8 about the critical angle",
-             "passes or turns, Snell", [=] { return critical_angle(width); });
-  rows.add("ramp where n falls to 0", "lost, or turned back", no_index);
+  rows.add_each("turning point, slope ", {-1e-6, -1.0, -1e6}, "", "catenary", turning_point, 0.6);
+  rows.add("turning point, at exactly pi/2", "catenary", turning_point, -1, 0);
+  rows.add_each("ramp of width ", {1e-3, 1e-6}, ", 1e-8 about the critical angle",
+                "passes or turns, Snell", critical_angle);
+  rows.add("ramp where n falls to 0", "lost, or turned back", ray_without_index);
   rows.add("ultrasound of order 64 at kr rho = 1e5: (kr rho)^64 is no number", "lost",
            sound_too_far);
   rows.add("step beyond the index of a guide", "lost", beyond_the_guide);
@@ -384,7 +366,8 @@ void add_guides(ExtremeRows& rows) {
   rows.add_slow("guide, 1e4 oscillations, 400 steps each", "place in closed form", guide_phase);
   rows.add("guide, 1e4 oscillations and back", "place, direction", guide_and_back);
   rows.add("guide, tangent of 100 oscillations", "dx/dv0 in closed form", guide_tangent);
-  rows.add("guide of n - 1 = 1e-6, period 6e4", "place, slope, path beyond length", faint_guide);
+  rows.add("guide of n - 1 = 1e-6, period 6e4", "place, slope, path beyond length",
+           ray_in_faint_guide);
   rows.add_slow("sech guide, 1000 half periods, slopes to 0.8", "optical path n0 L",
                 sech_dispersion);
   rows.add("guide at coordinates of 1e8", "place in closed form", far_from_origin);
@@ -393,13 +376,11 @@ void add_guides(ExtremeRows& rows) {
 
 }  // namespace
 
-std::vector<ExtremeCase> ray_extremes() {
-  ExtremeRows rows("grin");
+void ray_extremes(ExtremeRows& rows) {
   add_lenses(rows);
   add_bodies(rows);
   add_ramps(rows);
   add_guides(rows);
-  return std::move(rows).rows();
 }
 
 }  // namespace flatspeckle::bench

@@ -111,7 +111,7 @@ Numbers LeastSquares::solve(const Model& model, double damping) const {
   return step;
 }
 
-SearchStep LeastSquares::advance(SearchState& state) {
+SearchStep LeastSquares::advance(SearchState& state) const {
   const Model model = model_at(state);
   const double rays = static_cast<double>(objective_.rays().rays());
   const double rough = state.roughness * model.rough_unit / rays;

@@ -33,13 +33,11 @@ RayWalk make_walk(const Keys& keys, const DesignValues& values, const FieldForm&
 }
 
 void make_search(const Keys& keys, const DesignValues& values, DesignScene& scene) {
-  scene.method = keys.read(values.method);
-  scene.rate = scene.method == "adam" ? keys.read(values.rate) : values.rate;
-  const bool is_squares = scene.method == "gauss_newton";
-  scene.roughness = is_squares ? keys.read(values.roughness) : 0;
+  keys.read(values.method);
+  scene.roughness = keys.read(values.roughness);
   scene.iterations = static_cast<int>(keys.read(values.iterations));
   scene.target = keys.read(values.target).value_or(0);
-  scene.has_noise = is_squares && keys.read(values.noise).has_value();
+  scene.has_noise = keys.read(values.noise).has_value();
   if (!scene.has_noise) return;
   if (scene.target > 0)
     throw InputError("target", scene.target, "must not be given beside noise, which sets it");
@@ -53,10 +51,9 @@ void add_keys(Keys& keys, DesignValues& values) {
   add_keys(keys, values.form);
   add_keys(keys, values.aim);
   keys.group("Search");
-  keys.add("method", values.method,
-           "Damped least squares (gauss_newton), or by the gradient alone, to be compared with")
-      .one_of(optimiser_words());
-  keys.add("rate", values.rate, "By which a step changes a coefficient").positive().only_of("adam");
+  keys.add("method", values.method, "Damped least squares")
+      .one_of({"gauss_newton"})
+      .gone("; lbfgs and adam are baselines of `bench error`");
   keys.add("step", values.step,
            "Of rays, length at index 1 (default: a tenth of the radius; in a guide a 24th of a "
            "quarter turn)")

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/keys/keys.h"
-#include "grin/design/descent/optimiser.h"
+#include "grin/design/descent/objective.h"
 #include "grin/design/forms/form_values.h"
 #include "grin/design/goals/aim_values.h"
 
@@ -13,7 +13,7 @@ struct DesignValues {
   AimValues aim{};
   std::optional<double> step = {}, target = {}, noise = {};
   std::int64_t iterations = 60;
-  double roughness = 0, rate = 0.01;
+  double roughness = 0;
   std::string method = "gauss_newton";
 };
 
@@ -25,8 +25,6 @@ struct DesignScene {
   std::string goal;
   std::optional<double> focus = {};  ///< of a ball
   RayWalk walk;
-  std::string method;
-  double rate;         ///< of Adam
   double roughness;    ///< at the start
   bool has_noise;      ///< roughness is lowered until the target, which is the noise, is reached
   int iterations = 0;  ///< at most

@@ -6,6 +6,7 @@
 
 #include "core/run/stopwatch.h"
 #include "core/session/journal.h"
+#include "grin/design/descent/least_squares.h"
 
 namespace flatspeckle::grin::design {
 
@@ -23,7 +24,6 @@ void each_member(State& state, const Use& use) {
   use(state.search.roughness);
   use(state.search.loss);
   use(state.search.traces);
-  use(state.search.memory);
   use(state.history.rms);
   use(state.history.traces);
   use(state.history.cpu_s);
@@ -81,7 +81,6 @@ FieldForm Designer::form(const DesignState& state) const {
 
 Search Designer::search_in(const FieldForm& form) const {
   Search search{bounds_of(form, scene_.start.least_index, scene_.start.most_index)};
-  search.rate = scene_.rate;
   const auto& extent = shape_of(form).extent;
   if (extent[0] == 1) search.smooth_damping = 0;  // all of a profile is seen
   return search;
@@ -110,7 +109,6 @@ void Designer::refine(DesignState& state) {
   search.bounds.hold(fine.coefficients);
   state.search.coefficients = std::move(fine.coefficients);
   state.search.damping = search.first_damping;
-  state.search.memory.clear();
   state.search.loss =
       Objective(*seen_.rays, *seen_.goal, fine.form).loss(state.search.coefficients);
   ++state.search.traces;
@@ -136,7 +134,7 @@ bool Designer::smoothes_on(DesignState& state) const {
 /// Looked at again where they miss by half as much.
 bool Designer::leans_on_steps(DesignState& state) {
   const double now = std::sqrt(state.search.loss);
-  if (scene_.method != "gauss_newton" || now > 0.5 * state.rms_by_half_steps) return false;
+  if (now > 0.5 * state.rms_by_half_steps) return false;
   const auto by_half = rms(seen_, seen_.rays->trace(form(state), state.search.coefficients, 2));
   state.search.traces += 3;  // and once more as they were
   state.rms_by_half_steps = by_half.value_or(now);
@@ -145,14 +143,12 @@ bool Designer::leans_on_steps(DesignState& state) {
 
 void Designer::advance(DesignState& state) {
   const bool is_last = state.level + 1 == scene_.start.levels;
-  // of the root mean square, in a step; by its gradient alone a search goes on and on
-  const double slow = scene_.method != "gauss_newton" ? 1 : is_last ? 0.97 : 0.7;
-  const int most_slow_steps = scene_.method == "adam" ? 200 : scene_.has_noise ? 1 : 2;
+  const double slow = is_last ? 0.97 : 0.7;  // of the root mean square, in a step
+  const int most_slow_steps = scene_.has_noise ? 1 : 2;
   const FieldForm form = this->form(state);
-  const auto search =
-      make_optimiser(scene_.method, {*seen_.rays, *seen_.goal, form}, search_in(form));
+  const LeastSquares search({*seen_.rays, *seen_.goal, form}, search_in(form));
   const double before = state.search.loss;
-  const SearchStep step = search->advance(state.search);
+  const SearchStep step = search.advance(state.search);
   const double rms = std::sqrt(state.search.loss);
   constexpr double rounding = 1e-9;  // of what was missed at the start
   state.stalled = step == SearchStep::stalled && rms > rounding * state.history.rms.front();

@@ -112,10 +112,6 @@ double trimmed_variance(std::vector<double> promises) {
 
 }  // namespace
 
-double flights_per_pair(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
-  return known_flights(pilot_without_joins(transport, kernel, bins));
-}
-
 double flights_per_path(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
   constexpr int some = 64;
   return known_flights(pilot(transport, kernel, bins, some, some));

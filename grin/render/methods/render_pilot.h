@@ -11,9 +11,7 @@ namespace flatspeckle::grin {
 double tune_joins(Transport& transport, const PathKernel& kernel, const TimeBins& bins,
                   double flights_per_join);
 
-/// The latter alone.
-double flights_per_pair(Transport& transport, const PathKernel& kernel, const TimeBins& bins);
-/// The same of paths without joins that go side by side, some at once.
+/// The latter alone, of paths without joins that go side by side, some at once.
 double flights_per_path(Transport& transport, const PathKernel& kernel, const TimeBins& bins);
 
 }  // namespace flatspeckle::grin

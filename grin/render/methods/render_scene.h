@@ -38,7 +38,7 @@ struct RenderScene {
 /// Of a scene with several sensors; a number where it has no names.
 std::string sensor_name(const RenderScene& scene, std::size_t sensor);
 
-enum class RenderMethod { path, light, bidirectional, photon_map, analog };
+enum class RenderMethod { path, light, bidirectional, analog };
 /// In their order.
 std::vector<std::string> method_words();
 std::string method_word(RenderMethod method);
@@ -46,7 +46,6 @@ std::string method_word(RenderMethod method);
 struct RenderRequest {
   std::optional<RenderMethod> method = {};  ///< that which suits the scene if there is none
   std::int64_t max_scatterings = 0;         ///< 0: no limit
-  double photon_radius = 0;                 ///< of photon_map; 0: chosen from the scene
 };
 
 }  // namespace flatspeckle::grin

@@ -6,7 +6,6 @@
 #include <tuple>
 
 #include "grin/render/methods/analog_light.h"
-#include "grin/render/methods/photon_map.h"
 #include "grin/render/methods/render_pilot.h"
 
 namespace flatspeckle::grin {
@@ -29,10 +28,6 @@ int path_limit(const RenderRequest& request) {
   constexpr int unlimited = std::numeric_limits<int>::max();
   if (request.max_scatterings <= 0) return unlimited;
   return static_cast<int>(std::min<std::int64_t>(request.max_scatterings, unlimited));
-}
-
-double photon_radius(const RenderScene& scene, const RenderRequest& request) {
-  return request.photon_radius > 0 ? request.photon_radius : default_photon_radius(scene.stage);
 }
 
 double index_at(const RenderScene& scene, const PathPoint& p) {
@@ -92,7 +87,7 @@ Tracers::Tracers(const RenderScene& scene, const RenderRequest& request)
     : scene_(scene), request_(request), plan_(render_plan(scene)) {
   if (!plan_.curved && plan_.scatters) find_depth();
   if (!scene.parameters.empty()) find_motion();
-  if (!scene.sensors.empty() && request.method != RenderMethod::photon_map) find_beams();
+  if (!scene.sensors.empty()) find_beams();
 }
 
 void Tracers::find_depth() {
@@ -127,9 +122,9 @@ void Tracers::find_beams() {
 
 Tracer Tracers::make(RenderMethod method) const {
   Tracer tracer = untuned(method);
-  if (method != RenderMethod::photon_map) tracer.unscattered_beams = unscattered_beams_;
+  tracer.unscattered_beams = unscattered_beams_;
   if (method == RenderMethod::analog) tracer.rays_per_path = few_rays_per_path_;
-  if (!walks_ && method != RenderMethod::photon_map) {
+  if (!walks_) {
     tracer.kernel = nullptr;
     return tracer;
   }
@@ -141,7 +136,6 @@ double Tracers::flights(const Tracer& tracer) const {
   const auto& [method, transport, kernel] =
       std::tie(tracer.method, tracer.transport, tracer.kernel);
   if (method == RenderMethod::analog) return flights_per_path(*transport, kernel, scene_.bins);
-  if (method == RenderMethod::photon_map) return flights_per_pair(*transport, kernel, scene_.bins);
   return tune_joins(*transport, kernel, scene_.bins, tracer.flights_per_join);
 }
 
@@ -179,7 +173,7 @@ SpaceOptions Tracers::options(Spreading spreading) const {
 /// Of its flights: weights of light tracing ask for it at the last one alone. That is flown a
 /// second time, which pays where many come before it.
 Spreading Tracers::spreading_of(RenderMethod method) const {
-  if (method == RenderMethod::photon_map || method == RenderMethod::analog) return Spreading::none;
+  if (method == RenderMethod::analog) return Spreading::none;
   if (method != RenderMethod::light || !plan_.curved) return Spreading::all;
   constexpr double many = 6;  // scattering depth
   const Part part = scene_.stage.field_part();
@@ -193,10 +187,6 @@ Tracer Tracers::untuned(RenderMethod method) const {
   if (!plan_.curved) transport->depth = depth_;
   const std::shared_ptr<const Space> space =
       make_space(scene_.field, scene_.stage, options(spreading_of(method)));
-  if (method == RenderMethod::photon_map)
-    return {method, transport,
-            photon_kernel(plan_.timed, transport, space, scene_.random_phase,
-                          photon_radius(scene_, request_))};
   if (method == RenderMethod::analog)
     return {method, transport,
             analog_kernel(transport, space, SensorAim::of(*transport, *space, bending_of(scene_)),

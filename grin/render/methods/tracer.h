@@ -58,7 +58,7 @@ class Tracers {
   /// Whether light paths book their drift.
   bool has_drift() const { return depth_ && depth_->drift(); }
 
-  /// Light paths, but of photon maps: else beams are all the light, and nothing scatters it.
+  /// Light paths: else beams are all the light, and nothing scatters it.
   bool walks() const { return walks_; }
 
   const RenderScene& scene() const { return scene_; }

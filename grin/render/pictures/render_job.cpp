@@ -13,7 +13,6 @@
 #include "core/numbers/statistics.h"
 #include "grin/media/index/lanes.h"
 #include "grin/render/methods/method_choice.h"
-#include "grin/render/methods/photon_map.h"
 #include "grin/render/pictures/map_datasets.h"
 #include "grin/render/pictures/picture_errors.h"
 #include "grin/render/pictures/powers_within.h"
@@ -28,11 +27,8 @@ namespace {
 int paths_per_batch(const Tracer& tracer, bool scatters, double cost_of_flight, std::size_t sums) {
   constexpr double most = 16384, flights_soon_made = 1024;
   const double fewest = std::clamp(flights_soon_made / tracer.flights_per_pair, 1.0, 32.0);
-  const bool is_map = tracer.method == RenderMethod::photon_map;
-  const double most_flights = is_map ? 1 << 20 : 1 << 17;
-  const double paths =
-      is_map ? photon_paths_per_batch
-             : std::clamp(static_cast<double>(sums) / (16 * cost_of_flight), fewest, most);
+  constexpr double most_flights = 1 << 17;
+  const double paths = std::clamp(static_cast<double>(sums) / (16 * cost_of_flight), fewest, most);
   const auto short_enough =
       static_cast<std::size_t>(std::min(paths, most_flights / tracer.flights_per_pair));
   const bool fills_lanes = tracer.method == RenderMethod::analog && scatters;
@@ -166,7 +162,7 @@ std::string method_word(RenderMethod method) {
 }
 
 std::vector<std::string> method_words() {
-  return {"path", "light", "bidirectional", "photon_map", "analog"};
+  return {"path", "light", "bidirectional", "analog"};
 }
 
 namespace {

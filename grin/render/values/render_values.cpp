@@ -297,12 +297,8 @@ void add_keys(Keys& keys, RenderRequestValues& values) {
   keys.add("method", values.method,
            "Path tracing is from the sensor; light tracing is best for powers on large areas; "
            "analog: light paths that are joined to nothing; auto: chosen by a pilot")
-      .one_of(words_for_methods());
-  keys.add("photon_radius", values.photon_radius,
-           "Radius of the estimate (default: chosen from the scene)")
-      .positive()
-      .unit("length")
-      .only_of("photon_map");
+      .one_of(words_for_methods())
+      .gone("; photon_map is a baseline of `bench error`");
   keys.add("max_scatterings", values.max_scatterings,
            "Paths of more scatterings are left out; 0: no limit")
       .from(0, std::numeric_limits<int>::max());
@@ -350,8 +346,6 @@ RenderRequest make_render_request(const Keys& keys, const RenderRequestValues& v
   if (const auto& method = keys.read(values.method); method != chosen)
     request.method =
         static_cast<RenderMethod>(std::find(words.begin(), words.end(), method) - words.begin());
-  if (request.method == RenderMethod::photon_map)
-    request.photon_radius = keys.read(values.photon_radius).value_or(0);
   return request;
 }
 

@@ -27,7 +27,6 @@ struct RenderValues {
 /// And how it is made.
 struct RenderRequestValues {
   std::string method = "auto";
-  std::optional<double> photon_radius = {};
   std::int64_t max_scatterings = 0;
 };
 

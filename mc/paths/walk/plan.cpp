@@ -28,7 +28,7 @@ bool can_see_backscattering(const CovarianceRequest& request, const Domain& doma
 }
 
 /// Twice the mean square of the phase function over the square of its mean: measured to be about
-/// best in the plane (bench_efficiency), and flat around it.
+/// best in the plane, and flat around it.
 double score_level(double g, int dimension) {
   const double square = std::min(g * g, 0.9);
   return 2 * (1 + square) / std::pow(1 - square, dimension - 1);

@@ -2,9 +2,9 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/scenes/moving_media.h"
 #include "bench/scenes/synthetic_slab.h"
 #include "core/run/stopwatch.h"
+#include "tests/mc/fit/moving_media.h"
 #include "tests/statistics.h"
 
 namespace flatspeckle::mc::test_fit_pulls {

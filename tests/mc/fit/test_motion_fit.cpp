@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "bench/scenes/moving_media.h"
+#include "tests/mc/fit/moving_media.h"
 
 namespace flatspeckle::mc::test_motion_fit {
 

@@ -5,10 +5,10 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/oracles/space_pair_walk.h"
 #include "tests/mc/space/scenes_in_space.h"
 #include "tests/mc/space/slabs_in_space.h"
 #include "tests/mc/transport/sixth_order.h"
+#include "tests/oracles/space_pair_walk.h"
 
 namespace flatspeckle::mc::test_space_changes {
 

@@ -2,9 +2,9 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/oracles/space_pair_walk.h"
 #include "tests/mc/space/scenes_in_space.h"
 #include "tests/mc/space/slabs_in_space.h"
+#include "tests/oracles/space_pair_walk.h"
 #include "tests/statistics.h"
 
 namespace flatspeckle::mc::test_space_covariance {

@@ -2,9 +2,9 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/oracles/photon_walk.h"
 #include "mc/slab/slab_flux.h"
 #include "tests/mc/space/scenes_in_space.h"
+#include "tests/oracles/photon_walk.h"
 
 namespace flatspeckle::mc::test_space_flux {
 

@@ -3,7 +3,6 @@
 
 #include <doctest/doctest.h>
 
-#include "bench/oracles/pair_transport.h"
 #include "bench/oracles/slab_theory.h"
 #include "mc/paths/dynamics/brownian.h"
 #include "mc/slab/slab_covariance.h"
@@ -12,6 +11,7 @@
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/transport/sixth_order.h"
 #include "tests/mc/transport/slabs.h"
+#include "tests/oracles/pair_transport.h"
 
 namespace flatspeckle::mc::test_slab_covariance {
 
@@ -85,8 +85,7 @@ struct DeepSlab {
 }  // namespace
 
 TEST_CASE("slab transport: intensities and correlations of deep slabs as by discrete ordinates") {
-  for (const DeepSlab& slab :
-       {DeepSlab{10, 0, 1}, DeepSlab{10, 0.8, 1}, DeepSlab{30, 0.9, 0.99}}) {
+  for (const DeepSlab& slab : {DeepSlab{10, 0, 1}, DeepSlab{10, 0.8, 1}, DeepSlab{30, 0.9, 0.99}}) {
     CAPTURE(slab.g);
     const auto found =
                    intensity_correlation_ladder(slab.optical_depth, slab.g, slab.albedo, {1e-7}),
@@ -106,8 +105,7 @@ TEST_CASE("slab transport: the memory effect ends where discrete ordinates have 
     CAPTURE(slab.optical_depth);
     CAPTURE(slab.g);
     const double q_depth = half_width(slab.optical_depth, slab.g, slab.albedo),
-                 correlation =
-                     by_ordinates(slab.optical_depth, slab.g, slab.albedo, q_depth)[1];
+                 correlation = by_ordinates(slab.optical_depth, slab.g, slab.albedo, q_depth)[1];
     CHECK(std::abs(correlation * correlation - 0.5) < 5e-5);
   }
 }
