@@ -45,11 +45,6 @@ function(flatspeckle_share_headers name owner)
   target_precompile_headers(flatspeckle_${name} REUSE_FROM flatspeckle_${owner})
 endfunction()
 
-# More files at a time where all include Eigen's matrices.
-function(flatspeckle_large_batches name)
-  set_target_properties(flatspeckle_${name} PROPERTIES UNITY_BUILD_BATCH_SIZE 14)
-endfunction()
-
 # Warnings, instruction set and sanitizers; nothing of it reaches those who link the library.
 function(flatspeckle_flags target)
   # clang tells of each loop that it leaves as it is, which costs time and nothing else.
@@ -69,7 +64,7 @@ endfunction()
 # Files of a room are compiled a few at a time, which parses what they include once. The preset dev
 # goes without, so that a file without the includes it needs does not compile.
 function(flatspeckle_unity target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${FLATSPECKLE_UNITY} UNITY_BUILD_BATCH_SIZE 6)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${FLATSPECKLE_UNITY} UNITY_BUILD_BATCH_SIZE 14)
   if(FLATSPECKLE_UNITY)  # clang would see names of one file shadowed by another's
     target_compile_options(${target} PRIVATE -Wno-shadow)
   endif()

@@ -201,7 +201,7 @@ struct TracedBeam {
   double spreading;
   int caustics;
 };
-template <IndexField F>
+template <grin::IndexField F>
 TracedBeam beam(const F& field, RayState ray, double sigma, int steps) {
   const RayState start = ray;
   RayTangent tangent;
