@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "apps/experiments/at_point.h"
+#include "apps/experiments/experiment_family.h"
 #include "apps/experiments/stacked_result.h"
 #include "apps/results/datasets.h"
 #include "apps/sweep/curve_sweep.h"

@@ -2,23 +2,89 @@
 #include <iostream>
 #include <set>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "apps/command/subcommands.h"
 #include "apps/fit/fit_summary.h"
 #include "apps/fit/measurement_file.h"
-#include "apps/fit/search_journal.h"
-#include "apps/sweep/varied_points.h"
+#include "apps/sweep/sweep_points.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
 #include "core/result/version.h"
+#include "core/session/journal.h"
 #include "core/session/session.h"
 #include "mc/fit/fit_datasets.h"
 #include "mc/fit/plan/fit_plan.h"
 #include "mc/fit/task/fit_data.h"
+#include "mc/fit/task/fit_task.h"
 
 namespace flatspeckle::apps {
 
 namespace {
+
+/// The steps of a search in a journal beside the result (NAME.search), so that one that was ended,
+/// however, can go on. It is gone once the result is there.
+class SearchJournal {
+ public:
+  /// identity: what the search depends on. Reads the steps of the same search that are there, or
+  /// begins anew where there are none. Throws InputError for those of another search.
+  SearchJournal(const std::string& out, const std::string& identity, bool resume);
+
+  const std::vector<mc::FitStep>& steps() const { return steps_; }
+  void add(const mc::FitStep& step);
+  void remove() const;
+
+ private:
+  std::filesystem::path path_;
+  std::vector<mc::FitStep> steps_;
+  Journal journal_;
+};
+
+constexpr char step_kind = 's';
+
+std::vector<std::byte> record_of(const mc::FitStep& step) {
+  ByteWriter record;
+  record.put(step.start);
+  record.put(step.iteration);
+  for (const double value : {step.paths, step.damping, step.chi_squared, step.cpu_s})
+    record.put(value);
+  record.put(std::vector<double>(step.at.begin(), step.at.end()));
+  return record.take();
+}
+
+mc::FitStep step_of(ByteReader& record) {
+  mc::FitStep step;
+  record.get(step.start);
+  record.get(step.iteration);
+  for (double* value : {&step.paths, &step.damping, &step.chi_squared, &step.cpu_s})
+    record.get(*value);
+  const auto at = record.get<std::vector<double>>();
+  step.at = Eigen::Map<const Eigen::VectorXd>(at.data(), std::ssize(at));
+  return step;
+}
+
+std::filesystem::path beside(const std::string& out, bool resume) {
+  std::filesystem::path path = out + ".search";
+  std::error_code none;
+  if (!resume) std::filesystem::remove(path, none);
+  return path;
+}
+
+SearchJournal::SearchJournal(const std::string& out, const std::string& identity, bool resume)
+    : path_(beside(out, resume)),
+      journal_(
+          path_, JournalHead{identity}, "search",
+          [this](std::uint64_t, char, ByteReader& record) { steps_.push_back(step_of(record)); }) {}
+
+void SearchJournal::add(const mc::FitStep& step) {
+  journal_.append(step_kind, record_of(step));
+}
+
+void SearchJournal::remove() const {
+  std::error_code none;
+  std::filesystem::remove(path_, none);
+}
 
 /// What the user asks.
 struct FitKeys {

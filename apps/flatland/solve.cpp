@@ -1,14 +1,18 @@
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <sstream>
+#include <vector>
 
 #include "apps/command/experiment.h"
-#include "apps/results/field_map_output.h"
 #include "apps/results/wavelengths.h"
 #include "core/error.h"
 #include "core/keys/csv.h"
+#include "core/keys/keys.h"
 #include "core/keys/number_text.h"
 #include "core/numbers/blas.h"
 #include "core/result/result_group.h"
@@ -20,13 +24,57 @@
 #include "wave_solver/clusters/cluster_file.h"
 #include "wave_solver/clusters/cluster_solution.h"
 #include "wave_solver/graded/graded_fields.h"
-#include "wave_solver/maps/map_datasets.h"
+#include "wave_solver/maps/field_map.h"
+#include "wave_solver/maps/map_grid.h"
 #include "wave_solver/solutions/spectrum.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::apps {
 
 namespace {
+
+/// The map that solve is asked for.
+struct MapSettings {
+  std::vector<double> map;               ///< x0, x1, z0, z1; empty: none
+  std::vector<std::int64_t> map_pixels;  ///< nx, nz; empty: ten per wavelength
+};
+
+std::size_t pixels_along(const MapSettings& settings, std::size_t side, double extent,
+                         double wavelength) {
+  constexpr double per_wavelength = 10, most = 100'000;
+  if (!settings.map_pixels.empty()) return static_cast<std::size_t>(settings.map_pixels[side]);
+  const double wanted = std::max(1.0, std::round(per_wavelength * extent / wavelength));
+  if (wanted > most)
+    throw InputError("map", extent, "is too wide for ten pixels per wavelength: give map_pixels");
+  return static_cast<std::size_t>(wanted);
+}
+
+void add_map_keys(Keys& keys, MapSettings& settings) {
+  keys.group("Map");
+  keys.add("map", settings.map, "x0 x1 z0 z1: the total field on a grid over this rectangle")
+      .exactly(4, "x0 x1 z0 z1 with x0 < x1 and z0 < z1")
+      .unit("length");
+  keys.add("map_pixels", settings.map_pixels,
+           "nx nz: pixels of the map (default: ten per wavelength)")
+      .exactly(2, "two whole numbers nx nz from 1 to 100000")
+      .from(1, 100'000)
+      .only_of("a map");
+}
+
+/// None where no map is asked for. Throws InputError.
+std::optional<wave::MapGrid> map_grid(const Keys& keys, const MapSettings& settings,
+                                      double wavelength) {
+  const auto& map = keys.read(settings.map);
+  if (map.empty()) return std::nullopt;
+  if (!(map[0] < map[1] && map[2] < map[3]) || !std::isfinite(map[1] - map[0]) ||
+      !std::isfinite(map[3] - map[2]))
+    throw InputError("map", number_text(map), "must be x0 x1 z0 z1 with x0 < x1 and z0 < z1");
+  keys.read(settings.map_pixels);
+  return wave::MapGrid{{map[0], map[2]},
+                       {map[1], map[3]},
+                       pixels_along(settings, 0, map[1] - map[0], wavelength),
+                       pixels_along(settings, 1, map[3] - map[2], wavelength)};
+}
 
 /// What the user asks.
 struct SolveKeys {

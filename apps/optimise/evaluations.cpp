@@ -5,14 +5,14 @@
 #include <mutex>
 #include <sstream>
 
-#include "apps/experiments/at_point.h"
-#include "apps/sweep/varied_points.h"
+#include "apps/experiments/experiment_family.h"
+#include "apps/sweep/sweep_points.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
 #include "core/result/provenance.h"
 #include "core/run/interrupt.h"
 #include "core/run/run_merger.h"
-#include "core/search/sum_blocks.h"
+#include "core/search/noisy_search.h"
 
 namespace flatspeckle::apps {
 

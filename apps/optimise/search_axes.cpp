@@ -5,7 +5,7 @@
 #include <numbers>
 #include <set>
 
-#include "apps/sweep/varied_points.h"
+#include "apps/sweep/sweep_points.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
 #include "core/keys/written_number.h"

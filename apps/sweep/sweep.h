@@ -9,7 +9,6 @@
 
 #include "apps/command/command_line.h"
 #include "apps/sweep/sweep_points.h"
-#include "apps/sweep/varied_points.h"
 #include "core/result/result_file.h"
 #include "core/run/runner.h"
 #include "core/session/session.h"

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "flatland/request/sensor.h"
+#include "flatland/request/request.h"
 #include "wave_solver/clusters/cluster_equations.h"
 #include "wave_solver/solutions/light_solution.h"
 

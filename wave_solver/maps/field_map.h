@@ -1,10 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/numbers/complex.h"
+#include "core/result/dataset_row.h"
 #include "wave_solver/maps/map_grid.h"
 #include "wave_solver/solutions/wave_solution.h"
 
@@ -58,5 +60,13 @@ class FieldMap {
 /// Points near which a map asks for the field, one for each scatterer that it touches: sensors for
 /// SolveOptions, so that basis orders resolve the map up to the rims.
 std::vector<Vec2> map_sensors(const MapGrid& grid, const Placement& placement);
+
+extern const DatasetTable map_table;
+
+/// Writes total_field [light_angle, map_z, map_x] tile by tile, with progress on standard error,
+/// and returns how it was summed; none where a signal came (catch_interrupts). The axis of lights
+/// must have been written.
+std::optional<std::string> write_map(ResultFile& file, const WaveSolution& solution,
+                                     const MapGrid& grid, double tolerance);
 
 }  // namespace flatspeckle::wave

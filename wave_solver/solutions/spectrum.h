@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "flatland/request/sensor.h"
+#include "flatland/request/request.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::wave {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "flatland/request/sensor.h"
+#include "flatland/request/request.h"
 #include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/solutions/light_basis.h"
 #include "wave_solver/solutions/light_solution.h"
