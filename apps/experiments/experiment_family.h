@@ -31,9 +31,9 @@ inline PlannedExperiment plan_at(const SweepPoints& points, std::size_t point,
                               std::uint64_t batch, std::span<Complex> sums) {
       at_point(points, point, [&] { run(batch, sums); });
     };
-    planned.write = [&points, point, write = std::move(planned.write)](ResultFile& file,
-                                                                       const GroupedSums& sums) {
-      at_point(points, point, [&] { write(file, sums); });
+    planned.write = [&points, point, write = std::move(planned.write)](
+                        ResultFile& file, const GroupedSums& sums, bool tells) {
+      at_point(points, point, [&] { write(file, sums, tells); });
     };
     return planned;
   });

@@ -1,11 +1,11 @@
-#include "apps/experiments/stacked_result.h"
-
 #include <algorithm>
 #include <functional>
 #include <map>
 #include <utility>
 
+#include "apps/experiments/experiment_sweep.h"
 #include "apps/results/datasets.h"
+#include "apps/sweep/point_store.h"
 #include "core/keys/number_text.h"
 #include "core/result/result_group.h"
 
@@ -27,9 +27,9 @@ const DatasetTable stacked_table{
 
 namespace {
 
-/// Holds what all points of a sweep have in one dataset, the axes of the sweep in front. Values come
-/// point by point, in the order of the points, and are written by whole chunks of some 64 kB: no
-/// more than that is in memory, or one point's.
+/// Holds what all points of a sweep have in one dataset, the axes of the sweep in front. Values
+/// come point by point, in the order of the points, and are written by whole chunks of some 64 kB:
+/// no more than that is in memory, or one point's.
 class StackedDataset {
  public:
   using Held = CollectedDataset::Held;
@@ -401,8 +401,9 @@ class Stack {
 
 }  // namespace
 
-void write_stacked(ResultFile& file, const ExperimentSweep& sweep, const PointStore& store) {
-  Stack(file, sweep, store).write();
+void ExperimentSweep::write(ResultFile& file, const PointStore& store) const {
+  ResultGroup(file, stacked_table).attribute("of", of_);
+  Stack(file, *this, store).write();
 }
 
 }  // namespace flatspeckle::apps

@@ -23,25 +23,7 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// The steps of a search in a journal beside the result (NAME.search), so that one that was ended,
-/// however, can go on. It is gone once the result is there.
-class SearchJournal {
- public:
-  /// identity: what the search depends on. Reads the steps of the same search that are there, or
-  /// begins anew where there are none. Throws InputError for those of another search.
-  SearchJournal(const std::string& out, const std::string& identity, bool resume);
-
-  const std::vector<mc::FitStep>& steps() const { return steps_; }
-  void add(const mc::FitStep& step);
-  void remove() const;
-
- private:
-  std::filesystem::path path_;
-  std::vector<mc::FitStep> steps_;
-  Journal journal_;
-};
-
-constexpr char step_kind = 's';
+constexpr char step_kind = 's';  // of the records of a search
 
 std::vector<std::byte> record_of(const mc::FitStep& step) {
   ByteWriter record;
@@ -62,28 +44,6 @@ mc::FitStep step_of(ByteReader& record) {
   const auto at = record.get<std::vector<double>>();
   step.at = Eigen::Map<const Eigen::VectorXd>(at.data(), std::ssize(at));
   return step;
-}
-
-std::filesystem::path beside(const std::string& out, bool resume) {
-  std::filesystem::path path = out + ".search";
-  std::error_code none;
-  if (!resume) std::filesystem::remove(path, none);
-  return path;
-}
-
-SearchJournal::SearchJournal(const std::string& out, const std::string& identity, bool resume)
-    : path_(beside(out, resume)),
-      journal_(
-          path_, JournalHead{identity}, "search",
-          [this](std::uint64_t, char, ByteReader& record) { steps_.push_back(step_of(record)); }) {}
-
-void SearchJournal::add(const mc::FitStep& step) {
-  journal_.append(step_kind, record_of(step));
-}
-
-void SearchJournal::remove() const {
-  std::error_code none;
-  std::filesystem::remove(path_, none);
 }
 
 /// What the user asks.
@@ -330,11 +290,17 @@ int run_fit(const Session& session, const Subcommand& command, const FitKeys& va
   mc::FitTask task = task_of(command.keys(), values, session);
   if (!command.settle()) return ExitStatus::done;
   tell_guesses(task);
-  std::optional<SearchJournal> journal;
+  // The steps of a search, so that one that was ended, however, can go on; gone once the result is
+  // there.
+  const std::filesystem::path path = session.out() + ".search";
+  std::error_code none;
+  std::optional<Journal> journal;
   if (task.paths) {
-    journal.emplace(session.out(), identity_of(command.keys(), task), values.run.resume);
-    task.made = journal->steps();
-    task.keep = [&](const mc::FitStep& step) { journal->add(step); };
+    if (!values.run.resume) std::filesystem::remove(path, none);
+    journal.emplace(
+        path, JournalHead{identity_of(command.keys(), task)}, "search",
+        [&](std::uint64_t, char, ByteReader& record) { task.made.push_back(step_of(record)); });
+    task.keep = [&](const mc::FitStep& step) { journal->append(step_kind, record_of(step)); };
   }
   const int status =
       session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
@@ -345,7 +311,7 @@ int run_fit(const Session& session, const Subcommand& command, const FitKeys& va
                     static_cast<double>(fit.residuals.size()),
                     fit.converged ? ExitStatus::done : ExitStatus::error_not_reached};
       });
-  if (journal) journal->remove();
+  if (journal) std::filesystem::remove(path, none);
   return status;
 }
 

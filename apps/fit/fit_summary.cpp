@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "apps/command/command_line.h"
 #include "core/error.h"
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
@@ -23,22 +24,13 @@ struct ComparedFit {
   double information() const { return chi_squared + 2 * parameters; }
 };
 
-/// The word after a key in a configuration.
-std::string word_of(const std::string& config, const std::string& key) {
-  const std::string start = key + " = \"";
-  const auto found = config.find(start);
-  if (found == std::string::npos) return "";
-  const auto first = found + start.size();
-  return config.substr(first, config.find('"', first) - first);
-}
-
 ComparedFit fit_of(const std::string& path) {
   const ResultReader file(path);
   if (!file.has("estimate") || !file.has("measured") || !file.has_attribute("/", "chi_squared"))
     throw InputError("compare", path, "is no result of fit");
   ComparedFit fit;
   fit.path = path;
-  fit.scatterer = word_of(file.attribute<std::string>("/", "config"), "scatterer");
+  fit.scatterer = value_in("scatterer", file.attribute<std::string>("/", "config"));
   fit.measured = file.dataset<double>("measured");
   fit.chi_squared = file.attribute<double>("/", "chi_squared");
   fit.parameters = static_cast<double>(file.dataset<double>("estimate").size());

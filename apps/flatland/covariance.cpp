@@ -77,13 +77,11 @@ class CovarianceExperiment : public Experiment {
   }
 
   PlannedExperiment plan() const override {
-    const auto writer = [this](bool tells) {
-      return [this, tells](ResultFile& file, const GroupedSums& sums) { write(file, sums, tells); };
-    };
     return {.plan = extended_.estimation.plan,
             .batches = extended_.estimation.job.batches,
-            .write = writer(false),
-            .write_and_tell = writer(true)};
+            .write = [this](ResultFile& file, const GroupedSums& sums, bool tells) {
+              write(file, sums, tells);
+            }};
   }
 
  private:

@@ -101,15 +101,15 @@ double Objective::of(const CollectedResult& result) const {
   return std::get<std::vector<double>>(set.values)[place_in(result, set)];
 }
 
-void EvaluationJournal::add(const std::string& name, const FinishedPoint& evaluation) {
-  const std::uint64_t place = journal_.add(name, evaluation);
-  const std::lock_guard lock(mutex_);
-  places_.emplace(name, place);
-}
-
 Evaluations::Evaluations(const ExperimentFamily& family, const Objective& objective,
-                         const EvaluationSettings& settings, EvaluationJournal& journal)
-    : family_(family), objective_(objective), settings_(settings), journal_(journal) {}
+                         const EvaluationSettings& settings, const std::filesystem::path& path,
+                         const JournalHead& head)
+    : family_(family),
+      objective_(objective),
+      settings_(settings),
+      journal_(path, head, "search", [this](const std::string& name, std::uint64_t place) {
+        places_.emplace(name, place);
+      }) {}
 
 std::vector<Measured> Evaluations::measure(const std::vector<SweepPoints>& points,
                                            const SearchEffort& effort) {
@@ -117,13 +117,13 @@ std::vector<Measured> Evaluations::measure(const std::vector<SweepPoints>& point
   std::set<std::string> asked;
   for (const SweepPoints& point : points) {
     const std::string name = name_of(point, effort);
-    if (!journal_.has(name) && asked.insert(name).second) missing.push_back(point);
+    if (!places_.contains(name) && asked.insert(name).second) missing.push_back(point);
   }
   if (!missing.empty()) run(missing, effort);
   std::vector<Measured> found;
   for (const SweepPoints& point : points) {
     const std::string name = name_of(point, effort);
-    const FinishedPoint finished = journal_.read(name);
+    const FinishedPoint finished = read(name);
     found.push_back(measured(finished));
     if (!dataset_) dataset_ = *finished.result.find("of");
     if (known_.insert(name).second)
@@ -133,7 +133,7 @@ std::vector<Measured> Evaluations::measure(const std::vector<SweepPoints>& point
 }
 
 CollectedResult Evaluations::result(const SweepPoints& point, double samples) const {
-  CollectedResult result = journal_.read(name_of(point, {samples, winner_draw})).result;
+  CollectedResult result = read(name_of(point, {samples, winner_draw})).result;
   std::erase_if(result.datasets, [](const CollectedDataset& set) {
     return set.name == "found" || set.name == "without" || set.name == "of";
   });
@@ -172,9 +172,13 @@ void Evaluations::run(const std::vector<SweepPoints>& points, const SearchEffort
     return OpenRun{job, StopRule{samples, {}, {}}, &open[i]->state};
   };
   list.ended = [&](std::size_t i, StopReason) {
-    journal_.add(name_of(points[i], effort), at_point(points[i], 0, [&] {
-                   return finished(open[i]->planned, open[i]->state, effort.draw == winner_draw);
-                 }));
+    const std::string name = name_of(points[i], effort);
+    const FinishedPoint found = at_point(points[i], 0, [&] {
+      return finished(open[i]->planned, open[i]->state, effort.draw == winner_draw);
+    });
+    const std::uint64_t place = journal_.add(name, found);
+    const std::lock_guard lock(mutex_);
+    places_.emplace(name, place);
     open[i].reset();
   };
   list.checkpoint = [](std::size_t) {};
@@ -189,7 +193,7 @@ FinishedPoint Evaluations::finished(const PlannedExperiment& planned, const RunS
   const auto result_of = [&](const GroupedSums& sums) {
     CollectedResult result;
     ResultFile collecting(result);
-    planned.write(collecting, sums);
+    planned.write(collecting, sums, false);
     return result;
   };
   CollectedResult result = result_of(state.sums);

@@ -369,8 +369,8 @@ int Optimisation::search(const Session& session) {
                      " holds evaluations of an earlier search: --resume goes on with them; remove "
                      "it to begin again");
   const Stopwatch clock;
-  EvaluationJournal journal(journal_path, {identity_of_evaluations(), command_.keys().config()});
-  Evaluations evaluations(family_, *objective_, settings_, journal);
+  Evaluations evaluations(family_, *objective_, settings_, journal_path,
+                          {identity_of_evaluations(), command_.keys().config()});
   int status = ExitStatus::interrupted_resumable;
   try {
     const Optimum optimum = found(evaluations);
@@ -378,11 +378,11 @@ int Optimisation::search(const Session& session) {
     status = write(session, evaluations, optimum, clock.seconds());
     if (optimum.finished) fs::remove(journal_path);
   } catch (const Interrupted&) {
-    journal.sync();
-    std::cout << "interrupted; " << journal_path.string() << " holds " << journal.size()
+    evaluations.sync();
+    std::cout << "interrupted; " << journal_path.string() << " holds " << evaluations.kept()
               << " evaluations, --resume goes on\n";
   } catch (const InputError&) {  // of other bounds what there is can be gone on with
-    if (journal.size() == 0) fs::remove(journal_path);
+    if (evaluations.kept() == 0) fs::remove(journal_path);
     throw;
   }
   return status;

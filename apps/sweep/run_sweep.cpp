@@ -271,15 +271,16 @@ std::string shards_of(const std::string& out) {
   return out + ".shards";
 }
 
-int run_sweep(const Sweep& sweep) {
-  if (!sweep.share()) join_ranks();
+int Sweep::run() {
+  if (!read()) return ExitStatus::done;
+  if (!share_) join_ranks();
   catch_interrupts();
-  if (ranks().size == 1) return lead(sweep, nullptr);
+  if (ranks().size == 1) return lead(*this, nullptr);
   int status = ExitStatus::done;
   if (ranks().rank == 0)
-    status = lead_others(sweep);
+    status = lead_others(*this);
   else
-    follow(sweep);
+    follow(*this);
   leave_ranks();
   return status;
 }

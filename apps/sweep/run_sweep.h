@@ -8,10 +8,6 @@
 
 namespace flatspeckle::apps {
 
-/// Runs what is not yet there of a sweep, by all processes that a launcher has started together,
-/// and ends in its result, or says how to go on. Returns the exit status.
-int run_sweep(const Sweep& sweep);
-
 /// Puts together what folders hold of a sweep. make: the kind of sweep that a configuration is of.
 /// partial: also where points are missing. Returns the exit status. Throws InputError.
 int merge_sweep(const std::function<std::unique_ptr<Sweep>(const std::string& config)>& make,

@@ -78,6 +78,7 @@ std::size_t ScatteredRuns::operator[](std::size_t number) const {
   return (share_.number + number * share_.count) * stride_ % runs_;
 }
 
+/// False if there is nothing to run (--print-config).
 bool Sweep::read() {
   session_.emplace(command_.text(), keys(), run_, command_.only_prints(), Session::Out::shared);
   take_points();
