@@ -242,11 +242,7 @@ std::string plan_of(const wave::Spectrum& spectrum, const WavelengthList& wavele
 
 /// Where scatterers of a file lie: the corners of the box around them.
 std::vector<Vec2> corners_around(const Placement& placement) {
-  Vec2 low = placement.front().position, high = low;
-  for (const auto& [x, scatterer] : placement) {
-    low = {std::min(low.x, x.x), std::min(low.z, x.z)};
-    high = {std::max(high.x, x.x), std::max(high.z, x.z)};
-  }
+  const auto [low, high] = bounds_of(placement, &PlacedScatterer::position);
   return {low, {high.x, low.z}, {low.x, high.z}, high};
 }
 

@@ -22,23 +22,45 @@ constexpr std::size_t most_points = 1'000'000;
 }
 
 /// One text for one number: points are known by their texts.
-AxisValues values_of(const Key& key, const std::string& values) {
+std::vector<std::string> texts_of(std::span<const double> values) {
   std::vector<std::string> texts;
+  for (double value : values) texts.push_back(number_text(value));
+  return texts;
+}
+
+AxisValues values_of(const Key& key, const std::string& values) {
   if (key.is_number()) {
     const std::string name = "vary " + key.name();
     const Written kind = written_kind(key.unit());
     if (const auto range = written_range(name, values, kind)) return AxisValues(*range);
-    for (const double value : written_numbers(name, values, kind))
-      texts.push_back(number_text(value));
-    return texts;
+    return texts_of(written_numbers(name, values, kind));
   }
+  std::vector<std::string> texts;
   std::istringstream words(values);
   for (std::string word; std::getline(words, word, ',');) texts.push_back(word);
   if (texts.empty()) refuse(key.name() + "=", "must have a value or more");
   return texts;
 }
 
-/// In a range only neighbours can be.
+/// Throws InputError where there are more.
+void require_at_most(std::size_t most, const SweepPoints& points) {
+  double count = 1;  // which may be beyond what a whole number holds
+  for (const SweepAxis& axis : points.axes)
+    count = points.is_list ? static_cast<double>(axis.values.size())
+                           : count * static_cast<double>(axis.values.size());
+  if (count > static_cast<double>(most))
+    throw InputError("points of the sweep", count, "must be at most " + std::to_string(most));
+}
+
+/// Throws InputError for a point that comes twice.
+void refuse_twins(const SweepPoints& points) {
+  std::set<std::string> seen;
+  for (std::size_t point = 0; point < points.count(); ++point)
+    if (!seen.insert(points.name(point)).second)
+      throw InputError("the point " + points.name(point) + " is given twice");
+}
+
+/// The same for a value of an axis: in a range only neighbours can be equal.
 void refuse_twins(const SweepAxis& axis) {
   const NumberRange* const range = axis.values.range();
   std::set<std::string> seen;
@@ -68,9 +90,7 @@ SweepPoints list_of(const std::string& path, const Keys& of) {
   points.is_list = true;
   for (const std::string& name : table.names()) {
     if (!varied_key(of, name, name).is_number()) refuse(name, "has no numbers, as a table has");
-    std::vector<std::string> values;
-    for (const double value : table.column(name)) values.push_back(number_text(value));
-    points.axes.push_back({name, std::move(values)});
+    points.axes.push_back({name, texts_of(table.column(name))});
   }
   require_at_most(most_points, points);
   refuse_twins(points);
@@ -103,13 +123,7 @@ std::vector<std::string> with_component(const Keys& keys, const SweepAxis& axis,
   return texts;
 }
 
-std::vector<std::string> texts_of(std::span<const double> values) {
-  std::vector<std::string> texts;
-  for (double value : values) texts.push_back(number_text(value));
-  return texts;
-}
-
-/// Axes that were given. One text for one number: points are known by their texts.
+/// Axes that were given.
 std::vector<SweepAxis> given_axes(const Keys& keys, const SweepLists& lists) {
   std::vector<SweepAxis> axes;
   for (const std::string& key : lists.keys) {
@@ -276,22 +290,6 @@ void add_sweep_keys(Keys& keys, SweepLists& lists) {
   keys.add("points", lists.points,
            "CSV with columns among these keys (and index_imaginary): a list of points in place of "
            "all combinations");
-}
-
-void require_at_most(std::size_t most, const SweepPoints& points) {
-  double count = 1;  // which may be beyond what a whole number holds
-  for (const SweepAxis& axis : points.axes)
-    count = points.is_list ? static_cast<double>(axis.values.size())
-                           : count * static_cast<double>(axis.values.size());
-  if (count > static_cast<double>(most))
-    throw InputError("points of the sweep", count, "must be at most " + std::to_string(most));
-}
-
-void refuse_twins(const SweepPoints& points) {
-  std::set<std::string> seen;
-  for (std::size_t point = 0; point < points.count(); ++point)
-    if (!seen.insert(points.name(point)).second)
-      throw InputError("the point " + points.name(point) + " is given twice");
 }
 
 SweepPoints sweep_points(const Keys& keys, const SweepLists& lists) {

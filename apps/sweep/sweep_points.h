@@ -58,11 +58,6 @@ struct SweepLists {
 /// Puts lists in the place of the keys that may be swept.
 void add_sweep_keys(Keys& keys, SweepLists& lists);
 
-/// Throws InputError where there are more.
-void require_at_most(std::size_t most, const SweepPoints& points);
-/// Throws InputError for a point that comes twice.
-void refuse_twins(const SweepPoints& points);
-
 /// Throws InputError for a table without rows, with columns that are no keys of a sweep or lists
 /// beside it, and for a point that comes twice.
 SweepPoints sweep_points(const Keys& keys, const SweepLists& lists);

@@ -34,11 +34,7 @@ namespace {
 
 Circle circle_of(const ClusterEquations& equations) {
   if (equations.bodies().empty()) return {};
-  Vec2 low = equations.bodies()[0].centre, high = low;
-  for (const auto& [centre, radius] : equations.bodies()) {
-    low = {std::min(low.x, centre.x), std::min(low.z, centre.z)};
-    high = {std::max(high.x, centre.x), std::max(high.z, centre.z)};
-  }
+  const auto [low, high] = bounds_of(equations.bodies(), &WaveEquations::Body::centre);
   return {0.5 * (low + high), length(0.5 * (high - low)) + equations.bodies()[0].radius};
 }
 
@@ -132,14 +128,8 @@ ClusterSolution::ClusterSolution(const ClusterTMatrix& cluster, std::vector<Clus
 }
 
 std::vector<Complex> ClusterSolution::fields(const std::vector<View>& views) const {
-  std::vector<Complex> rows;
-  for (const View& view : views) {
-    const auto row =
-        view.near ? equations_.outside_row(view.point) : equations_.far_rows({&view.angle, 1});
-    rows.insert(rows.end(), row.begin(), row.end());
-  }
-  return transposed_product(rows, found_.coefficients.data(), light_angles_.size(),
-                            equations_.unknowns());
+  return transposed_product(equations_.view_rows(views), found_.coefficients.data(),
+                            light_angles_.size(), equations_.unknowns());
 }
 
 void write_solution(ResultFile& file, const ClusterSolution& solution,

@@ -90,12 +90,8 @@ std::vector<Wave> waves_of(const Light& light, double k, const Circle& circle, d
 
 Circle enclosing_circle(const Placement& placement) {
   if (placement.empty()) return {};
-  Vec2 low = placement[0].position, high = low;
-  for (const auto& [r, scatterer] : placement) {
-    low = {std::min(low.x, r.x), std::min(low.z, r.z)};
-    high = {std::max(high.x, r.x), std::max(high.z, r.z)};
-  }
-  Circle circle{0.5 * (low + high), 0};
+  const Rectangle box = bounds_of(placement, &PlacedScatterer::position);
+  Circle circle{0.5 * (box.low + box.high), 0};
   for (const auto& [r, scatterer] : placement)
     circle.radius = std::max(circle.radius, length(r - circle.centre) + scatterer.disk_radius());
   return circle;

@@ -19,7 +19,6 @@ namespace flatspeckle::wave {
 
 namespace {
 
-
 using Kind = Scatterer::Kind;
 
 // A disk and what comes closest to it.
@@ -208,13 +207,9 @@ bool all_far(std::span<const View> views) {
 // What each unknown adds in each view: [view][unknown].
 std::vector<Complex> view_rows(const TMatrixSystem& system, std::span<const View> views) {
   if (all_far(views)) return system.far_rows(column(views, &View::angle));
-  std::vector<Complex> rows;
-  rows.reserve(views.size() * system.unknowns());
-  for (const View& view : views) {
-    const auto row = view.near ? system.near_row(view.point) : system.far_rows({&view.angle, 1});
-    rows.insert(rows.end(), row.begin(), row.end());
-  }
-  return rows;
+  for (const View& view : views)
+    if (view.near) require_outside(system.placement(), view.point);
+  return system.view_rows(views);
 }
 
 // Of the waves and sources of a basis: [basis][unknown].

@@ -28,8 +28,8 @@ std::vector<std::uint64_t> occupied(std::span<const Vec2> points, Vec2 low, doub
 // The cheapest radius of the near part, or 0 where summing all pairs is cheaper.
 double best_range(double k, double tolerance, std::span<const Vec2> sources,
                   std::span<const Vec2> targets) {
-  const Extent box = bounds(sources, targets);
-  const double extent = std::max(box.high.x - box.low.x, box.high.z - box.low.z);
+  const Rectangle box = bounds_of(sources).joined(bounds_of(targets));
+  const double extent = std::max(box.width(), box.depth());
   const auto from = static_cast<double>(sources.size()), to = static_cast<double>(targets.size());
   double best = cost::all_pairs(from * to), range = 0;
   for (double r = extent / 3; r > extent * 1e-4; r /= std::numbers::sqrt2) {
@@ -54,21 +54,10 @@ std::vector<Vec2> in_order(std::span<const Vec2> points, std::span<const std::ui
 
 }  // namespace
 
-Extent bounds(std::span<const Vec2> sources, std::span<const Vec2> targets) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  Extent box{{infinity, infinity}, {-infinity, -infinity}};
-  for (const auto points : {sources, targets})
-    for (const Vec2 p : points) {
-      box.low = {std::min(box.low.x, p.x), std::min(box.low.z, p.z)};
-      box.high = {std::max(box.high.x, p.x), std::max(box.high.z, p.z)};
-    }
-  return box;
-}
-
 // Those in common cells of as large an area.
 double near_pairs(std::span<const Vec2> sources, std::span<const Vec2> targets, double range) {
   const double side = range * std::sqrt(std::numbers::pi);
-  const Vec2 low = bounds(sources, targets).low;
+  const Vec2 low = bounds_of(sources).joined(bounds_of(targets)).low;
   const auto from = occupied(sources, low, side), to = occupied(targets, low, side);
   double pairs = 0;
   for (auto cell = to.begin(); cell != to.end();) {
@@ -121,7 +110,7 @@ HelmholtzSum::HelmholtzSum(double k, std::span<const Vec2> sources, std::span<co
   sources_ = in_order(sources, source_order_);
   targets_ = in_order(targets, target_order_);
   const KernelSplit split(k, range_, tolerance);
-  const GridShape shape(k, range_, tolerance, bounds(sources, targets));
+  const GridShape shape(k, range_, tolerance, bounds_of(sources).joined(bounds_of(targets)));
   near_.emplace(split, by_source, sources, targets_);
   far_.emplace(split, shape, tolerance, sources_, targets_);
 }

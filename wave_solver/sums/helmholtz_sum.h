@@ -11,9 +11,6 @@
 
 namespace flatspeckle::wave {
 
-/// Smallest rectangle that holds all points; at least one of the spans has some.
-Extent bounds(std::span<const Vec2> sources, std::span<const Vec2> targets);
-
 /// About the number of pairs of a source and a target within `range` of each other.
 double near_pairs(std::span<const Vec2> sources, std::span<const Vec2> targets, double range);
 
