@@ -4,7 +4,7 @@
 #include "apps/results/extras.h"
 #include "apps/results/moments_table.h"
 #include "apps/results/tilt_search.h"
-#include "core/session/identity.h"
+#include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/paths/estimators/reflection_theory.h"
 #include "mc/slab/refinement.h"

@@ -5,7 +5,7 @@
 #include "apps/command/experiment.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
-#include "core/session/identity.h"
+#include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/slab/refinement.h"
 #include "mc/slab/slab_flux.h"

@@ -25,7 +25,6 @@
 #include "wave_solver/clusters/cluster_solution.h"
 #include "wave_solver/graded/graded_fields.h"
 #include "wave_solver/maps/field_map.h"
-#include "wave_solver/maps/map_grid.h"
 #include "wave_solver/solutions/spectrum.h"
 #include "wave_solver/solutions/wave_solution.h"
 

@@ -17,7 +17,6 @@
 #include "core/error.h"
 #include "core/numbers/statistics.h"
 #include "core/result/result_group.h"
-#include "core/session/identity.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/paths/dynamics/frequency_shifts.h"

@@ -7,7 +7,7 @@
 #include "apps/sweep/point_store.h"
 #include "core/error.h"
 #include "core/result/version.h"
-#include "core/session/identity.h"
+#include "core/session/session.h"
 #include "mc/paths/walk/plan.h"
 
 namespace flatspeckle::apps {

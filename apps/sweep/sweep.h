@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -135,5 +136,14 @@ class Sweep : public Call {
   Subcommand command_;
   std::optional<Session> session_;
 };
+
+/// Puts together what folders hold of a sweep. make: the kind of sweep that a configuration is of.
+/// partial: also where points are missing. Returns the exit status. Throws InputError.
+int merge_sweep(const std::function<std::unique_ptr<Sweep>(const std::string& config)>& make,
+                const std::vector<std::string>& folders, const std::string& out, bool partial,
+                const std::string& command_line);
+
+/// The folder beside a sweep's result in which its points gather until all are there.
+std::string shards_of(const std::string& out);
 
 }  // namespace flatspeckle::apps

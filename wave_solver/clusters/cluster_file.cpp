@@ -10,7 +10,7 @@
 #include "core/result/guarded_read.h"
 #include "core/result/result_group.h"
 #include "core/result/result_reader.h"
-#include "wave_solver/solutions/light_basis.h"
+#include "wave_solver/solutions/light_solution.h"
 
 namespace flatspeckle::wave {
 

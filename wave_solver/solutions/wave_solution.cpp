@@ -13,7 +13,7 @@
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/columns.h"
 #include "wave_solver/equations/neighbours.h"
-#include "wave_solver/solutions/interior_field.h"
+#include "wave_solver/equations/rim_waves.h"
 
 namespace flatspeckle::wave {
 

@@ -13,7 +13,6 @@
 #include "core/run/parallel.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/sums/helmholtz_sum.h"
-#include "wave_solver/sums/near_sum.h"
 
 namespace flatspeckle::wave {
 
