@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "apps/command/experiment.h"
+#include "apps/flatland/own_places.h"
 #include "apps/results/wavelengths.h"
 #include "core/error.h"
 #include "core/keys/csv.h"
@@ -123,11 +124,6 @@ void add_keys(Keys& keys, SolveKeys& values) {
       .file();
 }
 
-bool is_placement_rule(const SceneSpec& spec) {
-  return !spec.placement ||
-         std::ranges::find(placement_words, *spec.placement) != placement_words.end();
-}
-
 [[noreturn]] void refuse_bulk(const SceneSpec& spec) {
   throw InputError("scatterer", spec.scatterer,
                    "is a bulk phase function; the exact solver needs point, soft, hard, tm or te");
@@ -192,7 +188,7 @@ Sensors sensors_of(const Keys& keys, const SceneSpec& spec) {
 /// Columns of a placement's file and the key `index` say the same thing as the table.
 void require_index_from_table(const SceneSpec& spec, const Placement& placement) {
   if (spec.index) throw InputError("index_table, index: give one of them");
-  if (spec.placement && !is_placement_rule(spec) && read_csv(*spec.placement).has("index_re"))
+  if (has_own_places(spec) && read_csv(*spec.placement).has("index_re"))
     throw InputError("index_table: " + *spec.placement + " has indices of its own (index_re)");
   if (std::ranges::none_of(placement, &Scatterer::is_penetrable, &PlacedScatterer::scatterer))
     throw InputError("index_table: is of tm and te cylinders");
@@ -280,7 +276,7 @@ class SolveExperiment : public OneShot {
   void read_cluster(const Keys& keys) {
     keys.read(values_.tolerance);
     keys.read(values_.solver);
-    if (is_placement_rule(values_.spec))
+    if (!has_own_places(values_.spec))
       throw InputError("placement", values_.spec.placement.value_or("none"),
                        "must be a CSV with columns x, z [, angle], of the cluster's copies");
     places_ = wave::read_places(*keys.read(values_.spec.placement));
@@ -300,7 +296,7 @@ class SolveExperiment : public OneShot {
     }
     keys.read(values_.tolerance);
     keys.read(values_.solver);
-    if (is_placement_rule(spec)) scene_ = make_scene(keys, spec);
+    if (!has_own_places(spec)) scene_ = make_scene(keys, spec);
     placement_ = scene_ ? drawn_placement(spec, *scene_, seed()) : placement_of_file(keys, spec);
     if (!scene_) keys.disregard(run_.seed);  // nothing is drawn
     for (const Vec2& sensor : sensors_.points) require_outside(placement_, sensor);
@@ -309,7 +305,7 @@ class SolveExperiment : public OneShot {
 
   void read_graded(const Keys& keys) {
     graded_.emplace();
-    if (is_placement_rule(values_.spec))
+    if (!has_own_places(values_.spec))
       read_drawn_graded(keys);
     else
       read_graded_file(keys);

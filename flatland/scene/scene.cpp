@@ -9,7 +9,6 @@
 
 #include "core/contract.h"
 #include "core/error.h"
-#include "core/keys/chosen.h"
 #include "core/keys/csv.h"
 #include "core/keys/number_text.h"
 #include "flatland/media/layers.h"
@@ -186,17 +185,6 @@ BulkMedium medium_of_scatterers(const SceneSpec& spec, const Scatterer& scattere
   BulkMedium medium = bulk_medium(scatterer, k, 1);
   set_density(medium, scatterer, k, number_density(spec, domain, medium.cross_sections.extinction));
   return medium;
-}
-
-PlacementRule::Kind placement_kind(const std::optional<std::string>& word, bool disks) {
-  using Rule = PlacementRule::Kind;
-  if (!word) return disks ? Rule::hard_disk : Rule::poisson;
-  const Rule rule = chosen<Rule>(placement_words, *word);
-  if (disks == (rule == Rule::poisson))
-    throw InputError("placement", *word,
-                     disks ? "disks must not overlap: hard_disk or equilibrium"
-                           : "scatterers without a radius: poisson");
-  return rule;
 }
 
 /// But for the number, which follows from the density.
