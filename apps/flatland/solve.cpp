@@ -22,11 +22,9 @@
 #include "core/run/stopwatch.h"
 #include "flatland/scene/index_fields.h"
 #include "flatland/scene/scene_datasets.h"
-#include "wave_solver/clusters/cluster_file.h"
 #include "wave_solver/clusters/cluster_solution.h"
 #include "wave_solver/graded/graded_fields.h"
 #include "wave_solver/maps/field_map.h"
-#include "wave_solver/solutions/spectrum.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::apps {

@@ -22,18 +22,6 @@
 
 namespace flatspeckle::apps {
 
-namespace {
-
-/// What a search has ended in.
-struct Optimum {
-  Winner winner;
-  SweepPoints best, runner_up;         ///< the keys there
-  std::optional<SweepPoints> against;  ///< with some keys at other values
-  std::optional<Measured> there = {};
-  std::vector<std::string> at_bounds = {};  ///< keys of the best that a wider range may better
-  bool finished = true;
-};
-
 const DatasetTable optimum_table{
     .name = "optimise",
     .rows = {{"search/evaluation", Data::numbers, "", "1", "number of the evaluation"},
@@ -59,6 +47,18 @@ const DatasetTable optimum_table{
                    {"best", "at_bounds", "texts",
                     "keys whose best value is a bound of their range, if there are any: a wider "
                     "one may have a better"}}};
+
+namespace {
+
+/// What a search has ended in.
+struct Optimum {
+  Winner winner;
+  SweepPoints best, runner_up;         ///< the keys there
+  std::optional<SweepPoints> against;  ///< with some keys at other values
+  std::optional<Measured> there = {};
+  std::vector<std::string> at_bounds = {};  ///< keys of the best that a wider range may better
+  bool finished = true;
+};
 
 double sign_of(const EvaluationSettings& settings) {
   return settings.minimise ? -1 : 1;
