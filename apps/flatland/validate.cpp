@@ -40,24 +40,50 @@ struct Comparison {
   std::vector<std::uint64_t> apart = {};
 
   /// Not below what rounding leaves.
-  double error(std::size_t e) const;
-  double difference(std::size_t e) const;
+  double error(std::size_t e) const {
+    const double largest = std::max(std::abs(reference.value[e]), std::abs(mc.value[e]));
+    return std::hypot(reference.error[e], mc.error[e], 1e-13 * largest);
+  }
+
+  double difference(std::size_t e) const { return std::abs(mc.value[e] - reference.value[e]); }
+
   /// In combined standard errors.
-  double deviation(std::size_t e) const;
-  std::vector<double> deviations() const;
+  double deviation(std::size_t e) const {
+    return difference(e) == 0 ? 0 : difference(e) / error(e);
+  }
+
+  std::vector<double> deviations() const {
+    std::vector<double> all;
+    for (std::size_t e = 0; e < mc.value.size(); ++e) all.push_back(deviation(e));
+    return all;
+  }
 
   bool is_apart(std::size_t e) const { return !apart.empty() && apart[e] != 0; }
   bool within_errors(std::size_t e) const { return deviation(e) <= 4; }
   bool within_bias(std::size_t e) const { return difference(e) <= bias * scale(e); }
   /// What a bias is a share of.
-  double scale(std::size_t e) const;
+  double scale(std::size_t e) const { return correlations ? 1 : std::abs(reference.value[e]); }
 
   /// Differences, combined errors and how many are within errors or bias, of all but those apart.
   /// Sizes are RMS, over the RMS of the reference. Nothing where all are apart.
   struct Whole {
     double difference, error, share_within;
   };
-  std::optional<Whole> whole() const;
+  std::optional<Whole> whole() const {
+    double differences = 0, errors = 0, references = 0;
+    std::size_t entries = 0, within = 0;
+    for (std::size_t e = 0; e < mc.value.size(); ++e) {
+      if (is_apart(e)) continue;
+      differences += std::norm(mc.value[e] - reference.value[e]);
+      errors += error(e) * error(e);
+      references += std::norm(reference.value[e]);
+      within += within_errors(e) || within_bias(e) ? 1 : 0;
+      ++entries;
+    }
+    if (entries == 0 || references == 0) return std::nullopt;
+    return Whole{std::sqrt(differences / references), std::sqrt(errors / references),
+                 static_cast<double>(within) / static_cast<double>(entries)};
+  }
 };
 
 /// How the rows of a printed comparison begin.
@@ -70,45 +96,6 @@ struct RowNames {
 struct Agreement {
   std::size_t in_errors = 0, in_bias = 0, apart = 0;
 };
-
-double Comparison::error(std::size_t e) const {
-  const double largest = std::max(std::abs(reference.value[e]), std::abs(mc.value[e]));
-  return std::hypot(reference.error[e], mc.error[e], 1e-13 * largest);
-}
-
-double Comparison::difference(std::size_t e) const {
-  return std::abs(mc.value[e] - reference.value[e]);
-}
-
-double Comparison::deviation(std::size_t e) const {
-  return difference(e) == 0 ? 0 : difference(e) / error(e);
-}
-
-std::vector<double> Comparison::deviations() const {
-  std::vector<double> all;
-  for (std::size_t e = 0; e < mc.value.size(); ++e) all.push_back(deviation(e));
-  return all;
-}
-
-double Comparison::scale(std::size_t e) const {
-  return correlations ? 1 : std::abs(reference.value[e]);
-}
-
-std::optional<Comparison::Whole> Comparison::whole() const {
-  double differences = 0, errors = 0, references = 0;
-  std::size_t entries = 0, within = 0;
-  for (std::size_t e = 0; e < mc.value.size(); ++e) {
-    if (is_apart(e)) continue;
-    differences += std::norm(mc.value[e] - reference.value[e]);
-    errors += error(e) * error(e);
-    references += std::norm(reference.value[e]);
-    within += within_errors(e) || within_bias(e) ? 1 : 0;
-    ++entries;
-  }
-  if (entries == 0 || references == 0) return std::nullopt;
-  return Whole{std::sqrt(differences / references), std::sqrt(errors / references),
-               static_cast<double>(within) / static_cast<double>(entries)};
-}
 
 void print_row(const Comparison& comparison, std::size_t e, const RowNames& names) {
   const double scale = std::max(comparison.scale(e), 1e-300);
