@@ -28,21 +28,6 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// Scene files: one flat list of `key = value` lines of TOML. CLI11's own reader, behind
-/// checks for what that reader takes without a word: lists that are not closed, tables, keys that
-/// are given twice or without a value, stray text. It is given one key at a time, lists on one
-/// line.
-class SceneFile : public CLI::ConfigTOML {
- public:
-  SceneFile();
-
-  /// Throws InputError naming the line.
-  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override;
-
- private:
-  CLI::ConfigItem item(const std::string& statement) const;
-};
-
 /// Appends a line of a file less its comment.
 void append(const std::string& line, std::string& statement, bool& in_list) {
   char quote = '\0';
@@ -69,49 +54,58 @@ std::string content(std::string text) {
   return text;
 }
 
-SceneFile::SceneFile() {
-  comment('\n');  // CLI11 would cut a text in quotes at its #
-}
-
-CLI::ConfigItem SceneFile::item(const std::string& statement) const {
-  std::istringstream input(statement);
-  const auto read = CLI::ConfigTOML::from_config(input);
-  const bool one = read.size() == 1 && std::isalpha(static_cast<unsigned char>(read[0].name[0]));
-  if (!one || content(read[0].name + CLI::detail::join(read[0].inputs, "")) != content(statement))
-    throw InputError("expected key = value or key = [a, b], without [tables]");
-  const auto& values = read[0].inputs;
-  if (values.empty() || std::find(values.begin(), values.end(), "") != values.end() ||
-      (values.size() > 1 && statement.find('[') == std::string::npos))
-    throw InputError(read[0].name + ": must have one value or a list [a, b] of values");
-  return read[0];
-}
-
-std::vector<CLI::ConfigItem> SceneFile::from_config(std::istream& input) const {
-  std::string text{std::istreambuf_iterator<char>(input), std::istreambuf_iterator<char>()};
-  const auto is_binary = [](unsigned char c) { return std::iscntrl(c) && !std::isspace(c); };
-  if (std::any_of(text.begin(), text.end(), is_binary)) throw InputError("not a text file");
-  if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark
-
-  std::vector<CLI::ConfigItem> read;
-  std::set<std::string> names;
-  std::istringstream lines(text);
-  std::string line, statement;
-  bool in_list = false;
-  int number = 0;
-  try {
-    while (++number, std::getline(lines, line)) {
-      append(line, statement, in_list);
-      if (in_list || CLI::detail::trim(statement).empty()) continue;
-      read.push_back(item(std::exchange(statement, "")));
-      const std::string& name = read.back().name;
-      if (!names.insert(name).second) throw InputError(name + " is given twice");
-    }
-    if (in_list) throw InputError("the end comes before a list is closed by ]");
-  } catch (const InputError& error) {
-    throw InputError("line " + std::to_string(number) + ": " + error.what());
+/// Scene files: one flat list of `key = value` lines of TOML. CLI11's own reader, behind
+/// checks for what that reader takes without a word: lists that are not closed, tables, keys that
+/// are given twice or without a value, stray text. It is given one key at a time, lists on one
+/// line.
+class SceneFile : public CLI::ConfigTOML {
+ public:
+  SceneFile() {
+    comment('\n');  // CLI11 would cut a text in quotes at its #
   }
-  return read;
-}
+
+  /// Throws InputError naming the line.
+  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
+    std::string text{std::istreambuf_iterator<char>(input), std::istreambuf_iterator<char>()};
+    const auto is_binary = [](unsigned char c) { return std::iscntrl(c) && !std::isspace(c); };
+    if (std::any_of(text.begin(), text.end(), is_binary)) throw InputError("not a text file");
+    if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark
+
+    std::vector<CLI::ConfigItem> read;
+    std::set<std::string> names;
+    std::istringstream lines(text);
+    std::string line, statement;
+    bool in_list = false;
+    int number = 0;
+    try {
+      while (++number, std::getline(lines, line)) {
+        append(line, statement, in_list);
+        if (in_list || CLI::detail::trim(statement).empty()) continue;
+        read.push_back(item(std::exchange(statement, "")));
+        const std::string& name = read.back().name;
+        if (!names.insert(name).second) throw InputError(name + " is given twice");
+      }
+      if (in_list) throw InputError("the end comes before a list is closed by ]");
+    } catch (const InputError& error) {
+      throw InputError("line " + std::to_string(number) + ": " + error.what());
+    }
+    return read;
+  }
+
+ private:
+  CLI::ConfigItem item(const std::string& statement) const {
+    std::istringstream input(statement);
+    const auto read = CLI::ConfigTOML::from_config(input);
+    const bool one = read.size() == 1 && std::isalpha(static_cast<unsigned char>(read[0].name[0]));
+    if (!one || content(read[0].name + CLI::detail::join(read[0].inputs, "")) != content(statement))
+      throw InputError("expected key = value or key = [a, b], without [tables]");
+    const auto& values = read[0].inputs;
+    if (values.empty() || std::find(values.begin(), values.end(), "") != values.end() ||
+        (values.size() > 1 && statement.find('[') == std::string::npos))
+      throw InputError(read[0].name + ": must have one value or a list [a, b] of values");
+    return read[0];
+  }
+};
 
 const std::map<std::string, double> sizes = {{"nm", 1e-9}, {"um", 1e-6}, {"mm", 1e-3},
                                              {"cm", 1e-2}, {"m", 1},     {"km", 1e3}};

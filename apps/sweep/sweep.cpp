@@ -29,11 +29,30 @@ namespace {
 class SweepWork {
  public:
   /// The runs of this share. store: nullptr of ranks that only compute.
-  SweepWork(const Sweep& sweep, PointStore* store);
+  SweepWork(const Sweep& sweep, PointStore* store)
+      : sweep_(sweep), store_(store), runs_(sweep.runs(), sweep.share().value_or(SweepShare{})) {}
 
-  RunList list();
+  RunList list() {
+    return {.count = runs_.size(),
+            .open = [this](std::size_t number) { return open(runs_[number]); },
+            .ended = [this](std::size_t number, StopReason) { ended(runs_[number]); },
+            .checkpoint = [this](std::size_t number) { save(runs_[number]); },
+            .job =
+                [this](std::size_t number) {
+                  // what is planned may look at what it is planned of
+                  const auto run = std::make_shared<const SweepRun>(sweep_.open(runs_[number]));
+                  BatchJob job = run->batches;
+                  job.run = [run](std::uint64_t batch, std::span<Complex> sums) {
+                    run->batches.run(batch, sums);
+                  };
+                  return job;
+                }};
+  }
+
   /// After the pool has stopped.
-  void save_unfinished();
+  void save_unfinished() {
+    for (const auto& [number, open] : open_) save(number);
+  }
 
  private:
   struct Open {
@@ -42,10 +61,43 @@ class SweepWork {
     std::string started;
   };
 
-  std::optional<OpenRun> open(std::size_t run);
-  void ended(std::size_t run);
-  void save(std::size_t run);
-  Open& find(std::size_t run);
+  std::optional<OpenRun> open(std::size_t number) {
+    if (store_->has(number)) return std::nullopt;
+    const std::string started = utc_now();
+    auto open = std::make_unique<Open>(Open{sweep_.open(number), {}, started});
+    open->state = store_->unfinished(number, open->run.batches.size);
+    OpenRun run{open->run.batches, open->run.stop, &open->state};
+    const std::lock_guard lock(mutex_);
+    open_[number] = std::move(open);
+    return run;
+  }
+
+  void ended(std::size_t number) {
+    const auto& [run, state, started] = find(number);
+    FinishedPoint point{.plan = run.plan,
+                        .started = started,
+                        .samples = state.sums.total_samples(),
+                        .cpu_s = state.cpu_s,
+                        .wall_s = state.wall_s,
+                        .relative_error = state.trace.relative_error.back(),
+                        .result = {}};
+    point.reached = !run.stop.target_error || point.relative_error <= *run.stop.target_error;
+    ResultFile collecting(point.result);
+    run.write(collecting, state);
+    store_->add(number, point);
+    const std::lock_guard lock(mutex_);
+    open_.erase(number);
+  }
+
+  void save(std::size_t number) {
+    const RunState& state = find(number).state;
+    if (state.sums.batches() > 0) store_->save_unfinished(number, state);
+  }
+
+  Open& find(std::size_t number) {
+    const std::lock_guard lock(mutex_);
+    return *open_.at(number);
+  }
 
   const Sweep& sweep_;
   PointStore* store_;
@@ -54,87 +106,7 @@ class SweepWork {
   std::map<std::size_t, std::unique_ptr<Open>> open_;
 };
 
-SweepWork::SweepWork(const Sweep& sweep, PointStore* store)
-    : sweep_(sweep), store_(store), runs_(sweep.runs(), sweep.share().value_or(SweepShare{})) {}
-
-RunList SweepWork::list() {
-  return {.count = runs_.size(),
-          .open = [this](std::size_t number) { return open(runs_[number]); },
-          .ended = [this](std::size_t number, StopReason) { ended(runs_[number]); },
-          .checkpoint = [this](std::size_t number) { save(runs_[number]); },
-          .job =
-              [this](std::size_t number) {
-                // what is planned may look at what it is planned of
-                const auto run = std::make_shared<const SweepRun>(sweep_.open(runs_[number]));
-                BatchJob job = run->batches;
-                job.run = [run](std::uint64_t batch, std::span<Complex> sums) {
-                  run->batches.run(batch, sums);
-                };
-                return job;
-              }};
-}
-
-std::optional<OpenRun> SweepWork::open(std::size_t number) {
-  if (store_->has(number)) return std::nullopt;
-  const std::string started = utc_now();
-  auto open = std::make_unique<Open>(Open{sweep_.open(number), {}, started});
-  open->state = store_->unfinished(number, open->run.batches.size);
-  OpenRun run{open->run.batches, open->run.stop, &open->state};
-  const std::lock_guard lock(mutex_);
-  open_[number] = std::move(open);
-  return run;
-}
-
-SweepWork::Open& SweepWork::find(std::size_t number) {
-  const std::lock_guard lock(mutex_);
-  return *open_.at(number);
-}
-
-void SweepWork::ended(std::size_t number) {
-  const auto& [run, state, started] = find(number);
-  FinishedPoint point{.plan = run.plan,
-                      .started = started,
-                      .samples = state.sums.total_samples(),
-                      .cpu_s = state.cpu_s,
-                      .wall_s = state.wall_s,
-                      .relative_error = state.trace.relative_error.back(),
-                      .result = {}};
-  point.reached = !run.stop.target_error || point.relative_error <= *run.stop.target_error;
-  ResultFile collecting(point.result);
-  run.write(collecting, state);
-  store_->add(number, point);
-  const std::lock_guard lock(mutex_);
-  open_.erase(number);
-}
-
-void SweepWork::save(std::size_t number) {
-  const RunState& state = find(number).state;
-  if (state.sums.batches() > 0) store_->save_unfinished(number, state);
-}
-
-void SweepWork::save_unfinished() {
-  for (const auto& [number, open] : open_) save(number);
-}
-
 namespace fs = std::filesystem;
-
-/// Each plan once, if there are not too many.
-class Plans {
- public:
-  void add(const std::string& plan) {
-    plans_.insert(plan);
-    constexpr std::size_t most = 16;
-    has_more_ = has_more_ || plans_.size() > most;
-    if (plans_.size() > most) plans_.erase(std::prev(plans_.end()));
-  }
-  std::string text() const {
-    return joined({plans_.begin(), plans_.end()}, "\n") + (has_more_ ? "\nand others" : "");
-  }
-
- private:
-  std::set<std::string> plans_;
-  bool has_more_ = false;
-};
 
 bool is_whole(const Sweep& sweep, const PointStore& store) {
   return store.finished() == sweep.runs();
@@ -151,15 +123,19 @@ Provenance made_of(const Sweep& sweep, const PointStore& store, double wall_s) {
   made.identity = sweep.identity();
   made.wall_s = wall_s;
   made.converged = true;
-  Plans plans;
+  std::set<std::string> plans;  // each once, if there are not too many
+  bool more = false;
   store.for_each([&](std::size_t, const FinishedPoint& point) {
     made.converged = made.converged && point.reached;
     made.started = std::min(made.started, point.started);
     made.cpu_s += point.cpu_s;
     made.samples += point.samples;
-    plans.add(point.plan);
+    plans.insert(point.plan);
+    if (plans.size() <= 16) return;
+    plans.erase(std::prev(plans.end()));
+    more = true;
   });
-  made.plan = plans.text();
+  made.plan = joined({plans.begin(), plans.end()}, "\n") + (more ? "\nand others" : "");
   return made;
 }
 

@@ -196,9 +196,6 @@ double all_pairs(double pairs) {
 
 }  // namespace cost
 
-HelmholtzSum::HelmholtzSum(double k, std::span<const Vec2> points, double tolerance)
-    : HelmholtzSum(k, points, points, tolerance) {}
-
 HelmholtzSum::HelmholtzSum(double k, std::span<const Vec2> sources, std::span<const Vec2> targets,
                            double tolerance)
     : k_(k), sources_(sources.begin(), sources.end()), targets_(targets.begin(), targets.end()) {

@@ -80,7 +80,8 @@ double all_pairs(double pairs);
 class HelmholtzSum {
  public:
   /// Sources and targets are the same points.
-  HelmholtzSum(double k, std::span<const Vec2> points, double tolerance);
+  HelmholtzSum(double k, std::span<const Vec2> points, double tolerance)
+      : HelmholtzSum(k, points, points, tolerance) {}
   HelmholtzSum(double k, std::span<const Vec2> sources, std::span<const Vec2> targets,
                double tolerance);
 
