@@ -22,9 +22,9 @@ PlannedExperiment OneShot::plan() const {
     ResultFile collecting(*made);
     if (!make(collecting, false)) throw Interrupted{};
   };
-  return {.plan = "at once", .batches = job, .write = [made](ResultFile& file, const GroupedSums&, bool) {
-            put(file, *made);
-          }};
+  return {.plan = "at once",
+          .batches = job,
+          .write = [made](ResultFile& file, const GroupedSums&, bool) { put(file, *made); }};
 }
 
 int OneShot::run_alone(Session& session, const std::string&) const {

@@ -268,8 +268,7 @@ class FastDirect::Builder {
       }
       for (std::size_t unknown : active_[other]) {
         const SortedDisk& disk = disks_[system_.body_of(unknown)];
-        if (hull.distance(disk.centre) - disk.radius < distance)
-          found.push_back(unknown);
+        if (hull.distance(disk.centre) - disk.radius < distance) found.push_back(unknown);
       }
     }
     return found;
