@@ -7,12 +7,15 @@
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <string_view>
 #include <system_error>
 #include <thread>
+#include <unistd.h>
 
-#include "apps/blas_kernel.h"
 #include "apps/command/subcommands.h"
 #include "core/error.h"
+#include "core/numbers/address_space.h"
+#include "core/numbers/blas.h"
 #include "core/result/version.h"
 #include "core/run/interrupt.h"
 #include "core/run/ranks.h"
@@ -21,6 +24,36 @@ namespace {
 
 using namespace flatspeckle;
 using namespace flatspeckle::apps;
+
+/// nullptr: as it is.
+const char* better_kernel() {
+  constexpr std::string_view oldest = "Prescott";
+  if (openblas_get_corename() != oldest) return nullptr;
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+    return "SkylakeX";
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return "Haswell";
+#endif
+  return nullptr;
+}
+
+/// Whether it changed: not where the variable is set already, or to nullptr.
+bool set(const char* variable, const char* value) {
+  return value != nullptr && std::getenv(variable) == nullptr && ::setenv(variable, value, 0) == 0;
+}
+
+/// OpenBLAS picks its kernels while it is loaded, by the processors that were known when it was
+/// made; on younger ones it falls back on its oldest, which take two to three times as long. There
+/// this starts the program once more, with the environment variable OPENBLAS_CORETYPE set by what
+/// the processor can do. So it does with OPENBLAS_NUM_THREADS = 1 where the address space is
+/// limited (ulimit -v): the threads that OpenBLAS starts wait for ever where there is none for
+/// their buffers. Variables that are set stay.
+void prepare_blas(char** argv) {
+  const bool kernel = set("OPENBLAS_CORETYPE", better_kernel());
+  const bool threads = set("OPENBLAS_NUM_THREADS", address_space_is_limited() ? "1" : nullptr);
+  if (kernel || threads) ::execv("/proc/self/exe", argv);  // does not return, unless it fails
+}
 
 void print_usage() {
   std::puts(

@@ -2,7 +2,7 @@
 
 #include "apps/command/subcommands.h"
 #include "apps/experiments/experiment_sweep.h"
-#include "apps/sweep/run_sweep.h"
+#include "apps/sweep/sweep.h"
 #include "core/error.h"
 #include "core/result/result_reader.h"
 
@@ -39,7 +39,9 @@ int merge_folders(const Subcommand& command, MergeKeys& values) {
   keys.read(values.folders);
   if (!command.settle()) return ExitStatus::done;
   if (values.folders.empty()) values.folders = {shards_of(out)};
-  const auto sweep_of = [](const std::string& config) { return make_sweep(value_in("of", config)); };
+  const auto sweep_of = [](const std::string& config) {
+    return make_sweep(value_in("of", config));
+  };
   return merge_sweep(sweep_of, values.folders, out, values.partial, command.text());
 }
 

@@ -1,25 +1,172 @@
 #include "apps/command/command_line.h"
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <iterator>
 #include <map>
+#include <optional>
+#include <regex>
 #include <set>
 #include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "apps/command/key_lists.h"
-#include "apps/command/scene_file.h"
 #include "apps/command/subcommands.h"
-#include "apps/command/written_lengths.h"
 #include "core/error.h"
+#include "core/keys/key.h"
 #include "core/keys/number_text.h"
 #include "core/keys/written_number.h"
 
 namespace flatspeckle::apps {
 
 namespace {
+
+/// Appends a line of a file less its comment.
+void append(const std::string& line, std::string& statement, bool& in_list) {
+  char quote = '\0';
+  for (const char c : line) {
+    if (quote == '\0' && c == '#') break;
+    if (quote != '\0' || c == '"' || c == '\'') {
+      quote = quote == '\0' ? c : quote == c ? '\0' : quote;
+    } else if (c == '[' || c == ']') {
+      if (in_list == (c == '[')) throw InputError("brackets do not match; a list is [a, b]");
+      in_list = !in_list;
+    } else if (c == ',') {
+      CLI::detail::rtrim(statement);  // CLI11 would read "1 ," as the text "1 "
+    }
+    statement += c;
+  }
+  if (quote != '\0') throw InputError(std::string("a text is not closed by ") + quote);
+  statement += ' ';
+}
+
+/// Names and values less all that stands between them.
+std::string content(std::string text) {
+  constexpr std::string_view between = " \t\r\f\v\"'[],=";
+  std::erase_if(text, [&](char c) { return between.find(c) != std::string_view::npos; });
+  return text;
+}
+
+/// Scene files: one flat list of `key = value` lines of TOML. CLI11's own reader, behind
+/// checks for what that reader takes without a word: lists that are not closed, tables, keys that
+/// are given twice or without a value, stray text. It is given one key at a time, lists on one
+/// line.
+class SceneFile : public CLI::ConfigTOML {
+ public:
+  SceneFile() {
+    comment('\n');  // CLI11 would cut a text in quotes at its #
+  }
+
+  /// Throws InputError naming the line.
+  std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
+    std::string text{std::istreambuf_iterator<char>(input), std::istreambuf_iterator<char>()};
+    const auto is_binary = [](unsigned char c) { return std::iscntrl(c) && !std::isspace(c); };
+    if (std::any_of(text.begin(), text.end(), is_binary)) throw InputError("not a text file");
+    if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark
+
+    std::vector<CLI::ConfigItem> read;
+    std::set<std::string> names;
+    std::istringstream lines(text);
+    std::string line, statement;
+    bool in_list = false;
+    int number = 0;
+    try {
+      while (++number, std::getline(lines, line)) {
+        append(line, statement, in_list);
+        if (in_list || CLI::detail::trim(statement).empty()) continue;
+        read.push_back(item(std::exchange(statement, "")));
+        const std::string& name = read.back().name;
+        if (!names.insert(name).second) throw InputError(name + " is given twice");
+      }
+      if (in_list) throw InputError("the end comes before a list is closed by ]");
+    } catch (const InputError& error) {
+      throw InputError("line " + std::to_string(number) + ": " + error.what());
+    }
+    return read;
+  }
+
+ private:
+  CLI::ConfigItem item(const std::string& statement) const {
+    std::istringstream input(statement);
+    const auto read = CLI::ConfigTOML::from_config(input);
+    const bool one = read.size() == 1 && std::isalpha(static_cast<unsigned char>(read[0].name[0]));
+    if (!one || content(read[0].name + CLI::detail::join(read[0].inputs, "")) != content(statement))
+      throw InputError("expected key = value or key = [a, b], without [tables]");
+    const auto& values = read[0].inputs;
+    if (values.empty() || std::find(values.begin(), values.end(), "") != values.end() ||
+        (values.size() > 1 && statement.find('[') == std::string::npos))
+      throw InputError(read[0].name + ": must have one value or a list [a, b] of values");
+    return read[0];
+  }
+};
+
+const std::map<std::string, double> sizes = {{"nm", 1e-9}, {"um", 1e-6}, {"mm", 1e-3},
+                                             {"cm", 1e-2}, {"m", 1},     {"km", 1e3}};
+
+/// A number, perhaps a slash, a unit, perhaps ^2; no letter behind it.
+const std::regex& length_form() {
+  static const std::regex form(
+      R"(((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(/?)\s*(nm|um|mm|cm|km|m)(\^2)?(?![A-Za-z0-9^]))");
+  return form;
+}
+
+/// Lengths, inverses and inverse squares: 1, -1, -2.
+int power_of(const std::smatch& found) {
+  const bool inverse = found.length(2) > 0, square = found.length(4) > 0;
+  return (inverse ? -1 : 1) * (square ? 2 : 1);
+}
+
+/// Places and what stands with them in a row, "x y z power", may have either.
+bool may_have(const Key& key, int power) {
+  const std::string& unit = key.unit();
+  const bool row =
+      unit.empty() && key.is_list() && key.accepted().find("numbers") != std::string::npos;
+  if (row) return power == 1 || power == -1;
+  if (unit == "1/length or length") return power == 1 || power == -1;
+  return (unit == "length" && power == 1) || (unit == "1/length" && power == -1) ||
+         (unit == "1/length^2" && power == -2);
+}
+
+/// To 15 digits, which hide what the powers of ten have rounded.
+std::string to_15_digits(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.15g", value);
+  return text;
+}
+
+/// Metres of "um", "0.5mm" or "1e-6"; no value if the text is anything else.
+std::optional<double> metres_of(const std::string& text) {
+  if (const auto number = read_number(text)) return number;
+  if (const auto size = sizes.find(text); size != sizes.end()) return size->second;
+  std::smatch found;
+  if (!std::regex_match(text, found, length_form()) || power_of(found) != 1) return std::nullopt;
+  return *read_number(found[1]) * sizes.at(found[3]);
+}
+
+/// What is given of a key with "532nm" as numbers of the scene's unit of length, which has so many
+/// metres; likewise "10/mm" and "0.05/um^2" of keys whose unit is the inverse of a length or of its
+/// square. Other texts as they are. Throws InputError where the unit of length is not given.
+std::string in_unit_of_length(const Key& key, const std::string& text,
+                              const std::optional<double>& metres) {
+  std::string numbers, rest = text;
+  for (std::smatch found; std::regex_search(rest, found, length_form()); rest = found.suffix()) {
+    const int power = power_of(found);
+    if (!may_have(key, power)) return text;
+    if (!metres)
+      throw InputError(key.name(), text,
+                       "has a unit; say too what lengths without one are in: length_unit = um");
+    const double size = std::pow(sizes.at(found[3]) / *metres, power);
+    numbers += found.prefix().str() + to_15_digits(*read_number(found[1]) * size);
+  }
+  return numbers + rest;
+}
 
 constexpr const char* length_unit_key = "length_unit";
 /// Keys whose texts are values of others: depth=10um:1mm.

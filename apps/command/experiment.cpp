@@ -7,9 +7,8 @@ namespace flatspeckle::apps {
 
 int Experiment::run_alone(Session& session, const std::string& label) const {
   const PlannedExperiment planned = plan();
-  const auto& write = planned.write_and_tell ? planned.write_and_tell : planned.write;
   return session.run(planned.plan, {{"", label, planned.batches, stop_}}, inputs_,
-                     [&](ResultFile& file) { write(file, session.sums("")); });
+                     [&](ResultFile& file) { planned.write(file, session.sums(""), true); });
 }
 
 PlannedExperiment OneShot::plan() const {
@@ -23,9 +22,9 @@ PlannedExperiment OneShot::plan() const {
     ResultFile collecting(*made);
     if (!make(collecting, false)) throw Interrupted{};
   };
-  return {.plan = "at once", .batches = job, .write = [made](ResultFile& file, const GroupedSums&) {
-            put(file, *made);
-          }};
+  return {.plan = "at once",
+          .batches = job,
+          .write = [made](ResultFile& file, const GroupedSums&, bool) { put(file, *made); }};
 }
 
 int OneShot::run_alone(Session& session, const std::string&) const {

@@ -18,11 +18,10 @@ namespace flatspeckle::apps {
 struct PlannedExperiment {
   std::string plan;  ///< how the numbers are found
   BatchJob batches;
-  /// The result of all batches, all that the file has but provenance, traces and states.
-  std::function<void(ResultFile&, const GroupedSums&)> write;
-  /// The same with what a run of its own also tells: tables on standard output, notes, and counts
-  /// of the work that depend on threads and interruptions. Empty: nothing.
-  std::function<void(ResultFile&, const GroupedSums&)> write_and_tell = {};
+  /// The result of all batches, all that the file has but provenance, traces and states. tells:
+  /// also what a run of its own tells, tables on standard output, notes, and counts of the work
+  /// that depend on threads and interruptions.
+  std::function<void(ResultFile&, const GroupedSums&, bool tells)> write;
 };
 
 /// What a subcommand makes of its keys: one result. An object is one run of it, which a subcommand

@@ -2,13 +2,9 @@
 
 #include <algorithm>
 
-#include "apps/experiments/at_point.h"
-#include "apps/experiments/stacked_result.h"
-#include "apps/results/datasets.h"
 #include "apps/sweep/curve_sweep.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
-#include "core/result/result_group.h"
 #include "core/result/version.h"
 
 namespace flatspeckle::apps {
@@ -118,7 +114,7 @@ SweepRun ExperimentSweep::open(std::size_t point) const {
   PlannedExperiment planned = plan_at(points_, point, *experiment);
   return {planned.plan, std::move(planned.batches), experiment->stop(),
           [experiment, write = std::move(planned.write)](ResultFile& file, const RunState& state) {
-            write(file, state.sums);
+            write(file, state.sums, false);
           }};
 }
 
@@ -136,14 +132,13 @@ std::string ExperimentSweep::identity() const {
   return text;
 }
 
-void ExperimentSweep::write(ResultFile& file, const PointStore& store) const {
-  ResultGroup(file, stacked_table).attribute("of", of_);
-  write_stacked(file, *this, store);
-}
-
 std::unique_ptr<Sweep> make_sweep(const std::string& of) {
   if (of.empty()) return std::make_unique<CurveSweep>();
   return std::make_unique<ExperimentSweep>(of);
+}
+
+std::unique_ptr<Call> sweep(const std::string& of) {
+  return make_sweep(of);
 }
 
 }  // namespace flatspeckle::apps

@@ -16,13 +16,16 @@ class ExperimentSweep : public Sweep {
   /// Throws InputError for the name of what cannot be swept.
   explicit ExperimentSweep(const std::string& of);
 
-  const std::string& of() const { return of_; }
   /// The row of the key that an axis sets.
   const Key& key(const SweepAxis& axis) const { return *keys().find(key_of(axis)); }
 
   SweepRun open(std::size_t point) const override;
   std::string identity_of_points() const override;
   std::string identity() const override;
+  /// Each dataset with the swept axes in front of its own where all points of a grid are there,
+  /// else with `point` in front, and the costs of each point. What only some points have, or in
+  /// other shapes, is left out and named in an attribute; but marks of rare paths, which are 0
+  /// where there are none.
   void write(ResultFile& file, const PointStore& store) const override;
 
  private:

@@ -1,11 +1,11 @@
-#include "apps/experiments/stacked_result.h"
-
 #include <algorithm>
 #include <functional>
 #include <map>
 #include <utility>
 
+#include "apps/experiments/experiment_sweep.h"
 #include "apps/results/datasets.h"
+#include "apps/sweep/point_store.h"
 #include "core/keys/number_text.h"
 #include "core/result/result_group.h"
 
@@ -26,36 +26,6 @@ const DatasetTable stacked_table{
                     "datasets of some points that others have not, or in another shape"}}};
 
 namespace {
-
-/// Holds what all points of a sweep have in one dataset, the axes of the sweep in front. Values come
-/// point by point, in the order of the points, and are written by whole chunks of some 64 kB: no
-/// more than that is in memory, or one point's.
-class StackedDataset {
- public:
-  using Held = CollectedDataset::Held;
-
-  /// of_point: its axes are those of each point; its values say their kind and number alone.
-  /// grid: the axes of the sweep, with scales; extents: how long they are.
-  StackedDataset(ResultFile& file, const CollectedDataset& of_point, const std::vector<Axis>& grid,
-                 const std::vector<std::size_t>& extents);
-
-  /// Takes the values of the next point.
-  void add(const Held& values);
-  void add(double value) { add(std::vector{value}); }
-  /// The next point has none: 0.
-  void add_none();
-
- private:
-  std::vector<std::size_t> start() const;
-  std::vector<std::size_t> count(const std::vector<std::size_t>& start) const;
-
-  ResultFile& file_;
-  std::string name_;
-  std::vector<std::size_t> extents_, chunk_;
-  std::size_t of_each_;
-  std::size_t points_ = 0, waiting_points_ = 0;  ///< that are written, and that are not yet
-  Held waiting_;
-};
 
 using Extents = std::vector<std::size_t>;
 
@@ -87,59 +57,81 @@ Values values_of(const CollectedDataset::Held& held) {
       held);
 }
 
-StackedDataset::StackedDataset(ResultFile& file, const CollectedDataset& of_point,
-                               const std::vector<Axis>& grid, const Extents& extents)
-    : file_(file),
-      name_(of_point.name),
-      extents_(extents),
-      of_each_(of_point.count()),
-      waiting_(of_point.values) {
-  constexpr std::size_t most_bytes = std::size_t{1} << 16;
-  const std::size_t bytes = std::max<std::size_t>(1, of_each_ * value_bytes(waiting_));
-  chunk_ = chunk_of(extents, std::max<std::size_t>(1, most_bytes / bytes));
-  std::visit([](auto& held) { held.clear(); }, waiting_);
-  std::vector<Axis> axes = grid;
-  axes.insert(axes.end(), of_point.axes.begin(), of_point.axes.end());
-  file.begin_dataset(name_, values_of(waiting_), axes, chunk_, of_point.units, of_point.long_name);
-}
+/// Holds what all points of a sweep have in one dataset, the axes of the sweep in front. Values
+/// come point by point, in the order of the points, and are written by whole chunks of some 64 kB:
+/// no more than that is in memory, or one point's.
+class StackedDataset {
+ public:
+  using Held = CollectedDataset::Held;
 
-void StackedDataset::add(const Held& values) {
-  std::visit(
-      [&]<typename Value>(std::vector<Value>& held) {
-        const auto& own = std::get<std::vector<Value>>(values);
-        held.insert(held.end(), own.begin(), own.end());
-      },
-      waiting_);
-  ++waiting_points_;
-  const Extents from = start(), count = this->count(from);
-  if (waiting_points_ < product(count)) return;
-  file_.write_block(name_, values_of(waiting_), from, count);
-  std::visit([](auto& held) { held.clear(); }, waiting_);
-  points_ += std::exchange(waiting_points_, 0);
-}
+  /// of_point: its axes are those of each point; its values say their kind and number alone.
+  /// grid: the axes of the sweep, with scales; extents: how long they are.
+  StackedDataset(ResultFile& file, const CollectedDataset& of_point, const std::vector<Axis>& grid,
+                 const Extents& extents)
+      : file_(file),
+        name_(of_point.name),
+        extents_(extents),
+        of_each_(of_point.count()),
+        waiting_(of_point.values) {
+    constexpr std::size_t most_bytes = std::size_t{1} << 16;
+    const std::size_t bytes = std::max<std::size_t>(1, of_each_ * value_bytes(waiting_));
+    chunk_ = chunk_of(extents, std::max<std::size_t>(1, most_bytes / bytes));
+    std::visit([](auto& held) { held.clear(); }, waiting_);
+    std::vector<Axis> axes = grid;
+    axes.insert(axes.end(), of_point.axes.begin(), of_point.axes.end());
+    file.begin_dataset(name_, values_of(waiting_), axes, chunk_, of_point.units,
+                       of_point.long_name);
+  }
 
-void StackedDataset::add_none() {
-  Held none = waiting_;
-  std::visit([&](auto& held) { held.assign(of_each_, {}); }, none);
-  add(none);
-}
+  /// Takes the values of the next point.
+  void add(const Held& values) {
+    std::visit(
+        [&]<typename Value>(std::vector<Value>& held) {
+          const auto& own = std::get<std::vector<Value>>(values);
+          held.insert(held.end(), own.begin(), own.end());
+        },
+        waiting_);
+    ++waiting_points_;
+    const Extents from = start(), count = this->count(from);
+    if (waiting_points_ < product(count)) return;
+    file_.write_block(name_, values_of(waiting_), from, count);
+    std::visit([](auto& held) { held.clear(); }, waiting_);
+    points_ += std::exchange(waiting_points_, 0);
+  }
 
-/// The first point that waits.
-Extents StackedDataset::start() const {
-  Extents start(extents_.size());
-  std::size_t rest = points_;
-  for (std::size_t axis = extents_.size(); axis-- > 0; rest /= extents_[axis])
-    start[axis] = rest % extents_[axis];
-  return start;
-}
+  void add(double value) { add(std::vector{value}); }
+  /// The next point has none: 0.
+  void add_none() {
+    Held none = waiting_;
+    std::visit([&](auto& held) { held.assign(of_each_, {}); }, none);
+    add(none);
+  }
 
-/// Of the chunk there, what is not beyond the end.
-Extents StackedDataset::count(const Extents& start) const {
-  Extents count = chunk_;
-  for (std::size_t axis = 0; axis < count.size(); ++axis)
-    count[axis] = std::min(count[axis], extents_[axis] - start[axis]);
-  return count;
-}
+ private:
+  /// The first point that waits.
+  Extents start() const {
+    Extents start(extents_.size());
+    std::size_t rest = points_;
+    for (std::size_t axis = extents_.size(); axis-- > 0; rest /= extents_[axis])
+      start[axis] = rest % extents_[axis];
+    return start;
+  }
+
+  /// Of the chunk there, what is not beyond the end.
+  Extents count(const Extents& start) const {
+    Extents count = chunk_;
+    for (std::size_t axis = 0; axis < count.size(); ++axis)
+      count[axis] = std::min(count[axis], extents_[axis] - start[axis]);
+    return count;
+  }
+
+  ResultFile& file_;
+  std::string name_;
+  std::vector<std::size_t> extents_, chunk_;
+  std::size_t of_each_;
+  std::size_t points_ = 0, waiting_points_ = 0;  ///< that are written, and that are not yet
+  Held waiting_;
+};
 
 bool is_mark(const std::string& name) {
   return name.ends_with("_rare");
@@ -401,8 +393,9 @@ class Stack {
 
 }  // namespace
 
-void write_stacked(ResultFile& file, const ExperimentSweep& sweep, const PointStore& store) {
-  Stack(file, sweep, store).write();
+void ExperimentSweep::write(ResultFile& file, const PointStore& store) const {
+  ResultGroup(file, stacked_table).attribute("of", of_);
+  Stack(file, *this, store).write();
 }
 
 }  // namespace flatspeckle::apps

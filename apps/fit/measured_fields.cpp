@@ -21,12 +21,6 @@ using mc::Curve;
 using mc::Measurement;
 using mc::Observable;
 
-std::vector<double> column_or(const Table& table, const std::string& name, double value) {
-  if (!table.has(name)) return std::vector<double>(table.rows(), value);
-  const auto values = table.column(name);
-  return {values.begin(), values.end()};
-}
-
 struct Nearer {
   bool operator()(double a, double b) const {
     return std::pair(std::abs(a), a) < std::pair(std::abs(b), b);
@@ -163,6 +157,12 @@ Curve correlation_curve(const mc::MovingSpec& medium, const SeenView& seen) {
 }
 
 }  // namespace
+
+std::vector<double> column_or(const Table& table, const std::string& name, double value) {
+  if (!table.has(name)) return std::vector<double>(table.rows(), value);
+  const auto values = table.column(name);
+  return {values.begin(), values.end()};
+}
 
 Measurement measurement_of_fields(const std::string& path, const Table& table,
                                   const mc::MovingSpec& medium) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -13,6 +14,7 @@
 #include "mc/fit/task/correlated_errors.h"
 #include "mc/fit/task/curve_values.h"
 #include "mc/jobs/flux_job.h"
+#include "wave_solver/solutions/ensemble.h"
 
 namespace flatspeckle::apps {
 
@@ -193,19 +195,6 @@ bool tells(const Observed& of, std::size_t entry) {
   return of.observable != Observable::field_correlation || of.place(entry) != 0;
 }
 
-/// Of exact placements: sums of each channel's field, then of each entry's products (C12).
-Estimator placement_covariance(const CovarianceRequest& request) {
-  return [request](double samples, std::span<const Complex> sums) {
-    std::vector<Complex> values;
-    for (std::size_t e = 0; e < request.entries.size(); ++e) {
-      const auto [a, b] = request.entries[e];
-      const Complex products = sums[request.channels.size() + e];
-      values.push_back((products - sums[a] * std::conj(sums[b]) / samples) / (samples - 1));
-    }
-    return values;
-  };
-}
-
 /// Of sums of paths, whose closed part is what is missing in them.
 Estimator path_covariance(const Contents& there) {
   auto closed = sample_mean(there.sums->total_samples(), there.sums->total());
@@ -238,8 +227,9 @@ Estimator estimator_of(const Contents& there, const Curve& curve) {
     return shares;
   }
   const CovarianceRequest request = make_request(curve.scene);
-  const Estimator covariance =
-      there.of_placements ? placement_covariance(request) : path_covariance(there);
+  const Estimator covariance = there.of_placements
+                                   ? std::bind_front(wave::placement_covariance, request)
+                                   : path_covariance(there);
   return [=](double samples, std::span<const Complex> sums) {
     std::vector<Complex> values;
     for (const double value : mc::observed(curve, there.beta, request, covariance(samples, sums)))

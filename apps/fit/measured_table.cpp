@@ -57,12 +57,6 @@ void check_columns(const std::string& path, const Table& table, Observable obser
   }
 }
 
-std::vector<double> column_or(const Table& table, const std::string& name, double value) {
-  if (!table.has(name)) return std::vector<double>(table.rows(), value);
-  const auto values = table.column(name);
-  return {values.begin(), values.end()};
-}
-
 /// To rounding.
 bool is_symmetric(const Eigen::MatrixXd& matrix) {
   double largest = 0, skew = 0;

@@ -33,6 +33,9 @@ mc::Measurement measurement_of_intensities(const std::string& path, const Table&
 mc::Measurement measurement_of_drawn_fields(const std::string& path, const mc::MovingSpec& scene,
                                             const std::vector<Complex>& fields);
 
+/// A column of a table, or `value` in every row where there is none.
+std::vector<double> column_or(const Table& table, const std::string& name, double value);
+
 /// Of errors that must be positive: a diagonal matrix.
 Eigen::MatrixXd independent_errors(const std::string& path, const std::vector<double>& errors);
 

@@ -4,7 +4,7 @@
 #include "apps/results/extras.h"
 #include "apps/results/moments_table.h"
 #include "apps/results/tilt_search.h"
-#include "core/session/identity.h"
+#include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/paths/estimators/reflection_theory.h"
 #include "mc/slab/refinement.h"
@@ -62,7 +62,7 @@ class CovarianceExperiment : public Experiment {
     take_q_depths(keys, q_depths_, spec_);
     choose_tilts(keys, tilt_count_, spec_, method_, run_, seed());
     scene_ = with_dimension(make_scene(keys, spec_), spec_);
-    extended_ = made_estimation(reversed);
+    estimation_ = made_estimation(reversed);
     disregard_unused(keys, spec_, {method_});
     neglected_ = Neglected(*scene_);
     if (method_ != "wave") refuse_absurd(methods_, neglected_);
@@ -77,24 +77,22 @@ class CovarianceExperiment : public Experiment {
   }
 
   PlannedExperiment plan() const override {
-    const auto writer = [this](bool tells) {
-      return [this, tells](ResultFile& file, const GroupedSums& sums) { write(file, sums, tells); };
-    };
-    return {.plan = extended_.estimation.plan,
-            .batches = extended_.estimation.job.batches,
-            .write = writer(false),
-            .write_and_tell = writer(true)};
+    return {.plan = estimation_.plan,
+            .batches = estimation_.job.batches,
+            .write = [this](ResultFile& file, const GroupedSums& sums, bool tells) {
+              write(file, sums, tells);
+            }};
   }
 
  private:
-  ExtendedEstimation made_estimation(mc::ReversedPaths reversed) const {
+  Estimation made_estimation(mc::ReversedPaths reversed) const {
     if (method_ == "mc") return extended_estimation(*scene_, reversed, extras_, seed());
     if (method_ == "wave") return extended_waves(*scene_, extras_, methods_.wave_tolerance, seed());
     return extended_transport(*scene_, reversed, extras_, methods_.tolerance);
   }
 
   void write(ResultFile& file, const GroupedSums& sums, bool tells) const {
-    const FieldJob& job = extended_.estimation.job;
+    const FieldJob& job = estimation_.job;
     const CovarianceRequest& request = scene_->request;
     const FieldMoments moments = field_moments(job, sums);
     if (tells) {
@@ -107,7 +105,7 @@ class CovarianceExperiment : public Experiment {
     const auto moves = mc::write_moments(file, "", job, *scene_, sums, moments);
     if (tells) print_moves(request, moves);
     mc::write_reflection_theory(file, *scene_);
-    if (extended_.write) extended_.write(file, sums);
+    if (estimation_.write) estimation_.write(file, sums);
     if (method_ == "transport") mc::write_numerical(file);
   }
 
@@ -118,7 +116,7 @@ class CovarianceExperiment : public Experiment {
   std::optional<std::int64_t> tilt_count_;
   std::vector<double> q_depths_;
   std::optional<Scene> scene_;
-  ExtendedEstimation extended_;
+  Estimation estimation_;
   Neglected neglected_;
 };
 

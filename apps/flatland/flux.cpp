@@ -5,7 +5,7 @@
 #include "apps/command/experiment.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
-#include "core/session/identity.h"
+#include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/slab/refinement.h"
 #include "mc/slab/slab_flux.h"
@@ -68,13 +68,11 @@ class FluxExperiment : public Experiment {
   }
 
   PlannedExperiment plan() const override {
-    const auto writer = [this](bool tells) {
-      return [this, tells](ResultFile& file, const GroupedSums& sums) { write(file, sums, tells); };
-    };
     return {.plan = (by_mc() ? "mc: " : "transport: ") + job_.plan,
             .batches = job_.batches,
-            .write = writer(false),
-            .write_and_tell = writer(true)};
+            .write = [this](ResultFile& file, const GroupedSums& sums, bool tells) {
+              write(file, sums, tells);
+            }};
   }
 
  private:

@@ -98,15 +98,6 @@ struct Drawing {
   }
 };
 
-Kind chosen_kind(const std::optional<std::string>& word, bool disks) {
-  if (!word) return disks ? Kind::hard_disk : Kind::poisson;
-  for (const Kind kind : {Kind::poisson, Kind::hard_disk, Kind::equilibrium})
-    if (placement_word(kind) == *word && disks != (kind == Kind::poisson)) return kind;
-  throw InputError("placement", *word,
-                   disks ? "disks must not overlap: hard_disk or equilibrium"
-                         : "disks need radii; without them: poisson");
-}
-
 /// Summing to 1.
 std::vector<double> shares(const Keys& keys, const PlaceKeys& values) {
   std::vector<double> shares = keys.read(values.fractions);
@@ -140,7 +131,7 @@ Drawing make_drawing(const Keys& keys, const PlaceKeys& values) {
   drawing.box = {Domain::Kind::box, keys.required(values.width), keys.required(values.depth)};
   const auto& radii = keys.read(values.radii);
   const bool disks = !radii.empty();
-  drawing.kind = chosen_kind(keys.read(values.placement), disks);
+  drawing.kind = placement_kind(keys.read(values.placement), disks);
   keys.read(values.count);
   double mean_area = 0, total = 0;
   const auto share = disks ? shares(keys, values) : std::vector<double>{};

@@ -1,14 +1,19 @@
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <sstream>
+#include <vector>
 
 #include "apps/command/experiment.h"
-#include "apps/results/field_map_output.h"
+#include "apps/flatland/own_places.h"
 #include "apps/results/wavelengths.h"
 #include "core/error.h"
 #include "core/keys/csv.h"
+#include "core/keys/keys.h"
 #include "core/keys/number_text.h"
 #include "core/numbers/blas.h"
 #include "core/result/result_group.h"
@@ -17,16 +22,57 @@
 #include "core/run/stopwatch.h"
 #include "flatland/scene/index_fields.h"
 #include "flatland/scene/scene_datasets.h"
-#include "wave_solver/clusters/cluster_file.h"
 #include "wave_solver/clusters/cluster_solution.h"
 #include "wave_solver/graded/graded_fields.h"
-#include "wave_solver/maps/map_datasets.h"
-#include "wave_solver/solutions/spectrum.h"
+#include "wave_solver/maps/field_map.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::apps {
 
 namespace {
+
+/// The map that solve is asked for.
+struct MapSettings {
+  std::vector<double> map;               ///< x0, x1, z0, z1; empty: none
+  std::vector<std::int64_t> map_pixels;  ///< nx, nz; empty: ten per wavelength
+};
+
+std::size_t pixels_along(const MapSettings& settings, std::size_t side, double extent,
+                         double wavelength) {
+  constexpr double per_wavelength = 10, most = 100'000;
+  if (!settings.map_pixels.empty()) return static_cast<std::size_t>(settings.map_pixels[side]);
+  const double wanted = std::max(1.0, std::round(per_wavelength * extent / wavelength));
+  if (wanted > most)
+    throw InputError("map", extent, "is too wide for ten pixels per wavelength: give map_pixels");
+  return static_cast<std::size_t>(wanted);
+}
+
+void add_map_keys(Keys& keys, MapSettings& settings) {
+  keys.group("Map");
+  keys.add("map", settings.map, "x0 x1 z0 z1: the total field on a grid over this rectangle")
+      .exactly(4, "x0 x1 z0 z1 with x0 < x1 and z0 < z1")
+      .unit("length");
+  keys.add("map_pixels", settings.map_pixels,
+           "nx nz: pixels of the map (default: ten per wavelength)")
+      .exactly(2, "two whole numbers nx nz from 1 to 100000")
+      .from(1, 100'000)
+      .only_of("a map");
+}
+
+/// None where no map is asked for. Throws InputError.
+std::optional<wave::MapGrid> map_grid(const Keys& keys, const MapSettings& settings,
+                                      double wavelength) {
+  const auto& map = keys.read(settings.map);
+  if (map.empty()) return std::nullopt;
+  if (!(map[0] < map[1] && map[2] < map[3]) || !std::isfinite(map[1] - map[0]) ||
+      !std::isfinite(map[3] - map[2]))
+    throw InputError("map", number_text(map), "must be x0 x1 z0 z1 with x0 < x1 and z0 < z1");
+  keys.read(settings.map_pixels);
+  return wave::MapGrid{{map[0], map[2]},
+                       {map[1], map[3]},
+                       pixels_along(settings, 0, map[1] - map[0], wavelength),
+                       pixels_along(settings, 1, map[3] - map[2], wavelength)};
+}
 
 /// What the user asks.
 struct SolveKeys {
@@ -74,11 +120,6 @@ void add_keys(Keys& keys, SolveKeys& values) {
   keys.add("cluster", values.cluster,
            "Result with a T-matrix: its cluster stands, as one object, at each of the places")
       .file();
-}
-
-bool is_placement_rule(const SceneSpec& spec) {
-  return !spec.placement ||
-         std::ranges::find(placement_words, *spec.placement) != placement_words.end();
 }
 
 [[noreturn]] void refuse_bulk(const SceneSpec& spec) {
@@ -145,7 +186,7 @@ Sensors sensors_of(const Keys& keys, const SceneSpec& spec) {
 /// Columns of a placement's file and the key `index` say the same thing as the table.
 void require_index_from_table(const SceneSpec& spec, const Placement& placement) {
   if (spec.index) throw InputError("index_table, index: give one of them");
-  if (spec.placement && !is_placement_rule(spec) && read_csv(*spec.placement).has("index_re"))
+  if (has_own_places(spec) && read_csv(*spec.placement).has("index_re"))
     throw InputError("index_table: " + *spec.placement + " has indices of its own (index_re)");
   if (std::ranges::none_of(placement, &Scatterer::is_penetrable, &PlacedScatterer::scatterer))
     throw InputError("index_table: is of tm and te cylinders");
@@ -194,11 +235,7 @@ std::string plan_of(const wave::Spectrum& spectrum, const WavelengthList& wavele
 
 /// Where scatterers of a file lie: the corners of the box around them.
 std::vector<Vec2> corners_around(const Placement& placement) {
-  Vec2 low = placement.front().position, high = low;
-  for (const auto& [x, scatterer] : placement) {
-    low = {std::min(low.x, x.x), std::min(low.z, x.z)};
-    high = {std::max(high.x, x.x), std::max(high.z, x.z)};
-  }
+  const auto [low, high] = bounds_of(placement, &PlacedScatterer::position);
   return {low, {high.x, low.z}, {low.x, high.z}, high};
 }
 
@@ -238,7 +275,7 @@ class SolveExperiment : public OneShot {
  private:
   /// Copies of a cluster in place of scatterers: what it is comes from its file.
   void read_cluster(const Keys& keys) {
-    if (is_placement_rule(values_.spec))
+    if (!has_own_places(values_.spec))
       throw InputError("placement", values_.spec.placement.value_or("none"),
                        "must be a CSV with columns x, z [, angle], of the cluster's copies");
     places_ = wave::read_places(*keys.read(values_.spec.placement));
@@ -255,7 +292,7 @@ class SolveExperiment : public OneShot {
       grid_ = map_grid(keys, values_.map, keys.read(spec.wavelength));
       keys.read(values_.t_matrix_gap);
     }
-    if (is_placement_rule(spec)) scene_ = make_scene(keys, spec);
+    if (!has_own_places(spec)) scene_ = make_scene(keys, spec);
     placement_ = scene_ ? drawn_placement(spec, *scene_, seed()) : placement_of_file(keys, spec);
     for (const Vec2& sensor : sensors_.points) require_outside(placement_, sensor);
     if (wavelengths_->index) require_index_from_table(spec, placement_);
@@ -263,7 +300,7 @@ class SolveExperiment : public OneShot {
 
   void read_graded(const Keys& keys) {
     graded_.emplace();
-    if (is_placement_rule(values_.spec))
+    if (!has_own_places(values_.spec))
       read_drawn_graded(keys);
     else
       read_graded_file(keys);

@@ -1,16 +1,22 @@
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "apps/command/subcommands.h"
 #include "apps/flatland/own_places.h"
-#include "apps/results/comparison.h"
 #include "apps/results/datasets.h"
 #include "apps/results/extras.h"
 #include "apps/results/moments_table.h"
 #include "apps/results/tilt_search.h"
 #include "core/error.h"
+#include "core/numbers/statistics.h"
 #include "core/result/result_group.h"
-#include "core/session/identity.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/paths/dynamics/frequency_shifts.h"
@@ -21,6 +27,108 @@
 #include "mc/theory/moments_datasets.h"
 
 namespace flatspeckle::apps {
+
+namespace {
+
+/// Monte Carlo held against a reference, value by value.
+struct Comparison {
+  std::string name;  ///< of the reference
+  Estimate reference, mc;
+  double bias = 0;            ///< of what differs without chance
+  bool correlations = false;  ///< the bias is a share of 1, not of the value
+  /// 1 where an entry is not to agree, for a reason that is known; empty: nowhere.
+  std::vector<std::uint64_t> apart = {};
+
+  /// Not below what rounding leaves.
+  double error(std::size_t e) const {
+    const double largest = std::max(std::abs(reference.value[e]), std::abs(mc.value[e]));
+    return std::hypot(reference.error[e], mc.error[e], 1e-13 * largest);
+  }
+
+  double difference(std::size_t e) const { return std::abs(mc.value[e] - reference.value[e]); }
+
+  /// In combined standard errors.
+  double deviation(std::size_t e) const {
+    return difference(e) == 0 ? 0 : difference(e) / error(e);
+  }
+
+  std::vector<double> deviations() const {
+    std::vector<double> all;
+    for (std::size_t e = 0; e < mc.value.size(); ++e) all.push_back(deviation(e));
+    return all;
+  }
+
+  bool is_apart(std::size_t e) const { return !apart.empty() && apart[e] != 0; }
+  bool within_errors(std::size_t e) const { return deviation(e) <= 4; }
+  bool within_bias(std::size_t e) const { return difference(e) <= bias * scale(e); }
+  /// What a bias is a share of.
+  double scale(std::size_t e) const { return correlations ? 1 : std::abs(reference.value[e]); }
+
+  /// Differences, combined errors and how many are within errors or bias, of all but those apart.
+  /// Sizes are RMS, over the RMS of the reference. Nothing where all are apart.
+  struct Whole {
+    double difference, error, share_within;
+  };
+  std::optional<Whole> whole() const {
+    double differences = 0, errors = 0, references = 0;
+    std::size_t entries = 0, within = 0;
+    for (std::size_t e = 0; e < mc.value.size(); ++e) {
+      if (is_apart(e)) continue;
+      differences += std::norm(mc.value[e] - reference.value[e]);
+      errors += error(e) * error(e);
+      references += std::norm(reference.value[e]);
+      within += within_errors(e) || within_bias(e) ? 1 : 0;
+      ++entries;
+    }
+    if (entries == 0 || references == 0) return std::nullopt;
+    return Whole{std::sqrt(differences / references), std::sqrt(errors / references),
+                 static_cast<double>(within) / static_cast<double>(entries)};
+  }
+};
+
+/// How the rows of a printed comparison begin.
+struct RowNames {
+  std::string head;
+  std::function<std::string(std::size_t)> of;
+};
+
+/// How many values of the first so many are within errors, only within the bias, and apart.
+struct Agreement {
+  std::size_t in_errors = 0, in_bias = 0, apart = 0;
+};
+
+void print_row(const Comparison& comparison, std::size_t e, const RowNames& names) {
+  const double scale = std::max(comparison.scale(e), 1e-300);
+  std::printf("%s  %21s %8.2g  %21s %8.2g  %6.1f %%  %5.1f%s\n", names.of(e).c_str(),
+              shown_value(comparison.mc.value[e]).c_str(), comparison.mc.error[e],
+              shown_value(comparison.reference.value[e]).c_str(), comparison.reference.error[e],
+              100 * comparison.difference(e) / scale, comparison.deviation(e),
+              comparison.is_apart(e)        ? "  forward"
+              : comparison.within_errors(e) ? ""
+              : comparison.within_bias(e)   ? "  within"
+                                            : "  *");
+}
+
+/// Prints the table of as many values.
+Agreement print_comparison(const Comparison& comparison, std::size_t values,
+                           const RowNames& names) {
+  std::printf("%s  %21s %8s  %21s %8s  %8s  %s\n", names.head.c_str(), "mc", "error",
+              comparison.name.c_str(), "error", "|diff|", "sigma");
+  Agreement agreement;
+  for (std::size_t e = 0; e < values; ++e) {
+    if (e < most_rows) print_row(comparison, e, names);
+    if (comparison.is_apart(e))
+      ++agreement.apart;
+    else if (comparison.within_errors(e))
+      ++agreement.in_errors;
+    else if (comparison.within_bias(e))
+      ++agreement.in_bias;
+  }
+  if (values > most_rows) std::printf("... and %zu more\n", values - most_rows);
+  return agreement;
+}
+
+}  // namespace
 
 const DatasetTable validate_table{
     .name = "validate",

@@ -5,7 +5,6 @@
 #include "core/result/version.h"
 #include "core/run/interrupt.h"
 #include "core/run/progress.h"
-#include "core/session/identity.h"
 #include "core/session/session.h"
 #include "grin/design/problem/design_datasets.h"
 #include "grin/design/problem/designer.h"

@@ -6,7 +6,7 @@
 
 #include "apps/command/experiment.h"
 #include "core/keys/number_text.h"
-#include "core/session/identity.h"
+#include "core/session/session.h"
 #include "grin/render/pictures/energy_datasets.h"
 #include "grin/render/pictures/map_datasets.h"
 #include "grin/render/pictures/render_datasets.h"
@@ -198,20 +198,16 @@ class RenderExperiment : public Experiment {
 
   PlannedExperiment plan() const override {
     const grin::RenderJob job = render_job(*scene_, request_, seed());
-    grin::RenderJob uncounted = job;
-    uncounted.counts = nullptr;
-    return {
-        .plan = "render: " + job.plan,
-        .batches = job.batches,
-        .write = [this, job = uncounted](
-                     ResultFile& file, const GroupedSums& sums) { write(file, job, sums, false); },
-        .write_and_tell = [this, job](ResultFile& file,
-                                      const GroupedSums& sums) { write(file, job, sums, true); }};
+    return {.plan = "render: " + job.plan,
+            .batches = job.batches,
+            .write = [this, job](ResultFile& file, const GroupedSums& sums, bool tells) {
+              write(file, job, sums, tells);
+            }};
   }
 
  private:
-  void write(ResultFile& file, const grin::RenderJob& job, const GroupedSums& sums,
-             bool tells) const {
+  void write(ResultFile& file, grin::RenderJob job, const GroupedSums& sums, bool tells) const {
+    if (!tells) job.counts = nullptr;
     const grin::RenderResult result = render_result(*scene_, job, sums);
     if (tells) print_render(*scene_, job, sums, result);
     write_render(file, *scene_, job, result, scene_->length_unit);

@@ -3,20 +3,82 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numbers>
+#include <set>
 #include <sstream>
 
-#include "apps/experiments/at_point.h"
-#include "apps/sweep/varied_points.h"
+#include "apps/experiments/experiment_family.h"
+#include "apps/sweep/sweep_points.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "core/keys/written_number.h"
 #include "core/result/provenance.h"
 #include "core/run/interrupt.h"
 #include "core/run/run_merger.h"
-#include "core/search/sum_blocks.h"
+#include "core/search/noisy_search.h"
 
 namespace flatspeckle::apps {
 
 namespace {
+
+constexpr const char* forms =
+    "must be key=low:high with low < high, key=low:high:log with bounds above 0, or values to "
+    "choose from: key=1,2,3";
+
+[[noreturn]] void refuse(const std::string& text) {
+  throw InputError("vary", text, forms);
+}
+
+std::vector<std::string> parts_of(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (const char letter : text)
+    if (letter == ':')
+      parts.emplace_back();
+    else
+      parts.back() += letter;
+  return parts;
+}
+
+/// low:high and low:high:log; with three numbers it is a list of values.
+bool is_between(const std::vector<std::string>& parts) {
+  return parts.size() == 2 || (parts.size() == 3 && trimmed(parts[2]) == "log");
+}
+
+SearchAxis between(const Keys& of, const std::string& text, const std::string& name,
+                   const std::vector<std::string>& parts) {
+  const Key& key = varied_key(of, name, text);
+  if (!key.is_number()) refuse(text);
+  const auto low = written_number(parts[0], written_kind(key.unit()));
+  const auto high = written_number(parts[1], written_kind(key.unit()));
+  const bool is_log = parts.size() == 3;
+  if (!low || !high || !(*low < *high) || (is_log && *low <= 0) || !std::isfinite(*high - *low))
+    refuse(text);
+  if (!key.is_whole()) return {name, *low, *high, is_log};
+  constexpr double most = 64;
+  if (*high - *low > most || is_log)
+    throw InputError("vary", text, "of whole numbers at most 64 are searched, one by one");
+  SearchAxis choice{name};
+  for (double value = std::ceil(*low); value <= *high; ++value)
+    choice.values.push_back(number_text(value));
+  return choice;
+}
+
+SearchAxis axis_of(const Keys& of, const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0) refuse(text);
+  const std::string name = text.substr(0, equals);
+  const auto parts = parts_of(text.substr(equals + 1));
+  if (is_between(parts)) return between(of, text, name, parts);
+  SearchAxis choice{name};
+  choice.values = varied_axis(of, text).values.texts();
+  return choice;
+}
+
+double value_at(const SearchAxis& axis, double share) {
+  const double value = axis.is_log ? axis.low * std::pow(axis.high / axis.low, share)
+                                   : axis.low + share * (axis.high - axis.low);
+  return std::clamp(value, axis.low, axis.high);
+}
 
 bool is_plain(const CollectedDataset& set) {
   return !set.is_scale && !set.name.ends_with("_error") && !set.name.ends_with("_rare") &&
@@ -52,6 +114,63 @@ const std::vector<double>& numbers(const CollectedResult& result, const char* na
 }
 
 }  // namespace
+
+bool SearchAxis::is_turn() const {
+  constexpr double turn = 2 * std::numbers::pi, as_written = 1e-4 * turn;
+  const bool is_centred = std::abs(low + high) < as_written;
+  return !is_log && (low == 0 || is_centred) && std::abs(high - low - turn) < as_written;
+}
+
+SearchAxes::SearchAxes(const std::vector<std::string>& vary, const Keys& of) {
+  std::set<std::string> seen;
+  for (const std::string& text : vary) {
+    axes_.push_back(axis_of(of, text));
+    if (!seen.insert(axes_.back().key).second)
+      throw InputError("vary", text, axes_.back().key + " is varied already");
+    if (axes_.back().key == "seed")
+      throw InputError("vary", text, "random numbers are not searched; sweep tries several seeds");
+  }
+  if (dimensions() == 0)
+    throw InputError("vary: give a key between bounds, key=low:high; sweep tries lists of values");
+}
+
+std::size_t SearchAxes::dimensions() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(axes_, [](const SearchAxis& axis) { return !axis.is_choice(); }));
+}
+
+std::size_t SearchAxes::choices() const {
+  std::size_t choices = 1;
+  for (const SearchAxis& axis : axes_)
+    if (axis.is_choice()) choices *= axis.values.size();
+  return choices;
+}
+
+SweepPoints SearchAxes::point(const SearchPlace& place) const {
+  SweepPoints point{{}, true};
+  auto share = place.at.begin();
+  std::size_t choice = place.choice;
+  for (const SearchAxis& axis : axes_) {
+    if (!axis.is_choice()) {
+      point.axes.push_back({axis.key, {number_text(value_at(axis, *share++))}});
+      continue;
+    }
+    point.axes.push_back({axis.key, {axis.values[choice % axis.values.size()]}});
+    choice /= axis.values.size();
+  }
+  return point;
+}
+
+std::vector<std::string> SearchAxes::at_bounds(const SearchPlace& place, double tolerance) const {
+  std::vector<std::string> keys;
+  auto share = place.at.begin();
+  for (const SearchAxis& axis : axes_) {
+    if (axis.is_choice()) continue;
+    if (!axis.is_turn() && std::min(*share, 1 - *share) <= tolerance) keys.push_back(axis.key);
+    ++share;
+  }
+  return keys;
+}
 
 Objective::Objective(std::string key, const std::string& text)
     : key_(std::move(key)), text_(text), path_(text.substr(0, text.find('['))) {
@@ -101,15 +220,15 @@ double Objective::of(const CollectedResult& result) const {
   return std::get<std::vector<double>>(set.values)[place_in(result, set)];
 }
 
-void EvaluationJournal::add(const std::string& name, const FinishedPoint& evaluation) {
-  const std::uint64_t place = journal_.add(name, evaluation);
-  const std::lock_guard lock(mutex_);
-  places_.emplace(name, place);
-}
-
 Evaluations::Evaluations(const ExperimentFamily& family, const Objective& objective,
-                         const EvaluationSettings& settings, EvaluationJournal& journal)
-    : family_(family), objective_(objective), settings_(settings), journal_(journal) {}
+                         const EvaluationSettings& settings, const std::filesystem::path& path,
+                         const JournalHead& head)
+    : family_(family),
+      objective_(objective),
+      settings_(settings),
+      journal_(path, head, "search", [this](const std::string& name, std::uint64_t place) {
+        places_.emplace(name, place);
+      }) {}
 
 std::vector<Measured> Evaluations::measure(const std::vector<SweepPoints>& points,
                                            const SearchEffort& effort) {
@@ -117,13 +236,13 @@ std::vector<Measured> Evaluations::measure(const std::vector<SweepPoints>& point
   std::set<std::string> asked;
   for (const SweepPoints& point : points) {
     const std::string name = name_of(point, effort);
-    if (!journal_.has(name) && asked.insert(name).second) missing.push_back(point);
+    if (!places_.contains(name) && asked.insert(name).second) missing.push_back(point);
   }
   if (!missing.empty()) run(missing, effort);
   std::vector<Measured> found;
   for (const SweepPoints& point : points) {
     const std::string name = name_of(point, effort);
-    const FinishedPoint finished = journal_.read(name);
+    const FinishedPoint finished = read(name);
     found.push_back(measured(finished));
     if (!dataset_) dataset_ = *finished.result.find("of");
     if (known_.insert(name).second)
@@ -133,7 +252,7 @@ std::vector<Measured> Evaluations::measure(const std::vector<SweepPoints>& point
 }
 
 CollectedResult Evaluations::result(const SweepPoints& point, double samples) const {
-  CollectedResult result = journal_.read(name_of(point, {samples, winner_draw})).result;
+  CollectedResult result = read(name_of(point, {samples, winner_draw})).result;
   std::erase_if(result.datasets, [](const CollectedDataset& set) {
     return set.name == "found" || set.name == "without" || set.name == "of";
   });
@@ -172,9 +291,13 @@ void Evaluations::run(const std::vector<SweepPoints>& points, const SearchEffort
     return OpenRun{job, StopRule{samples, {}, {}}, &open[i]->state};
   };
   list.ended = [&](std::size_t i, StopReason) {
-    journal_.add(name_of(points[i], effort), at_point(points[i], 0, [&] {
-                   return finished(open[i]->planned, open[i]->state, effort.draw == winner_draw);
-                 }));
+    const std::string name = name_of(points[i], effort);
+    const FinishedPoint found = at_point(points[i], 0, [&] {
+      return finished(open[i]->planned, open[i]->state, effort.draw == winner_draw);
+    });
+    const std::uint64_t place = journal_.add(name, found);
+    const std::lock_guard lock(mutex_);
+    places_.emplace(name, place);
     open[i].reset();
   };
   list.checkpoint = [](std::size_t) {};
@@ -189,7 +312,7 @@ FinishedPoint Evaluations::finished(const PlannedExperiment& planned, const RunS
   const auto result_of = [&](const GroupedSums& sums) {
     CollectedResult result;
     ResultFile collecting(result);
-    planned.write(collecting, sums);
+    planned.write(collecting, sums, false);
     return result;
   };
   CollectedResult result = result_of(state.sums);

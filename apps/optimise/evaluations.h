@@ -7,12 +7,47 @@
 #include <vector>
 
 #include "apps/experiments/experiment_family.h"
-#include "apps/optimise/search_axes.h"
 #include "apps/sweep/point_journal.h"
+#include "apps/sweep/sweep_points.h"
 #include "core/result/collected_result.h"
 #include "core/run/stopwatch.h"
+#include "core/search/noisy_search.h"
 
 namespace flatspeckle::apps {
+
+/// A key that is searched over: between two bounds, or one of some values.
+struct SearchAxis {
+  std::string key;
+  double low = 0, high = 0;
+  bool is_log = false;
+  std::vector<std::string> values = {};  ///< empty: between the bounds
+
+  bool is_choice() const { return !values.empty(); }
+  /// From 0 to 2 pi or -pi to pi, as of a phase: the bounds are the same place.
+  bool is_turn() const;
+};
+
+/// What is searched: places of the search, and the values of keys that they stand for.
+class SearchAxes {
+ public:
+  /// Of "key=low:high", "key=low:high:log" and of what a sweep takes: "key=1,2,3" or words. Keys of
+  /// `of`. Throws InputError.
+  SearchAxes(const std::vector<std::string>& vary, const Keys& of);
+
+  const std::vector<SearchAxis>& axes() const { return axes_; }
+  /// Of keys between bounds, and of combinations of the others.
+  std::size_t dimensions() const;
+  std::size_t choices() const;
+
+  /// The values of the keys there, one for each axis.
+  SweepPoints point(const SearchPlace& place) const;
+  /// Keys that are there at a bound of theirs, by no more than this share of their range; not
+  /// phases, which have none.
+  std::vector<std::string> at_bounds(const SearchPlace& place, double tolerance) const;
+
+ private:
+  std::vector<SearchAxis> axes_;
+};
 
 /// A number of a result: "total", "sensors/through/total", "image[3,4]".
 class Objective {
@@ -42,29 +77,6 @@ struct EvaluationSettings {
   int threads = 1;
 };
 
-/// Evaluations of a search in a journal, known by their names.
-class EvaluationJournal {
- public:
-  /// As PointJournal. Throws InputError, IoError.
-  EvaluationJournal(const std::filesystem::path& path, const JournalHead& head)
-      : journal_(path, head, "search", [this](const std::string& name, std::uint64_t place) {
-          places_.emplace(name, place);
-        }) {}
-
-  std::size_t size() const { return journal_.size(); }
-  bool has(const std::string& name) const { return places_.contains(name); }
-  /// Of one that is there.
-  FinishedPoint read(const std::string& name) const { return journal_.read(places_.at(name)); }
-  /// For any thread, while no other function is called.
-  void add(const std::string& name, const FinishedPoint& evaluation);
-  void sync() { journal_.sync(); }
-
- private:
-  std::unordered_map<std::string, std::uint64_t> places_;
-  std::mutex mutex_;
-  PointJournal journal_;
-};
-
 /// One of them: where, with how much effort, and what was found.
 struct Evaluation {
   SweepPoints point;
@@ -77,8 +89,10 @@ struct Evaluation {
 /// next.
 class Evaluations {
  public:
+  /// path, head: of the journal, as PointJournal. Throws InputError, IoError.
   Evaluations(const ExperimentFamily& family, const Objective& objective,
-              const EvaluationSettings& settings, EvaluationJournal& journal);
+              const EvaluationSettings& settings, const std::filesystem::path& path,
+              const JournalHead& head);
 
   /// Of the number at each of these points. Throws Interrupted, SearchSpent once the time is up,
   /// and InputError where a point is no scene or its result has no such number.
@@ -88,11 +102,15 @@ class Evaluations {
 
   /// In the order in which they were asked for first.
   const std::vector<Evaluation>& all() const { return all_; }
+  /// How many the journal holds, and waits until the disk has them.
+  std::size_t kept() const { return journal_.size(); }
+  void sync() { journal_.sync(); }
   /// The dataset that the number is in.
   const CollectedDataset& dataset() const { return *dataset_; }
 
  private:
   void run(const std::vector<SweepPoints>& points, const SearchEffort& effort);
+  FinishedPoint read(const std::string& name) const { return journal_.read(places_.at(name)); }
   FinishedPoint finished(const PlannedExperiment& planned, const RunState& state,
                          bool keeps_result);
   Measured measured(const FinishedPoint& point) const;
@@ -101,7 +119,9 @@ class Evaluations {
   const ExperimentFamily& family_;
   const Objective& objective_;
   EvaluationSettings settings_;
-  EvaluationJournal& journal_;
+  std::unordered_map<std::string, std::uint64_t> places_;  ///< in the journal, by their names
+  std::mutex mutex_;                                       ///< of places_, while a pool works
+  PointJournal journal_;
   std::vector<Evaluation> all_;
   std::set<std::string> known_;
   std::optional<CollectedDataset> dataset_;

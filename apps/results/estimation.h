@@ -1,11 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/keys/keys.h"
+#include "core/result/result_file.h"
 #include "core/session/run_settings.h"
 #include "flatland/request/field_moments.h"
 #include "flatland/scene/scene.h"
@@ -29,10 +31,12 @@ void add_transport_keys(Keys& keys, MethodSettings& settings);
 /// Reads what Monte Carlo and transport heed.
 mc::ReversedPaths reversed_paths(const Keys& keys, const MethodSettings& settings);
 
-/// A method applied to a scene: what the runner needs, and in words what was planned.
+/// A method applied to a scene: what the runner needs, and in words what was planned. write: prints
+/// and writes what it tells besides the covariance; empty where that is nothing.
 struct Estimation {
   FieldJob job;
   std::string plan;
+  std::function<void(ResultFile&, const GroupedSums&)> write = {};
 };
 
 /// Puts into `method` what auto stands for: of a slab transport, unless what only Monte Carlo heeds

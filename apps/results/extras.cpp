@@ -23,18 +23,17 @@ void require_plane_waves(const std::string& key, const CovarianceRequest& reques
     throw InputError(key + ": needs plane waves, and no tilt_shift");
 }
 
-ExtendedEstimation with_gradient(const Scene& scene, const mc::GradientJob& job,
-                                 const std::string& plan) {
+Estimation with_gradient(const Scene& scene, const mc::GradientJob& job, const std::string& plan) {
   std::string text = plan + "; derivatives by";
   for (const auto& parameter : job.parameters) text += ' ' + parameter;
-  return {{job.field, text}, [scene, job](ResultFile& file, const GroupedSums& sums) {
+  return {job.field, text, [scene, job](ResultFile& file, const GroupedSums& sums) {
             const auto gradient = mc::gradient_estimates(scene, sums, job);
             print_gradient(scene.request, job, gradient);
             mc::write_gradient(file, scene.request, job, gradient);
           }};
 }
 
-ExtendedEstimation mc_gradient(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed) {
+Estimation mc_gradient(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed) {
   require_plane_waves("gradient", scene.request);
   const auto plan = mc::gradient_plan(scene, reversed);
   const auto job = scene.profile ? mc::layer_gradient_job(scene, plan, seed)
@@ -42,8 +41,7 @@ ExtendedEstimation mc_gradient(const Scene& scene, mc::ReversedPaths reversed, s
   return with_gradient(scene, job, "mc: " + plan.describe());
 }
 
-ExtendedEstimation transport_gradient(const Scene& scene, mc::ReversedPaths reversed,
-                                      double tolerance) {
+Estimation transport_gradient(const Scene& scene, mc::ReversedPaths reversed, double tolerance) {
   refuse_layers(scene, "gradient");
   mc::check_gradient(scene);
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
@@ -59,11 +57,11 @@ mc::Motion motion_of(const Extras& extras) {
   return motion;
 }
 
-ExtendedEstimation with_delays(const Scene& scene, const mc::PathJob& job, const Extras& extras,
-                               const std::string& plan) {
+Estimation with_delays(const Scene& scene, const mc::PathJob& job, const Extras& extras,
+                       const std::string& plan) {
   const mc::Motion motion = motion_of(extras);
   const std::string moves = motion.only_diffuses(scene) ? "diffuse" : "diffuse and flow";
-  return {{job.field, plan + "; scatterers " + moves},
+  return {job.field, plan + "; scatterers " + moves,
           [scene, job, extras, motion](ResultFile& file, const GroupedSums& sums) {
             const auto found = mc::change_estimates(scene.request, job, sums);
             print_changes(scene.request, "delay", extras.delays, found.correlation);
@@ -76,8 +74,8 @@ ExtendedEstimation with_delays(const Scene& scene, const mc::PathJob& job, const
           }};
 }
 
-ExtendedEstimation mc_delays(const Scene& scene, mc::ReversedPaths reversed, const Extras& extras,
-                             std::uint64_t seed) {
+Estimation mc_delays(const Scene& scene, mc::ReversedPaths reversed, const Extras& extras,
+                     std::uint64_t seed) {
   require_plane_waves("delays", scene.request);
   mc::check_exposure(extras.exposure, extras.delays);
   const auto plan = mc::make_plan(scene, reversed);
@@ -91,8 +89,8 @@ mc::PathJob change_job(const Scene& scene, mc::ReversedPaths reversed,
   return mc::slab_change_job(scene, with_reversed, {tolerance}, changes);
 }
 
-ExtendedEstimation transport_delays(const Scene& scene, mc::ReversedPaths reversed,
-                                    const Extras& extras, double tolerance) {
+Estimation transport_delays(const Scene& scene, mc::ReversedPaths reversed, const Extras& extras,
+                            double tolerance) {
   mc::check_delays(scene, extras.delays);
   require_changing("delays", scene.request);
   const mc::Motion motion = motion_of(extras);
@@ -107,9 +105,9 @@ ExtendedEstimation transport_delays(const Scene& scene, mc::ReversedPaths revers
                      transport_estimation(scene, reversed, tolerance).plan);
 }
 
-ExtendedEstimation with_frequency_shifts(const Scene& scene, const std::vector<double>& shifts,
-                                         const ChangeEstimation& changes) {
-  return {{changes.job.field, changes.plan + "; two frequencies"},
+Estimation with_frequency_shifts(const Scene& scene, const std::vector<double>& shifts,
+                                 const ChangeEstimation& changes) {
+  return {changes.job.field, changes.plan + "; two frequencies",
           [=](ResultFile& file, const GroupedSums& sums) {
             const auto found = mc::change_estimates(scene.request, changes.job, sums);
             print_changes(scene.request, "shift", shifts, found.correlation);
@@ -204,30 +202,30 @@ ChangeEstimation wave_frequencies(const Scene& scene, const std::vector<double>&
   return {{field, all, scene.request.entries.size()}, wave_plan(scene, tolerance)};
 }
 
-ExtendedEstimation extended_estimation(const Scene& scene, mc::ReversedPaths reversed,
-                                       const Extras& extras, std::uint64_t seed) {
+Estimation extended_estimation(const Scene& scene, mc::ReversedPaths reversed, const Extras& extras,
+                               std::uint64_t seed) {
   if (extras.gradient) return mc_gradient(scene, reversed, seed);
   if (!extras.delays.empty()) return mc_delays(scene, reversed, extras, seed);
   if (const auto& shifts = extras.frequency_shifts; !shifts.empty())
     return with_frequency_shifts(scene, shifts, mc_frequencies(scene, reversed, shifts, seed));
-  return {mc_estimation(scene, reversed, seed), {}};
+  return mc_estimation(scene, reversed, seed);
 }
 
-ExtendedEstimation extended_transport(const Scene& scene, mc::ReversedPaths reversed,
-                                      const Extras& extras, double tolerance) {
+Estimation extended_transport(const Scene& scene, mc::ReversedPaths reversed, const Extras& extras,
+                              double tolerance) {
   if (extras.gradient) return transport_gradient(scene, reversed, tolerance);
   if (!extras.delays.empty()) return transport_delays(scene, reversed, extras, tolerance);
   if (const auto& shifts = extras.frequency_shifts; !shifts.empty())
     return with_frequency_shifts(scene, shifts,
                                  transport_frequencies(scene, reversed, shifts, tolerance));
-  return {transport_estimation(scene, reversed, tolerance), {}};
+  return transport_estimation(scene, reversed, tolerance);
 }
 
-ExtendedEstimation extended_waves(const Scene& scene, const Extras& extras, double tolerance,
-                                  std::uint64_t seed) {
+Estimation extended_waves(const Scene& scene, const Extras& extras, double tolerance,
+                          std::uint64_t seed) {
   if (const auto& shifts = extras.frequency_shifts; !shifts.empty())
     return with_frequency_shifts(scene, shifts, wave_frequencies(scene, shifts, tolerance, seed));
-  return {wave_estimation(scene, tolerance, seed), {}};
+  return wave_estimation(scene, tolerance, seed);
 }
 
 }  // namespace flatspeckle::apps

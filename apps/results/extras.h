@@ -1,11 +1,9 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <vector>
 
 #include "apps/results/estimation.h"
-#include "core/result/result_file.h"
 #include "mc/jobs/contrast.h"
 #include "mc/jobs/path_job.h"
 
@@ -21,12 +19,6 @@ struct Extras {
 };
 void add_frequency_key(Keys& keys, std::vector<double>& shifts);
 void add_extra_keys(Keys& keys, Extras& extras);
-
-/// An estimation and how its extra results are printed and written; write is empty without extras.
-struct ExtendedEstimation {
-  Estimation estimation;
-  std::function<void(ResultFile&, const GroupedSums&)> write;
-};
 
 /// Reads the keys that a method heeds. Throws InputError for extras that exclude each other.
 void read_extras(const Keys& keys, const Extras& extras, const std::string& method);
@@ -45,13 +37,13 @@ ChangeEstimation wave_frequencies(const Scene& scene, const std::vector<double>&
                                   double tolerance, std::uint64_t seed);
 
 /// By Monte Carlo. Throws InputError for extras that the scene cannot have.
-ExtendedEstimation extended_estimation(const Scene& scene, mc::ReversedPaths reversed,
-                                       const Extras& extras, std::uint64_t seed);
+Estimation extended_estimation(const Scene& scene, mc::ReversedPaths reversed, const Extras& extras,
+                               std::uint64_t seed);
 /// The same of a slab by transport.
-ExtendedEstimation extended_transport(const Scene& scene, mc::ReversedPaths reversed,
-                                      const Extras& extras, double tolerance);
+Estimation extended_transport(const Scene& scene, mc::ReversedPaths reversed, const Extras& extras,
+                              double tolerance);
 /// The same of a box by exact solutions.
-ExtendedEstimation extended_waves(const Scene& scene, const Extras& extras, double tolerance,
-                                  std::uint64_t seed);
+Estimation extended_waves(const Scene& scene, const Extras& extras, double tolerance,
+                          std::uint64_t seed);
 
 }  // namespace flatspeckle::apps

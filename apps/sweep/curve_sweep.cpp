@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/results/datasets.h"
 #include "apps/results/tilt_search.h"
-#include "apps/sweep/curve_result.h"
 #include "apps/sweep/point_store.h"
 #include "core/error.h"
-#include "core/result/result_group.h"
 #include "core/result/version.h"
-#include "core/session/identity.h"
+#include "core/session/session.h"
 #include "mc/paths/walk/plan.h"
 
 namespace flatspeckle::apps {
@@ -176,7 +173,7 @@ std::optional<std::size_t> CurveSweep::find(const std::string& name,
   for (std::size_t method = 0; method < method_words.size(); ++method) {
     const std::string prefix = method_words[method] + '_';
     if (!name.starts_with(prefix)) continue;
-    if (const auto point = finder.find(name.substr(prefix.size()))) return run(method, *point);
+    if (const auto point = finder.find(name.substr(prefix.size()))) return run_of(method, *point);
   }
   return std::nullopt;
 }
@@ -186,7 +183,7 @@ SweepRun CurveSweep::open(std::size_t run) const {
   const Estimation planned = estimation(run, *scene);
   return {planned.plan, planned.job.batches, stop(run),
           [scene, job = planned.job](ResultFile& file, const RunState& state) {
-            write_point(file, point_result(*scene, job, state));
+            write_curve(file, *scene, job, state);
           }};
 }
 
@@ -207,7 +204,7 @@ std::string CurveSweep::identity() const {
 
 bool CurveSweep::has_all_runs(std::size_t point, const PointStore& store) const {
   for (std::size_t method = 0; method < method_words.size(); ++method)
-    if (!store.has(run(method, point))) return false;
+    if (!store.has(run_of(method, point))) return false;
   return true;
 }
 
@@ -216,19 +213,6 @@ std::size_t CurveSweep::finished_points(const PointStore& store) const {
   for (std::size_t point = 0; point < points_.count(); ++point)
     finished += has_all_runs(point, store) ? 1 : 0;
   return finished;
-}
-
-void CurveSweep::write(ResultFile& file, const PointStore& store) const {
-  CurveResults results{{}, std::vector<std::vector<PointResult>>(method_words.size())};
-  for (std::size_t point = 0; point < points_.count(); ++point)
-    if (has_all_runs(point, store)) results.points.push_back(point);
-  store.for_each([&](std::size_t run, const FinishedPoint& finished) {
-    if (has_all_runs(point_of(run), store))
-      results.by_method[run / points_.count()].push_back(curve_of(finished));
-  });
-  print_ranges(*this, results);
-  ResultGroup(file, sweep_table).attribute("format", std::uint64_t{2});
-  write_sweep(file, *this, results);
 }
 
 }  // namespace flatspeckle::apps

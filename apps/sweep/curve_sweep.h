@@ -20,7 +20,7 @@ class CurveSweep : public Sweep {
   std::vector<std::string> method_words;  ///< of mc, wave, transport
 
   std::size_t runs() const override { return method_words.size() * points_.count(); }
-  std::size_t run(std::size_t method, std::size_t point) const {
+  std::size_t run_of(std::size_t method, std::size_t point) const {
     return method * points_.count() + point;
   }
   Scene scene(std::size_t run) const;
@@ -52,5 +52,9 @@ class CurveSweep : public Sweep {
   mc::ReversedPaths reversed_ = mc::ReversedPaths::automatic;
   StopRule mc_stop_, wave_stop_;
 };
+
+/// Puts down what the journal keeps of a run that has ended: its curve and the range read off it,
+/// without the costs.
+void write_curve(ResultFile& file, const Scene& scene, const FieldJob& job, const RunState& state);
 
 }  // namespace flatspeckle::apps

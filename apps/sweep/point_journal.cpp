@@ -41,13 +41,14 @@ Journal::Use PointJournal::taking(const Found& found) {
 void PointJournal::Shared::add(const std::string& text, std::uint64_t place) {
   constexpr std::size_t most = 256;
   if (known.size() == most) known.clear();
-  known[text] = count;
-  places.set(count++, place);
+  known[text] = places.size();
+  places.push_back(place);
 }
 
 std::string PointJournal::text(const Shared& shared, std::uint64_t number) const {
-  if (number >= shared.count) throw InputError("a point refers to what its file does not have");
-  return text_of(journal_.read(shared.places.at(number)));
+  if (number >= shared.places.size())
+    throw InputError("a point refers to what its file does not have");
+  return text_of(journal_.read(shared.places[number]));
 }
 
 /// Written where it is new.
@@ -55,7 +56,7 @@ std::uint64_t PointJournal::number_of(char kind, const std::string& text) {
   Shared& shared = kind == plan_kind ? plans_ : layouts_;
   if (const auto found = shared.known.find(text); found != shared.known.end()) return found->second;
   shared.add(text, journal_.append(kind, bytes_of(text)));
-  return shared.count - 1;
+  return shared.places.size() - 1;
 }
 
 std::uint64_t PointJournal::add(const std::string& name, const FinishedPoint& point) {

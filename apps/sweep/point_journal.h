@@ -7,7 +7,6 @@
 #include <unordered_map>
 
 #include "core/result/collected_result.h"
-#include "core/result/scratch_numbers.h"
 #include "core/session/journal.h"
 
 namespace flatspeckle::apps {
@@ -20,8 +19,8 @@ struct FinishedPoint {
   CollectedResult result;
 };
 
-/// Finished points of a sweep in a journal: a few hundred bytes and microseconds each, and no
-/// memory. For any thread.
+/// Finished points of a sweep in a journal: a few hundred bytes and microseconds each. For any
+/// thread.
 class PointJournal {
  public:
   /// Called with each point in the file: its name, and its place, which is not 0.
@@ -46,8 +45,7 @@ class PointJournal {
   /// Texts that many points share, by number and back. A text that is forgotten gets another number
   /// when it comes again.
   struct Shared {
-    std::uint64_t count = 0;
-    ScratchNumbers places;
+    std::vector<std::uint64_t> places;
     std::unordered_map<std::string, std::uint64_t> known;
 
     void add(const std::string& text, std::uint64_t place);

@@ -77,7 +77,8 @@ PointStore::PointStore(const Sweep& sweep, const std::vector<std::string>& folde
     : sweep_(sweep),
       finder_(sweep.points()),
       identity_(sweep.identity_of_points()),
-      folders_(folders) {
+      folders_(folders),
+      places_(sweep.runs()) {
   for (const std::string& folder : folders) {
     const std::size_t before = strangers_;
     open_others(folder, {});
@@ -91,7 +92,8 @@ PointStore::PointStore(const Sweep& sweep, const std::string& folder)
     : sweep_(sweep),
       finder_(sweep.points()),
       identity_(sweep.identity_of_points()),
-      folders_{folder} {
+      folders_{folder},
+      places_(sweep.runs()) {
   const fs::path own = own_journal(folder, sweep.share().value_or(SweepShare{}));
   const auto there = journals_in(folder);
   const bool has_begun = sweep.share() ? std::ranges::count(there, own) > 0 : !there.empty();
@@ -135,20 +137,20 @@ PointJournal::Found PointStore::notes() {
 /// Of a run that several journals have, the first counts.
 void PointStore::note(std::size_t run, std::size_t journal, std::uint64_t place) {
   const std::lock_guard lock(mutex_);
-  if (places_.at(run) != 0) return;
-  places_.set(run, journal << bits_of_place | place);
+  if (places_[run] != 0) return;
+  places_[run] = journal << bits_of_place | place;
   ++finished_;
 }
 
 bool PointStore::has(std::size_t run) const {
   const std::lock_guard lock(mutex_);
-  return places_.at(run) != 0;
+  return places_[run] != 0;
 }
 
 void PointStore::for_each(
     const std::function<void(std::size_t run, const FinishedPoint&)>& use) const {
   for (std::size_t run = 0; run < sweep_.runs(); ++run)
-    if (const std::uint64_t found = places_.at(run); found != 0)
+    if (const std::uint64_t found = places_[run]; found != 0)
       use(run, journals_[found >> bits_of_place]->read(found & most_place));
 }
 

@@ -58,7 +58,7 @@ class PointStore {
   std::vector<std::string> folders_;
   std::vector<std::unique_ptr<PointJournal>> journals_;  ///< this share's first
   std::vector<std::filesystem::path> paths_;
-  ScratchNumbers places_;  ///< of the runs, with the number of the journal
+  std::vector<std::uint64_t> places_;  ///< of the runs, with the number of the journal; 0: none
   std::size_t finished_ = 0, strangers_ = 0;
   mutable std::mutex mutex_;
   Stopwatch clock_;

@@ -2,13 +2,288 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <numeric>
+#include <set>
+#include <string>
 
 #include "apps/sweep/point_store.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "core/result/provenance.h"
+#include "core/run/interrupt.h"
+#include "core/run/ranks.h"
+#include "core/run/remote_batches.h"
+#include "core/run/runner.h"
+#include "core/run/stopwatch.h"
 
 namespace flatspeckle::apps {
+
+namespace {
+
+/// Runs of a sweep as a pool takes them: each goes on from where it was cut off, if it was, and
+/// ends in the store's journal. Those that are finished need no work.
+class SweepWork {
+ public:
+  /// The runs of this share. store: nullptr of ranks that only compute.
+  SweepWork(const Sweep& sweep, PointStore* store)
+      : sweep_(sweep), store_(store), runs_(sweep.runs(), sweep.share().value_or(SweepShare{})) {}
+
+  RunList list() {
+    return {.count = runs_.size(),
+            .open = [this](std::size_t number) { return open(runs_[number]); },
+            .ended = [this](std::size_t number, StopReason) { ended(runs_[number]); },
+            .checkpoint = [this](std::size_t number) { save(runs_[number]); },
+            .job =
+                [this](std::size_t number) {
+                  // what is planned may look at what it is planned of
+                  const auto run = std::make_shared<const SweepRun>(sweep_.open(runs_[number]));
+                  BatchJob job = run->batches;
+                  job.run = [run](std::uint64_t batch, std::span<Complex> sums) {
+                    run->batches.run(batch, sums);
+                  };
+                  return job;
+                }};
+  }
+
+  /// After the pool has stopped.
+  void save_unfinished() {
+    for (const auto& [number, open] : open_) save(number);
+  }
+
+ private:
+  struct Open {
+    SweepRun run;
+    RunState state;
+    std::string started;
+  };
+
+  std::optional<OpenRun> open(std::size_t number) {
+    if (store_->has(number)) return std::nullopt;
+    const std::string started = utc_now();
+    auto open = std::make_unique<Open>(Open{sweep_.open(number), {}, started});
+    open->state = store_->unfinished(number, open->run.batches.size);
+    OpenRun run{open->run.batches, open->run.stop, &open->state};
+    const std::lock_guard lock(mutex_);
+    open_[number] = std::move(open);
+    return run;
+  }
+
+  void ended(std::size_t number) {
+    const auto& [run, state, started] = find(number);
+    FinishedPoint point{.plan = run.plan,
+                        .started = started,
+                        .samples = state.sums.total_samples(),
+                        .cpu_s = state.cpu_s,
+                        .wall_s = state.wall_s,
+                        .relative_error = state.trace.relative_error.back(),
+                        .result = {}};
+    point.reached = !run.stop.target_error || point.relative_error <= *run.stop.target_error;
+    ResultFile collecting(point.result);
+    run.write(collecting, state);
+    store_->add(number, point);
+    const std::lock_guard lock(mutex_);
+    open_.erase(number);
+  }
+
+  void save(std::size_t number) {
+    const RunState& state = find(number).state;
+    if (state.sums.batches() > 0) store_->save_unfinished(number, state);
+  }
+
+  Open& find(std::size_t number) {
+    const std::lock_guard lock(mutex_);
+    return *open_.at(number);
+  }
+
+  const Sweep& sweep_;
+  PointStore* store_;
+  ScatteredRuns runs_;
+  std::mutex mutex_;
+  std::map<std::size_t, std::unique_ptr<Open>> open_;
+};
+
+namespace fs = std::filesystem;
+
+bool is_whole(const Sweep& sweep, const PointStore& store) {
+  return store.finished() == sweep.runs();
+}
+
+std::string count_text(const Sweep& sweep, const PointStore& store) {
+  return std::to_string(sweep.finished_points(store)) + " of " +
+         std::to_string(sweep.points().count()) + " points";
+}
+
+/// How the whole was made. Converged: all runs that are there.
+Provenance made_of(const Sweep& sweep, const PointStore& store, double wall_s) {
+  Provenance made = sweep.session().provenance();
+  made.identity = sweep.identity();
+  made.wall_s = wall_s;
+  made.converged = true;
+  std::set<std::string> plans;  // each once, if there are not too many
+  bool more = false;
+  store.for_each([&](std::size_t, const FinishedPoint& point) {
+    made.converged = made.converged && point.reached;
+    made.started = std::min(made.started, point.started);
+    made.cpu_s += point.cpu_s;
+    made.samples += point.samples;
+    plans.insert(point.plan);
+    if (plans.size() <= 16) return;
+    plans.erase(std::prev(plans.end()));
+    more = true;
+  });
+  made.plan = joined({plans.begin(), plans.end()}, "\n") + (more ? "\nand others" : "");
+  return made;
+}
+
+int write_result(const Sweep& sweep, const PointStore& store, double wall_s) {
+  Provenance made = made_of(sweep, store, wall_s);
+  const bool all_reached = made.converged;
+  made.converged = all_reached && is_whole(sweep, store);
+  ResultFile file(sweep.settings().out, ResultFile::Storage::disk);
+  file.attribute("/", "complete", is_whole(sweep, store));
+  file.attribute("/", "ranks", std::int64_t{ranks().size});
+  sweep.write(file, store);
+  std::cout << count_text(sweep, store) << '\n';
+  Session::commit(file, made);
+  if (!all_reached) std::cout << "not every point has reached its target error\n";
+  return made.converged ? ExitStatus::done : ExitStatus::error_not_reached;
+}
+
+/// Writes the result and removes what it was made of, or says how to go on.
+int end_sweep(const Sweep& sweep, PointStore& store, const PoolEnd& end) {
+  const std::string place = shards_of(sweep.settings().out);
+  const bool whole = is_whole(sweep, store);
+  const bool interrupted = end.reason == StopReason::interrupted;
+  if (sweep.share() || interrupted) {
+    std::cout << (interrupted ? "interrupted; " : "") << place << " holds "
+              << count_text(sweep, store)
+              << (whole                               ? "; `flatspeckle merge` makes the result\n"
+                  : end.reason == StopReason::samples ? "; this share is done\n"
+                                                      : "; --resume goes on\n");
+    if (interrupted) return ExitStatus::interrupted_resumable;
+    return end.reason == StopReason::samples ? ExitStatus::done : ExitStatus::error_not_reached;
+  }
+  int status = ExitStatus::error_not_reached;
+  if (sweep.finished_points(store) > 0) status = write_result(sweep, store, end.wall_s);
+  if (whole)
+    store.remove();
+  else
+    std::cout << place << " holds " << count_text(sweep, store) << "; --resume goes on\n";
+  return status;
+}
+
+/// Of this process alone, or of rank 0.
+int lead(const Sweep& sweep, RankServer* server) {
+  const std::string& out = sweep.settings().out;
+  const OutputLock lock(sweep.share() ? out + ".shard-" + std::to_string(sweep.share()->number)
+                                      : out);
+  const std::string folder = shards_of(out);
+  if (sweep.session().is_complete(sweep.identity(), !journals_in(folder).empty())) {
+    PointStore(sweep, std::vector{folder}).remove();
+    return ExitStatus::done;
+  }
+  PointStore store(sweep, folder);
+  SweepWork work(sweep, &store);
+  const PoolEnd end = run_pool(work.list(), {sweep.settings().seconds, sweep.session().threads(),
+                                             "sweep", "points", server});
+  work.save_unfinished();
+  store.sync();
+  return end_sweep(sweep, store, end);
+}
+
+int lead_others(const Sweep& sweep) {
+  RankServer server;
+  try {
+    const int status = lead(sweep, &server);
+    server.dismiss();
+    return status;
+  } catch (...) {
+    server.dismiss();
+    leave_ranks();
+    throw;
+  }
+}
+
+/// With rank 0, and for it.
+void follow(const Sweep& sweep) {
+  SweepWork work(sweep, nullptr);
+  work_for_rank_0(work.list(), sweep.session().threads());
+}
+
+/// A sweep and what folders hold of it.
+struct Found {
+  std::unique_ptr<Sweep> sweep;
+  std::unique_ptr<PointStore> store;
+};
+
+/// Every configuration that points in the folders were made with.
+std::set<std::string> configs_in(const std::vector<std::string>& folders) {
+  std::set<std::string> configs;
+  for (const std::string& folder : folders) {
+    if (std::error_code none; !fs::is_directory(folder, none))
+      throw InputError("shards", folder, "is not a folder");
+    for (const fs::path& path : journals_in(folder))
+      for (const std::string& config : Journal::configs_in(path)) configs.insert(config);
+  }
+  if (configs.empty())
+    throw InputError("shards", folders.front(), "holds no finished points of a sweep");
+  return configs;
+}
+
+void require_all(const Sweep& sweep, const PointStore& store) {
+  if (is_whole(sweep, store)) return;
+  std::size_t first = 0;
+  while (store.has(first)) ++first;
+  throw InputError(std::to_string(sweep.runs() - store.finished()) + " of " +
+                   std::to_string(sweep.runs()) + " points are missing, " + sweep.name(first) +
+                   " among them; --partial takes what there is");
+}
+
+}  // namespace
+
+std::string shards_of(const std::string& out) {
+  return out + ".shards";
+}
+
+int Sweep::run() {
+  if (!read()) return ExitStatus::done;
+  if (!share_) join_ranks();
+  catch_interrupts();
+  if (ranks().size == 1) return lead(*this, nullptr);
+  int status = ExitStatus::done;
+  if (ranks().rank == 0)
+    status = lead_others(*this);
+  else
+    follow(*this);
+  leave_ranks();
+  return status;
+}
+
+int merge_sweep(const std::function<std::unique_ptr<Sweep>(const std::string& config)>& make,
+                const std::vector<std::string>& folders, const std::string& out, bool partial,
+                const std::string& command_line) {
+  const Stopwatch clock;
+  // of several the one that most points are of: a smaller grid may have grown
+  Found most;
+  for (const std::string& config : configs_in(folders)) {
+    Found found{make(config), nullptr};
+    found.sweep->parse_config(config, command_line);
+    found.sweep->set_out(out);
+    found.store = std::make_unique<PointStore>(*found.sweep, folders);
+    if (!most.store || found.store->finished() > most.store->finished()) most = std::move(found);
+  }
+  std::cerr << most.store->warnings();
+  if (most.store->finished() == 0)
+    throw InputError("shards", folders.front(), "holds no finished points of a sweep");
+  if (!partial) require_all(*most.sweep, *most.store);
+  if (most.sweep->finished_points(*most.store) == 0)
+    throw InputError("shards", folders.front(), "no point is finished by every method");
+  return write_result(*most.sweep, *most.store, clock.seconds());
+}
 
 PointFinder::PointFinder(const SweepPoints& points) : points_(points) {
   if (points.is_list) {
@@ -78,6 +353,7 @@ std::size_t ScatteredRuns::operator[](std::size_t number) const {
   return (share_.number + number * share_.count) * stride_ % runs_;
 }
 
+/// False if there is nothing to run (--print-config).
 bool Sweep::read() {
   session_.emplace(command_.text(), keys(), run_, command_.only_prints(), Session::Out::shared);
   take_points();

@@ -1,15 +1,15 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
-#include "apps/command/command_line.h"
+#include "apps/command/subcommands.h"
 #include "apps/sweep/sweep_points.h"
-#include "apps/sweep/varied_points.h"
 #include "core/result/result_file.h"
 #include "core/run/runner.h"
 #include "core/session/session.h"
@@ -74,14 +74,12 @@ struct SweepRun {
 
 /// A sweep as it was asked for: runs that depend on the values of their points alone, and the one
 /// result that they make. Kinds of sweeps say what a run is and how results stand together.
-class Sweep {
+class Sweep : public Call {
  public:
-  virtual ~Sweep() = default;
-
-  Subcommand& command() { return command_; }
-  /// Once its keys are filled. False if there is nothing to run (--print-config). Throws InputError
-  /// for whatever is wrong.
-  bool read();
+  Subcommand& command() override { return command_; }
+  /// Runs what is not yet there, by all processes that a launcher has started together, and ends in
+  /// the result, or says how to go on. Throws InputError for whatever is wrong with the keys.
+  int run() override;
   /// From a resolved configuration, for a result that is made otherwise: by this command line.
   void parse_config(const std::string& config, const std::string& command_line = "");
 
@@ -131,11 +129,21 @@ class Sweep {
 
  private:
   void take_points();
+  bool read();
 
   std::string share_text_;
   std::optional<SweepShare> share_;
   Subcommand command_;
   std::optional<Session> session_;
 };
+
+/// Puts together what folders hold of a sweep. make: the kind of sweep that a configuration is of.
+/// partial: also where points are missing. Returns the exit status. Throws InputError.
+int merge_sweep(const std::function<std::unique_ptr<Sweep>(const std::string& config)>& make,
+                const std::vector<std::string>& folders, const std::string& out, bool partial,
+                const std::string& command_line);
+
+/// The folder beside a sweep's result in which its points gather until all are there.
+std::string shards_of(const std::string& out);
 
 }  // namespace flatspeckle::apps

@@ -3,22 +3,127 @@
 #include <algorithm>
 #include <set>
 #include <span>
+#include <sstream>
 
+#include "apps/command/key_lists.h"
 #include "core/error.h"
 #include "core/keys/csv.h"
 #include "core/keys/number_text.h"
+#include "core/keys/written_number.h"
 
 namespace flatspeckle::apps {
 
 namespace {
 
+constexpr std::size_t most_points = 1'000'000;
+
+[[noreturn]] void refuse(const std::string& text, const std::string& accepted) {
+  throw InputError("vary", text, accepted);
+}
+
+/// One text for one number: points are known by their texts.
 std::vector<std::string> texts_of(std::span<const double> values) {
   std::vector<std::string> texts;
   for (double value : values) texts.push_back(number_text(value));
   return texts;
 }
 
-/// Axes that were given. One text for one number: points are known by their texts.
+AxisValues values_of(const Key& key, const std::string& values) {
+  if (key.is_number()) {
+    const std::string name = "vary " + key.name();
+    const Written kind = written_kind(key.unit());
+    if (const auto range = written_range(name, values, kind)) return AxisValues(*range);
+    return texts_of(written_numbers(name, values, kind));
+  }
+  std::vector<std::string> texts;
+  std::istringstream words(values);
+  for (std::string word; std::getline(words, word, ',');) texts.push_back(word);
+  if (texts.empty()) refuse(key.name() + "=", "must have a value or more");
+  return texts;
+}
+
+/// Throws InputError where there are more.
+void require_at_most(std::size_t most, const SweepPoints& points) {
+  double count = 1;  // which may be beyond what a whole number holds
+  for (const SweepAxis& axis : points.axes)
+    count = points.is_list ? static_cast<double>(axis.values.size())
+                           : count * static_cast<double>(axis.values.size());
+  if (count > static_cast<double>(most))
+    throw InputError("points of the sweep", count, "must be at most " + std::to_string(most));
+}
+
+/// Throws InputError for a point that comes twice.
+void refuse_twins(const SweepPoints& points) {
+  std::set<std::string> seen;
+  for (std::size_t point = 0; point < points.count(); ++point)
+    if (!seen.insert(points.name(point)).second)
+      throw InputError("the point " + points.name(point) + " is given twice");
+}
+
+/// The same for a value of an axis: in a range only neighbours can be equal.
+void refuse_twins(const SweepAxis& axis) {
+  const NumberRange* const range = axis.values.range();
+  std::set<std::string> seen;
+  for (std::size_t i = 0; i < axis.values.size(); ++i) {
+    const bool is_new = range == nullptr ? seen.insert(axis.values[i]).second
+                                         : i == 0 || range->at(i) != range->at(i - 1);
+    if (!is_new) refuse(axis.key, "has the value " + axis.values[i] + " twice");
+  }
+}
+
+SweepPoints grid_of(const VaryValues& values, const Keys& of) {
+  SweepPoints points;
+  for (const std::string& text : values.vary) {
+    points.axes.push_back(varied_axis(of, text));
+    const SweepAxis& axis = points.axes.back();
+    for (std::size_t i = 0; i + 1 < points.axes.size(); ++i)
+      if (points.axes[i].key == axis.key) refuse(text, axis.key + " is varied already");
+  }
+  require_at_most(most_points, points);
+  return points;
+}
+
+SweepPoints list_of(const std::string& path, const Keys& of) {
+  const Table table = read_csv(path);
+  if (table.rows() == 0) throw InputError("points", path, "must have at least one row");
+  SweepPoints points;
+  points.is_list = true;
+  for (const std::string& name : table.names()) {
+    if (!varied_key(of, name, name).is_number()) refuse(name, "has no numbers, as a table has");
+    points.axes.push_back({name, texts_of(table.column(name))});
+  }
+  require_at_most(most_points, points);
+  refuse_twins(points);
+  return points;
+}
+
+/// What follows the key's name: a number from 0 on, "all", or nothing.
+std::string component_of(const SweepAxis& axis) {
+  const auto dot = axis.key.find('.');
+  return dot == std::string::npos ? "" : axis.key.substr(dot + 1);
+}
+
+/// All the numbers of a key, of which the axis sets one or all.
+std::vector<std::string> with_component(const Keys& keys, const SweepAxis& axis,
+                                        const std::string& value) {
+  std::vector<std::string> texts = keys.find(key_of(axis))->value();
+  const std::string component = component_of(axis);
+  if (component.empty()) {
+    if (texts.size() > 1)
+      refuse(axis.key, "has " + std::to_string(texts.size()) + " values: vary " + axis.key +
+                           ".0, the first, another, or " + axis.key + ".all");
+    return {value};
+  }
+  if (component == "all") return std::vector(texts.size(), value);
+  const auto number = read_whole_number(component);
+  if (!number || *number < 0 || static_cast<std::size_t>(*number) >= texts.size())
+    refuse(axis.key, "must be .all or a number below the " + std::to_string(texts.size()) +
+                         " values that the key is given");
+  texts[static_cast<std::size_t>(*number)] = value;
+  return texts;
+}
+
+/// Axes that were given.
 std::vector<SweepAxis> given_axes(const Keys& keys, const SweepLists& lists) {
   std::vector<SweepAxis> axes;
   for (const std::string& key : lists.keys) {
@@ -77,6 +182,62 @@ SweepPoints listed(const Keys& keys, const SweepLists& lists) {
 
 }  // namespace
 
+const Key& varied_key(const Keys& of, const std::string& name, const std::string& text) {
+  const Key* const key = of.find(key_of({name, {}}));
+  if (key == nullptr) refuse(text, name + " is no key of that subcommand" + did_you_mean(of, name));
+  if (key->is_effort() || !key->is_in_files())
+    refuse(text, name + " says how to run, not what, and cannot be swept");
+  if (key->is_file()) refuse(text, name + " names a file, and cannot be swept");
+  return *key;
+}
+
+SweepAxis varied_axis(const Keys& of, const std::string& text) {
+  const auto equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    refuse(text, "must be key=values: 1,2,3 or first:last:count or first:last:count:log");
+  const std::string name = text.substr(0, equals);
+  SweepAxis axis{name, values_of(varied_key(of, name, text), text.substr(equals + 1))};
+  refuse_twins(axis);
+  return axis;
+}
+
+void add_vary_key(Keys& keys, VaryValues& values) {
+  keys.add("vary", values.vary,
+           "What to sweep, all combinations: key=1,2,3 or key=first:last:count or "
+           "key=first:last:count:log; key.0 is the first value of a key of several, key.all all")
+      .only_of("sweeps of another subcommand, and of plan in fit");
+}
+
+void add_keys(Keys& keys, VaryValues& values) {
+  add_vary_key(keys, values);
+  keys.add("points", values.points, "CSV with columns named by keys: a list of points instead");
+}
+
+SweepPoints varied_points(const Keys& keys, const VaryValues& values, const Keys& of) {
+  const bool is_list = !keys.read(values.points).empty(), is_grid = !keys.read(values.vary).empty();
+  if (is_list == is_grid)
+    throw InputError(is_list ? "vary, points: give one"
+                             : "vary is not given: key=values to sweep, or points, a table");
+  return is_list ? list_of(values.points, of) : grid_of(values, of);
+}
+
+void set_point(const SweepPoints& points, std::size_t point, const Keys& keys) {
+  for (std::size_t i = 0; i < points.axes.size(); ++i) {
+    const SweepAxis& axis = points.axes[i];
+    keys.set(key_of(axis), with_component(keys, axis, points.value(i, point)));
+  }
+}
+
+std::string key_of(const SweepAxis& axis) {
+  return axis.key.substr(0, axis.key.find('.'));
+}
+
+std::string axis_name(const SweepAxis& axis) {
+  std::string name = axis.key;
+  std::ranges::replace(name, '.', '_');
+  return name;
+}
+
 std::size_t AxisValues::size() const {
   return range() != nullptr ? range()->count : std::get<0>(values_).size();
 }
@@ -129,22 +290,6 @@ void add_sweep_keys(Keys& keys, SweepLists& lists) {
   keys.add("points", lists.points,
            "CSV with columns among these keys (and index_imaginary): a list of points in place of "
            "all combinations");
-}
-
-void require_at_most(std::size_t most, const SweepPoints& points) {
-  double count = 1;  // which may be beyond what a whole number holds
-  for (const SweepAxis& axis : points.axes)
-    count = points.is_list ? static_cast<double>(axis.values.size())
-                           : count * static_cast<double>(axis.values.size());
-  if (count > static_cast<double>(most))
-    throw InputError("points of the sweep", count, "must be at most " + std::to_string(most));
-}
-
-void refuse_twins(const SweepPoints& points) {
-  std::set<std::string> seen;
-  for (std::size_t point = 0; point < points.count(); ++point)
-    if (!seen.insert(points.name(point)).second)
-      throw InputError("the point " + points.name(point) + " is given twice");
 }
 
 SweepPoints sweep_points(const Keys& keys, const SweepLists& lists) {

@@ -58,13 +58,37 @@ struct SweepLists {
 /// Puts lists in the place of the keys that may be swept.
 void add_sweep_keys(Keys& keys, SweepLists& lists);
 
-/// Throws InputError where there are more.
-void require_at_most(std::size_t most, const SweepPoints& points);
-/// Throws InputError for a point that comes twice.
-void refuse_twins(const SweepPoints& points);
-
 /// Throws InputError for a table without rows, with columns that are no keys of a sweep or lists
 /// beside it, and for a point that comes twice.
 SweepPoints sweep_points(const Keys& keys, const SweepLists& lists);
+
+/// What a sweep varies, as given: "key=1,2,3", "key=first:last:count", the same with ":log"; or a
+/// table with a column for each key. key.0 is the first number of a key of several, key.all are all
+/// of them.
+struct VaryValues {
+  std::vector<std::string> vary;
+  std::string points;
+};
+void add_vary_key(Keys& keys, VaryValues& values);
+void add_keys(Keys& keys, VaryValues& values);
+
+/// Points of keys of `of`. Throws InputError for what is no such list or range, for keys that there
+/// are not or that change no result, and for values that come twice.
+SweepPoints varied_points(const Keys& keys, const VaryValues& values, const Keys& of);
+
+/// The row of a key that can be varied, by itself or as key.0; text: what asked for it. Throws
+/// InputError.
+const Key& varied_key(const Keys& of, const std::string& name, const std::string& text);
+
+/// "key=1,2,3" and the like. Throws InputError.
+SweepAxis varied_axis(const Keys& of, const std::string& text);
+
+/// Sets the keys of a point. Throws InputError.
+void set_point(const SweepPoints& points, std::size_t point, const Keys& keys);
+
+/// The key that an axis sets, without the number of a component.
+std::string key_of(const SweepAxis& axis);
+/// Its name as a dataset: "sensor_at_0".
+std::string axis_name(const SweepAxis& axis);
 
 }  // namespace flatspeckle::apps

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/result/byte_stream.h"
+#include "core/byte_stream.h"
 
 namespace flatspeckle {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/byte_stream.h"
 #include "core/error.h"
-#include "core/result/byte_stream.h"
 #include "core/result/result_group.h"
 
 namespace flatspeckle {

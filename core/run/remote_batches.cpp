@@ -1,10 +1,10 @@
 #include "core/run/remote_batches.h"
 
 #include <chrono>
-#include <cstring>
 #include <iostream>
 #include <thread>
 
+#include "core/byte_stream.h"
 #include "core/run/interrupt.h"
 #include "core/run/ranks.h"
 #include "core/run/stopwatch.h"
@@ -20,7 +20,7 @@ struct Request {
   std::uint32_t threads = 0;
   std::uint64_t run = 0, number = 0;
   double cpu_s = 0;
-  // a delivery's sums follow
+  // sums follow, of a delivery
 };
 
 struct Reply {
@@ -28,29 +28,15 @@ struct Reply {
   std::uint64_t run = 0, number = 0;
 };
 
-template <typename Value>
-std::span<const std::byte> bytes_of(const Value& value) {
-  return std::as_bytes(std::span(&value, 1));
+Bytes message_of(const Request& request, const std::vector<Complex>& sums = {}) {
+  ByteWriter message;
+  message.put(request);
+  message.put(sums);
+  return message.take();
 }
 
-template <typename Value>
-Value value_of(const Bytes& bytes) {
-  Value value;
-  std::memcpy(&value, bytes.data(), sizeof value);
-  return value;
-}
-
-Bytes with_sums(const Request& request, std::span<const Complex> sums) {
-  Bytes message(sizeof request + sums.size_bytes());
-  std::memcpy(message.data(), &request, sizeof request);
-  std::memcpy(message.data() + sizeof request, sums.data(), sums.size_bytes());
-  return message;
-}
-
-std::vector<Complex> sums_of(const Bytes& message) {
-  std::vector<Complex> sums((message.size() - sizeof(Request)) / sizeof(Complex));
-  std::memcpy(sums.data(), message.data() + sizeof(Request), sums.size() * sizeof(Complex));
-  return sums;
+Reply asked(const Request& request, const std::vector<Complex>& sums = {}) {
+  return ByteReader(ask(message_of(request, sums))).get<Reply>();
 }
 
 /// The jobs that this rank works on, made when first needed.
@@ -84,11 +70,11 @@ class Jobs {
 void work_remotely(Jobs& jobs) {
   using Offer = BatchPool::Offer;
   double cpu_before = thread_cpu_seconds();
-  auto reply = value_of<Reply>(ask(bytes_of(Request{})));
+  auto reply = asked({});
   while (reply.offer != Offer::none) {
     if (reply.offer == Offer::later) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      reply = value_of<Reply>(ask(bytes_of(Request{})));
+      reply = asked({});
       continue;
     }
     std::vector<Complex> sums;
@@ -97,13 +83,13 @@ void work_remotely(Jobs& jobs) {
       sums.resize(job->size);
       job->run(reply.number, sums);
     } catch (const Interrupted&) {
-      reply = value_of<Reply>(ask(bytes_of(Request{Request::interrupted})));
+      reply = asked({Request::interrupted});
       continue;
     }
     const double cpu_now = thread_cpu_seconds();
     const Request done{Request::delivery, 0, reply.run, reply.number, cpu_now - cpu_before};
     cpu_before = cpu_now;
-    reply = value_of<Reply>(ask(with_sums(done, sums)));
+    reply = asked(done, sums);
   }
 }
 
@@ -120,7 +106,8 @@ void RankServer::serve(BatchPool* pool) {
 }
 
 void RankServer::take_in(BatchPool* pool, int rank, const Bytes& message) {
-  const auto request = value_of<Request>(message);
+  ByteReader bytes(message);
+  const auto request = bytes.get<Request>();
   Reply reply;
   if (request.kind == Request::greeting) {
     --silent_ranks_;
@@ -130,7 +117,8 @@ void RankServer::take_in(BatchPool* pool, int rank, const Bytes& message) {
       if (request.kind == Request::interrupted)
         pool->interrupt();
       else if (request.kind == Request::delivery)
-        pool->deliver({request.run, request.number, nullptr}, sums_of(message), request.cpu_s);
+        pool->deliver({request.run, request.number, nullptr}, bytes.get<std::vector<Complex>>(),
+                      request.cpu_s);
     } catch (...) {
       pool->fail(std::current_exception());
     }
@@ -140,12 +128,12 @@ void RankServer::take_in(BatchPool* pool, int rank, const Bytes& message) {
     reply.number = batch.number;
   }
   if (request.kind != Request::greeting && reply.offer == BatchPool::Offer::none) --threads_;
-  answer(rank, bytes_of(reply));
+  answer(rank, std::as_bytes(std::span(&reply, 1)));
 }
 
 void work_for_rank_0(const RunList& runs, int threads) {
   Jobs jobs(runs);
-  ask(bytes_of(Request{Request::greeting, static_cast<std::uint32_t>(threads)}));
+  ask(message_of({Request::greeting, static_cast<std::uint32_t>(threads)}));
 #pragma omp parallel num_threads(threads)
   try {
     work_remotely(jobs);

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <limits>
+#include <memory>
+#include <nlopt.h>
 #include <numbers>
 #include <set>
 
@@ -11,7 +14,42 @@
 
 namespace flatspeckle {
 
+std::vector<GroupedSums> without_blocks(const GroupedSums& sums, std::size_t blocks) {
+  blocks = std::min(blocks, sums.groups());
+  std::vector<double> samples(blocks);
+  std::vector<std::vector<Complex>> totals(blocks, std::vector<Complex>(sums.size()));
+  for (std::size_t group = 0; group < sums.groups(); ++group) {
+    const auto own = sums.group_sums(group);
+    auto& total = totals[group % blocks];
+    std::ranges::transform(own, total, total.begin(), std::plus());
+    samples[group % blocks] += sums.group_samples(group);
+  }
+  std::vector<GroupedSums> without(blocks, GroupedSums(sums.size()));
+  for (std::size_t left_out = 0; left_out < blocks; ++left_out)
+    for (std::size_t block = 0; block < blocks; ++block)
+      if (block != left_out) without[left_out].add(samples[block], totals[block]);
+  return without;
+}
+
 namespace {
+
+/// No exception may pass through the library, which is C.
+struct Call {
+  const std::function<std::optional<double>(const UnitPlace&)>& value;
+  nlopt_opt optimiser = nullptr;
+  std::exception_ptr failure = {};
+};
+
+double called(unsigned size, const double* at, double*, void* data) {
+  Call& call = *static_cast<Call*>(data);
+  try {
+    if (const auto found = call.value(UnitPlace(at, at + size))) return *found;
+  } catch (...) {
+    call.failure = std::current_exception();
+  }
+  nlopt_force_stop(call.optimiser);
+  return 0;
+}
 
 Measured combined(const Measured& a, const Measured& b, auto&& of) {
   FS_EXPECT(a.without.size() == b.without.size());
@@ -247,6 +285,25 @@ bool until_spent(const Work& work) {
 }
 
 }  // namespace
+
+void local_search(const UnitPlace& start, double first, double last, int most,
+                  const std::function<std::optional<double>(const UnitPlace&)>& value) {
+  const auto size = static_cast<unsigned>(start.size());
+  const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> made(
+      nlopt_create(size == 1 ? NLOPT_LN_NELDERMEAD : NLOPT_LN_BOBYQA, size), nlopt_destroy);
+  nlopt_opt optimiser = made.get();
+  Call call{value, optimiser};
+  nlopt_set_max_objective(optimiser, called, &call);
+  nlopt_set_lower_bounds1(optimiser, 0);
+  nlopt_set_upper_bounds1(optimiser, 1);
+  nlopt_set_initial_step1(optimiser, first);
+  nlopt_set_xtol_abs1(optimiser, last);
+  nlopt_set_maxeval(optimiser, most);
+  UnitPlace at = start;
+  double found = 0;
+  nlopt_optimize(optimiser, at.data(), &found);  // whatever ends it, values are known by then
+  if (call.failure) std::rethrow_exception(call.failure);
+}
 
 double error(const Measured& one) {
   const auto blocks = static_cast<double>(one.without.size());

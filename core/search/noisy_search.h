@@ -1,13 +1,29 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/search/local_search.h"
+#include "core/numbers/statistics.h"
 
 namespace flatspeckle {
+
+/// The sums without each of `blocks` equal parts of their batches, or of as many as there are
+/// groups; each with a group for each of the other blocks.
+std::vector<GroupedSums> without_blocks(const GroupedSums& sums, std::size_t blocks);
+
+/// A place in the unit cube.
+using UnitPlace = std::vector<double>;
+
+/// Looks for a maximum of `value` near `start` in the unit cube without derivatives (NLopt: BOBYQA
+/// of Powell 2009, a quadratic model in a region of trust; of one number, the simplex of Nelder and
+/// Mead). Steps begin with `first` and end with `last`. It ends early after `most` values, or where
+/// there is none. What `value` throws is thrown again here.
+void local_search(const UnitPlace& start, double first, double last, int most,
+                  const std::function<std::optional<double>(const UnitPlace&)>& value);
 
 /// A number that was measured with noise: its value, and what it is without each of the equal
 /// blocks of its samples. Numbers that were measured with the same random numbers have blocks that

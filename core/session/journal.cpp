@@ -12,7 +12,6 @@
 #include <zlib.h>
 
 #include "core/error.h"
-#include "core/session/identity.h"
 #include "core/session/session.h"
 
 namespace flatspeckle {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "core/byte_stream.h"
 #include "core/result/atomic_file.h"
-#include "core/result/byte_stream.h"
 
 namespace flatspeckle {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <compare>
+#include <functional>
 #include <limits>
 
 namespace flatspeckle {
@@ -39,6 +40,37 @@ inline Vec2 direction(double angle) {
 /// The angle of a vector, in (-pi, pi] (C2).
 inline double angle_of(Vec2 v) {
   return std::atan2(v.x, v.z);
+}
+
+/// Axis-parallel.
+struct Rectangle {
+  Vec2 low, high;
+
+  double width() const { return high.x - low.x; }
+  double depth() const { return high.z - low.z; }
+  /// From rim to rim; 0 where they overlap.
+  double distance(const Rectangle& other) const {
+    return std::hypot(std::max({0.0, other.low.x - high.x, low.x - other.high.x}),
+                      std::max({0.0, other.low.z - high.z, low.z - other.high.z}));
+  }
+  double distance(Vec2 point) const { return distance(Rectangle{point, point}); }
+  Rectangle joined(const Rectangle& other) const {
+    return {{std::min(low.x, other.low.x), std::min(low.z, other.low.z)},
+            {std::max(high.x, other.high.x), std::max(high.z, other.high.z)}};
+  }
+};
+
+/// Returns the smallest rectangle that holds all of these; place: of each of them. Of none it is
+/// infinite, inside out.
+template <typename Things, typename Place = std::identity>
+Rectangle bounds_of(const Things& things, const Place& place = {}) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  Rectangle box{{infinity, infinity}, {-infinity, -infinity}};
+  for (const auto& thing : things) {
+    const Vec2 x = std::invoke(place, thing);
+    box = box.joined({x, x});
+  }
+  return box;
 }
 
 /// Where the scatterers are: the box |x| <= width/2, 0 <= z <= depth, or the slab 0 <= z <= depth

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "core/numbers/complex.h"
@@ -42,6 +43,9 @@ BulkMedium bulk_medium(const Scatterer& bulk, const BulkPhase& phase, double mu_
 /// The same scatterers at positions with a structure factor (C16): mu_s = rho int |A|^2 S, g and
 /// albedo are those of |A|^2 S, absorption stays rho (sigma_e - sigma_s).
 BulkMedium correlated_medium(BulkMedium independent, double k, StructureTable structure);
+
+/// Bulks and how much of the domain each fills, in the mean.
+BulkMedium mean_medium(const std::vector<std::pair<const BulkMedium*, double>>& shares);
 
 /// A(theta) sqrt(S(2 k |sin(theta/2)|)) at theta = 0 .. pi in equal intervals, over the square root
 /// of mu_s / rho: the absolute square is the phase function, up to a factor of order 1. The product

@@ -64,7 +64,4 @@ class MediumProfile {
   std::vector<Material> materials_;
 };
 
-/// Bulks and how much of the domain each fills, in the mean.
-BulkMedium mean_medium(const std::vector<std::pair<const BulkMedium*, double>>& shares);
-
 }  // namespace flatspeckle

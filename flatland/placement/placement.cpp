@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/keys/chosen.h"
 #include "core/keys/csv.h"
 #include "flatland/placement/cell_grid.h"
 #include "flatland/placement/equilibrium_disks.h"
@@ -67,6 +68,17 @@ Scatterer row_scatterer(const Table& table, std::size_t row, Scatterer scatterer
 }
 
 }  // namespace
+
+PlacementRule::Kind placement_kind(const std::optional<std::string>& word, bool disks) {
+  using Rule = PlacementRule::Kind;
+  if (!word) return disks ? Rule::hard_disk : Rule::poisson;
+  const Rule rule = chosen<Rule>(placement_words, *word);
+  if (disks == (rule == Rule::poisson))
+    throw InputError("placement", *word,
+                     disks ? "disks must not overlap: hard_disk or equilibrium"
+                           : "scatterers without a radius: poisson");
+  return rule;
+}
 
 void require_placeable(const PlacementRule& rule) {
   if (rule.mean_count > most_scatterers)

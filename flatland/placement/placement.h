@@ -37,6 +37,10 @@ inline const std::string& placement_word(PlacementRule::Kind kind) {
   return placement_words[static_cast<std::size_t>(kind)];
 }
 
+/// The kind that a word names, by default that of disks, or of points. Throws InputError for one
+/// that is not of them.
+PlacementRule::Kind placement_kind(const std::optional<std::string>& word, bool disks);
+
 /// More is refused: no machine solves it.
 inline constexpr double most_scatterers = 1e7;
 

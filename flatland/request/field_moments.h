@@ -27,6 +27,12 @@ inline auto relative_error_of(const Estimator& estimator) {
       [estimator](const GroupedSums& sums) { return relative_error(jackknife(sums, estimator)); };
 }
 
-FieldMoments field_moments(const FieldJob& job, const GroupedSums& sums);
+inline FieldMoments field_moments(const FieldJob& job, const GroupedSums& sums) {
+  FieldMoments moments;
+  if (job.mean) moments.mean = jackknife(sums, job.mean);
+  moments.covariance = jackknife(sums, job.covariance);
+  moments.samples = sums.total_samples();
+  return moments;
+}
 
 }  // namespace flatspeckle

@@ -21,23 +21,6 @@ struct Blob {
   double radius = 1, amplitude = 0;
 };
 
-/// Relative density 1 and Gaussian blobs. What a way meets is in closed form.
-class Blobs : public DensityMap {
- public:
-  /// The density must be positive everywhere: negative amplitudes add up to -1 at the most.
-  Blobs(Domain box, Material material, std::vector<Blob> blobs);
-
-  double relative_density(Vec2 x) const override;
-  std::string describe() const override;
-
- private:
-  double met(Vec2 x, Vec2 w, double length) const override;
-  double most_relative() const override;
-  double mean_relative() const override;
-
-  std::vector<Blob> blobs_;
-};
-
 /// int exp(-(t - middle)^2 / (2 radius^2)) dt
 double gaussian_between(double from, double to, double middle, double radius) {
   const double scale = 1 / (std::numbers::sqrt2 * radius);
@@ -45,46 +28,54 @@ double gaussian_between(double from, double to, double middle, double radius) {
          (std::erf((to - middle) * scale) - std::erf((from - middle) * scale));
 }
 
-Blobs::Blobs(Domain box, Material material, std::vector<Blob> blobs)
-    : DensityMap(box, std::move(material)), blobs_(std::move(blobs)) {}
+/// Relative density 1 and Gaussian blobs. What a way meets is in closed form.
+class Blobs : public DensityMap {
+ public:
+  /// The density must be positive everywhere: negative amplitudes add up to -1 at the most.
+  Blobs(Domain box, Material material, std::vector<Blob> blobs)
+      : DensityMap(box, std::move(material)), blobs_(std::move(blobs)) {}
 
-double Blobs::relative_density(Vec2 x) const {
-  double density = 1;
-  for (const auto& [centre, radius, amplitude] : blobs_) {
-    const Vec2 from = x - centre;
-    density += amplitude * std::exp(-dot(from, from) / (2 * radius * radius));
+  double relative_density(Vec2 x) const override {
+    double density = 1;
+    for (const auto& [centre, radius, amplitude] : blobs_) {
+      const Vec2 from = x - centre;
+      density += amplitude * std::exp(-dot(from, from) / (2 * radius * radius));
+    }
+    return std::max(0.0, density);  // what rounding leaves of a hole
   }
-  return std::max(0.0, density);  // what rounding leaves of a hole
-}
 
-double Blobs::met(Vec2 x, Vec2 w, double length) const {
-  double sum = length;
-  for (const auto& [centre, radius, amplitude] : blobs_) {
-    const Vec2 way = centre - x;
-    const double along = dot(way, w), across = way.x * w.z - way.z * w.x;
-    sum += amplitude * std::exp(-across * across / (2 * radius * radius)) *
-           gaussian_between(0, length, along, radius);
+  std::string describe() const override {
+    return "density of " + std::to_string(blobs_.size()) + " blobs";
   }
-  return std::max(0.0, sum);
-}
 
-double Blobs::most_relative() const {
-  double most = 1;
-  for (const Blob& blob : blobs_) most += std::max(0.0, blob.amplitude);
-  return most;
-}
+ private:
+  double met(Vec2 x, Vec2 w, double length) const override {
+    double sum = length;
+    for (const auto& [centre, radius, amplitude] : blobs_) {
+      const Vec2 way = centre - x;
+      const double along = dot(way, w), across = way.x * w.z - way.z * w.x;
+      sum += amplitude * std::exp(-across * across / (2 * radius * radius)) *
+             gaussian_between(0, length, along, radius);
+    }
+    return std::max(0.0, sum);
+  }
 
-double Blobs::mean_relative() const {
-  double sum = 0;
-  for (const auto& [centre, radius, amplitude] : blobs_)
-    sum += amplitude * gaussian_between(-box().width / 2, box().width / 2, centre.x, radius) *
-           gaussian_between(0, box().depth, centre.z, radius);
-  return 1 + sum / box().area();
-}
+  double most_relative() const override {
+    double most = 1;
+    for (const Blob& blob : blobs_) most += std::max(0.0, blob.amplitude);
+    return most;
+  }
 
-std::string Blobs::describe() const {
-  return "density of " + std::to_string(blobs_.size()) + " blobs";
-}
+  double mean_relative() const override {
+    double sum = 0;
+    for (const auto& [centre, radius, amplitude] : blobs_)
+      sum += amplitude * gaussian_between(-box().width / 2, box().width / 2, centre.x, radius) *
+             gaussian_between(0, box().depth, centre.z, radius);
+    return 1 + sum / box().area();
+  }
+
+  std::vector<Blob> blobs_;
+};
 
 std::vector<Blob> read_blobs(const std::string& path) {
   const Table table = read_csv(path, {"x", "z", "radius", "amplitude"});

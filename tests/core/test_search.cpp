@@ -5,7 +5,6 @@
 
 #include "core/numbers/random.h"
 #include "core/search/noisy_search.h"
-#include "core/search/sum_blocks.h"
 
 namespace flatspeckle::test_search {
 

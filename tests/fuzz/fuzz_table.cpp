@@ -3,7 +3,7 @@
 #include "apps/sweep/curve_sweep.h"
 #include "core/keys/csv.h"
 #include "flatland/placement/placement.h"
-#include "flatland/request/sensor.h"
+#include "flatland/request/request.h"
 #include "grin/media/fields/scene_field.h"
 #include "grin/rays/marching/ray_starts.h"
 #include "tests/fuzz/input.h"

@@ -8,9 +8,9 @@
 #include "core/error.h"
 #include "core/numbers/random.h"
 #include "multipole_oracle.h"
+#include "wave_solver/equations/rim_waves.h"
 #include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/maps/field_map.h"
-#include "wave_solver/solutions/interior_field.h"
 
 namespace flatspeckle::wave {
 

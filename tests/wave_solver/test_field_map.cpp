@@ -5,9 +5,9 @@
 #include <doctest/doctest.h>
 
 #include "reference.h"
+#include "wave_solver/equations/rim_waves.h"
 #include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/maps/field_map.h"
-#include "wave_solver/solutions/interior_field.h"
 
 namespace flatspeckle::wave::test_field_map {
 

@@ -20,7 +20,6 @@ struct ClusterTMatrix {
   std::vector<Mode> modes;        ///< 0, cos 1, sin 1, .. order, weighted by w_n
   std::vector<Complex> response;  ///< column-major, modes x modes
 
-  ModeSet modes_at(Vec2 centre) const { return {centre, modes, order}; }
   /// The response of the cluster turned by an angle (C2) about its centre.
   std::vector<Complex> turned(double angle) const;
 };

@@ -1,12 +1,32 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/numbers/complex.h"
-#include "core/numbers/unset.h"
 
 namespace flatspeckle::wave {
+
+/// Allocator of a vector whose elements are written before they are read: they are not set to 0
+/// when it is made with a size.
+template <typename Number>
+struct Unset : std::allocator<Number> {
+  Unset() = default;
+  template <typename Other>
+  Unset(const Unset<Other>&) {}
+  template <typename Other>
+  struct rebind {
+    using other = Unset<Other>;
+  };
+
+  void construct(Number*) const {}
+  template <typename... Values>
+  void construct(Number* at, Values&&... values) const {
+    std::construct_at(at, std::forward<Values>(values)...);
+  }
+};
 
 /// Of a matrix that is filled by whoever makes it, column by column.
 using Entries = std::vector<Complex, Unset<Complex>>;

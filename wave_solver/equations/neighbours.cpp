@@ -2,32 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "flatland/placement/cell_grid.h"
 
 namespace flatspeckle::wave {
 
 namespace {
-
-constexpr double far_away = std::numeric_limits<double>::infinity();
-
-struct DiskExtent {
-  double width = 0;  // of the square that holds the centres
-  double largest_radius = 0;
-};
-
-DiskExtent extent_of(const Placement& placement) {
-  Vec2 low{far_away, far_away}, high{-far_away, -far_away};
-  DiskExtent extent;
-  for (const auto& [position, scatterer] : placement) {
-    low = {std::min(low.x, position.x), std::min(low.z, position.z)};
-    high = {std::max(high.x, position.x), std::max(high.z, position.z)};
-    extent.largest_radius = std::max(extent.largest_radius, scatterer.disk_radius());
-  }
-  extent.width = std::max(high.x - low.x, high.z - low.z);
-  return extent;
-}
 
 // Keeps those found ordered by their images, and of equal scatterers the closest one.
 void enter(const Neighbour& candidate, const Placement& placement, std::size_t most,
@@ -74,17 +54,20 @@ std::vector<std::vector<Neighbour>> neighbours(const Placement& placement, std::
   std::vector<std::vector<Neighbour>> all(placement.size());
   std::vector<std::size_t> left;
   for (std::size_t j = 0; j < placement.size(); ++j) left.push_back(j);
-  const DiskExtent extent = extent_of(placement);
-  const double spacing = extent.width / std::sqrt(static_cast<double>(placement.size()));
-  for (double cell = std::max({spacing, 2.5 * extent.largest_radius, 1e-300}); !left.empty();
-       cell *= 2) {
+  double largest_radius = 0;
+  for (const auto& placed : placement)
+    largest_radius = std::max(largest_radius, placed.scatterer.disk_radius());
+  const Rectangle box = bounds_of(placement, &PlacedScatterer::position);
+  const double width = std::max(box.width(), box.depth());
+  const double spacing = width / std::sqrt(static_cast<double>(placement.size()));
+  for (double cell = std::max({spacing, 2.5 * largest_radius, 1e-300}); !left.empty(); cell *= 2) {
     CellGrid grid(cell);
     for (std::size_t l = 0; l < placement.size(); ++l) grid.insert(placement[l].position, l);
-    const bool last = cell > extent.width;
+    const bool last = cell > width;
     std::erase_if(left, [&](std::size_t j) {
       all[j] = found_in(grid, placement, j, different);
       const double radius = placement[j].scatterer.disk_radius();
-      const double beyond = nearest_image(radius, extent.largest_radius, cell);
+      const double beyond = nearest_image(radius, largest_radius, cell);
       return last || (!all[j].empty() && all[j][0].image <= beyond);
     });
   }

@@ -30,14 +30,10 @@ TMatrixSystem::TMatrixSystem(Placement placement, double k, double tolerance,
 }
 
 std::vector<Complex> TMatrixSystem::source_side(Vec2 source) const {
-  auto side = near_row(source);
+  require_outside(placement_, source);
+  auto side = outside_row(source);
   for (Complex& value : side) value *= Complex(0, -0.25);
   return side;
-}
-
-std::vector<Complex> TMatrixSystem::near_row(Vec2 point) const {
-  require_outside(placement_, point);
-  return outside_row(point);
 }
 
 }  // namespace flatspeckle::wave

@@ -23,11 +23,9 @@ class TMatrixSystem : public WaveEquations {
   /// T_n for n = 0 .. order.
   std::span<const ExtendedComplex> t_matrix(std::size_t scatterer) const { return t_[scatterer]; }
 
-  /// -sigma a of a point source, the Green function (C3); by reciprocity -i/4 of near_row().
+  /// -sigma a of a point source, the Green function (C3); by reciprocity -i/4 of outside_row().
+  /// Throws InputError for a source inside a disk or on a point scatterer.
   std::vector<Complex> source_side(Vec2 source) const;
-  /// What each unknown adds to the scattered field at a point. Throws InputError for a point inside
-  /// a disk or on a point scatterer.
-  std::vector<Complex> near_row(Vec2 point) const;
 
  private:
   Placement placement_;

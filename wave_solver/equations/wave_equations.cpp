@@ -267,4 +267,14 @@ std::vector<Complex> WaveEquations::outside_row(Vec2 point) const {
   return row;
 }
 
+std::vector<Complex> WaveEquations::view_rows(std::span<const View> views) const {
+  std::vector<Complex> rows;
+  rows.reserve(views.size() * unknowns());
+  for (const View& view : views) {
+    const auto row = view.near ? outside_row(view.point) : far_rows({&view.angle, 1});
+    rows.insert(rows.end(), row.begin(), row.end());
+  }
+  return rows;
+}
+
 }  // namespace flatspeckle::wave

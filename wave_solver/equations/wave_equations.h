@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/numbers/complex.h"
+#include "flatland/request/request.h"
 #include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/equations/cylinder_waves.h"
 
@@ -71,6 +72,8 @@ class WaveEquations {
   std::vector<Complex> far_rows(std::span<const double> view_angles) const;
   /// What each unknown adds to the scattered field at a point off all bodies.
   std::vector<Complex> outside_row(Vec2 point) const;
+  /// Either, of far and near views: [view][unknown].
+  std::vector<Complex> view_rows(std::span<const View> views) const;
 
  protected:
   using OwnBlock = std::shared_ptr<const std::vector<Complex>>;  // column-major

@@ -13,54 +13,111 @@
 
 #include "core/numbers/complex.h"
 #include "core/numbers/hankel_array.h"
+#include "core/result/result_group.h"
+#include "core/run/interrupt.h"
 #include "core/run/parallel.h"
+#include "core/run/progress.h"
+#include "core/run/stopwatch.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/equations/multipole_ring.h"
-#include "wave_solver/solutions/interior_field.h"
+#include "wave_solver/equations/rim_waves.h"
 #include "wave_solver/solutions/wave_solution.h"
 #include "wave_solver/sums/helmholtz_sum.h"
 
 namespace flatspeckle::wave {
 
-/// The scattered field of a solution at many points: rings of point sources (multipole_ring.h)
-/// stand for the scatterers wherever a point is beyond a clearance from their centres, so that a
-/// HelmholtzSum serves; nearer points are corrected one by one.
-class RingField {
- public:
-  /// tolerance: of the field, relative to its size; from 1e-12 on. area_per_point: how densely the
-  /// points will lie, which decides the clearances.
-  RingField(const WaveSolution& solution, double tolerance, double area_per_point);
+namespace {
 
-  /// False where rings for this tolerance would need too large charges.
-  bool resolved() const { return largest_charge_ * smallest_tolerance < tolerance_; }
-  double clearance(std::size_t scatterer) const { return ring(scatterer).clearance; }
-  std::size_t sources() const { return positions_.size(); }
-
-  /// Field of all rings, [light][point]; none where the points are so few that a sum over all pairs
-  /// would be faster.
-  std::optional<std::vector<Complex>> sum(std::span<const Vec2> points) const;
-  /// What a scatterer's own waves have more than its ring: [light][point].
-  std::vector<Complex> correction(std::size_t scatterer, std::span<const Vec2> points) const;
-
- private:
-  static constexpr double smallest_tolerance = 1e-14;
-  struct ClearedRing {
-    MultipoleRing ring;
-    double clearance;
-  };
-  const ClearedRing& ring(std::size_t scatterer) const { return rings_[kind_[scatterer]]; }
-  void find_kinds(std::vector<std::size_t>& examples);
-  ClearedRing best_ring(std::size_t scatterer, double area_per_point) const;
-  void place_rings();
-
-  const WaveSolution& solution_;
-  double tolerance_, largest_charge_ = 1;
-  std::vector<std::uint32_t> kind_;
-  std::vector<ClearedRing> rings_;
-  std::vector<std::size_t> first_;  // position of each scatterer's ring
-  std::vector<Vec2> positions_;
-  std::vector<Complex> charges_;  // [light][position]
+// Pixels of one axis whose centres may lie within `distance` of `place`: first and one past last.
+struct Range {
+  Range(double low, double step, double place, double distance, std::size_t from,
+        std::size_t count) {
+    const auto limit = [&](double at) {
+      return static_cast<std::size_t>(
+          std::clamp(at, static_cast<double>(from), static_cast<double>(from + count)));
+    };
+    const double middle = (place - low) / step - 0.5, reach = distance / step;
+    first = limit(std::floor(middle - reach));
+    last = limit(std::ceil(middle + reach) + 1);
+  }
+  std::size_t first, last;
 };
+
+std::size_t whole_chunks(std::size_t wanted, std::size_t most) {
+  return std::min(std::max<std::size_t>(wanted / map_chunk, 1) * map_chunk, most);
+}
+
+}  // namespace
+
+std::vector<MapTile> tiles(const MapGrid& grid, std::size_t pixels) {
+  const std::size_t nx = whole_chunks(pixels / map_chunk, grid.nx);
+  const std::size_t nz = whole_chunks(pixels / nx, grid.nz);
+  std::vector<MapTile> all;
+  for (std::size_t iz = 0; iz < grid.nz; iz += nz)
+    for (std::size_t ix = 0; ix < grid.nx; ix += nx)
+      all.push_back({ix, iz, std::min(nx, grid.nx - ix), std::min(nz, grid.nz - iz)});
+  return all;
+}
+
+std::vector<std::uint32_t> ring_of_pixels(const MapGrid& grid, const MapTile& tile, Vec2 centre,
+                                          double low, double high) {
+  const Range across(grid.low.x, grid.step().x, centre.x, high, tile.ix, tile.nx);
+  const Range along(grid.low.z, grid.step().z, centre.z, high, tile.iz, tile.nz);
+  std::vector<std::uint32_t> found;
+  for (std::size_t iz = along.first; iz < along.last; ++iz)
+    for (std::size_t ix = across.first; ix < across.last; ++ix) {
+      const double r = length(grid.pixel(ix, iz) - centre);
+      if (low <= r && r < high)
+        found.push_back(static_cast<std::uint32_t>((iz - tile.iz) * tile.nx + ix - tile.ix));
+    }
+  return found;
+}
+
+const DatasetTable map_table{
+    .name = "map",
+    .rows = {{"map_z", Data::scale, "", "length", "depth of the pixels"},
+             {"map_x", Data::scale, "", "length", "transverse place of the pixels"},
+             {"total_field", Data::complex, "light_angle map_z map_x", "1",
+              "incident and scattered field, also inside; 0 in soft and hard disks; on a point "
+              "scatterer the field that excites it"}},
+    .attributes = {{"total_field", "wavelength", "float64", "in vacuum"}}};
+
+namespace {
+
+std::vector<double> pixel_centres(const MapGrid& grid, std::size_t count, bool along_z) {
+  std::vector<double> centres;
+  for (std::size_t i = 0; i < count; ++i)
+    centres.push_back(along_z ? grid.pixel(0, i).z : grid.pixel(i, 0).x);
+  return centres;
+}
+
+}  // namespace
+
+std::optional<std::string> write_map(ResultFile& file, const WaveSolution& solution,
+                                     const MapGrid& grid, double tolerance) {
+  FieldMap map(solution, grid, tolerance);
+  const ResultGroup root(file, map_table);
+  root.put("map_z", pixel_centres(grid, grid.nz, true));
+  root.put("map_x", pixel_centres(grid, grid.nx, false));
+  root.begin("total_field", {1, map_chunk, map_chunk});
+  root.attribute("total_field", "wavelength", 2 * std::numbers::pi / solution.system().k());
+  const double all = static_cast<double>(grid.nx) * static_cast<double>(grid.nz);
+  Progress progress("map", "pixels");
+  const Stopwatch clock;
+  Progress::Figures figures;
+  for (const MapTile& tile : map.tiles()) {
+    file.write_block("total_field", map.field(tile), {0, tile.iz, tile.ix},
+                     {solution.light_angles().size(), tile.nz, tile.nx});
+    if (interrupted()) return std::nullopt;
+    const double wall = clock.seconds();
+    figures.samples += static_cast<double>(tile.pixels());
+    figures.rate = figures.samples / wall;
+    figures.seconds_left = (all - figures.samples) / figures.rate;
+    progress.update(wall, figures);
+  }
+  progress.finish(clock.seconds(), figures);
+  return map.method();
+}
 
 namespace {
 
@@ -107,100 +164,130 @@ std::vector<Vec2> positions(const MapGrid& grid, const MapTile& tile, const Pixe
 
 }  // namespace
 
-RingField::RingField(const WaveSolution& solution, double tolerance, double area_per_point)
-    : solution_(solution), tolerance_(tolerance) {
-  blas_single_thread();
-  std::vector<std::size_t> examples;
-  find_kinds(examples);
-  std::vector<std::optional<ClearedRing>> made(examples.size());
-  parallel_for(examples.size(),
-               [&](std::size_t kind) { made[kind] = best_ring(examples[kind], area_per_point); });
-  for (auto& ring : made) {
-    largest_charge_ = std::max(largest_charge_, ring->ring.largest_charge);
-    rings_.push_back(std::move(*ring));
+/// The scattered field of a solution at many points: rings of point sources (multipole_ring.h)
+/// stand for the scatterers wherever a point is beyond a clearance from their centres, so that a
+/// HelmholtzSum serves; nearer points are corrected one by one.
+class RingField {
+ public:
+  /// tolerance: of the field, relative to its size; from 1e-12 on. area_per_point: how densely the
+  /// points will lie, which decides the clearances.
+  RingField(const WaveSolution& solution, double tolerance, double area_per_point)
+      : solution_(solution), tolerance_(tolerance) {
+    blas_single_thread();
+    std::vector<std::size_t> examples;
+    find_kinds(examples);
+    std::vector<std::optional<ClearedRing>> made(examples.size());
+    parallel_for(examples.size(),
+                 [&](std::size_t kind) { made[kind] = best_ring(examples[kind], area_per_point); });
+    for (auto& ring : made) {
+      largest_charge_ = std::max(largest_charge_, ring->ring.largest_charge);
+      rings_.push_back(std::move(*ring));
+    }
+    place_rings();
   }
-  place_rings();
-}
 
-// Scatterers of equal make and order share a ring.
-void RingField::find_kinds(std::vector<std::size_t>& examples) {
-  const TMatrixSystem& system = solution_.system();
-  const Placement& placement = system.placement();
-  for (std::size_t j = 0; j < placement.size(); ++j) {
-    const auto known = std::find_if(examples.begin(), examples.end(), [&](std::size_t example) {
-      return placement[example].scatterer == placement[j].scatterer &&
-             system.order(example) == system.order(j);
-    });
-    kind_.push_back(static_cast<std::uint32_t>(known - examples.begin()));
-    if (known == examples.end()) examples.push_back(j);
+  /// False where rings for this tolerance would need too large charges.
+  bool resolved() const { return largest_charge_ * smallest_tolerance < tolerance_; }
+  double clearance(std::size_t scatterer) const { return ring(scatterer).clearance; }
+  std::size_t sources() const { return positions_.size(); }
+
+  /// Field of all rings, [light][point]; none where the points are so few that a sum over all pairs
+  /// would be faster.
+  std::optional<std::vector<Complex>> sum(std::span<const Vec2> points) const {
+    const double finer = std::max(tolerance_ / largest_charge_, smallest_tolerance);
+    const HelmholtzSum sum(solution_.system().k(), positions_, points, finer);
+    if (sum.range() == 0) return std::nullopt;
+    return sum(charges_);
   }
-}
 
-RingField::ClearedRing RingField::best_ring(std::size_t scatterer, double area_per_point) const {
-  const TMatrixSystem& system = solution_.system();
-  const ModeSet modes = system.modes(scatterer);
-  const double radius = system.placement()[scatterer].scatterer.disk_radius();
-  if (modes.order == 0) return {MultipoleRing(modes, system.k(), radius, radius, tolerance_), 0};
-  std::optional<ClearedRing> best;
-  double least = std::numeric_limits<double>::infinity();
-  for (const double factor : {1.25, 1.5, 2.0, 3.0, 5.0, 8.0}) {
-    const double clearance = factor * radius;
-    MultipoleRing ring(modes, system.k(), radius, clearance, 0.1 * tolerance_);
-    const double near = std::numbers::pi * (clearance - radius) * (clearance + radius);
-    const double seconds =
-        ring_cost(static_cast<double>(ring.points), static_cast<double>(modes.modes.size()),
-                  near / area_per_point);
-    if (seconds >= least) continue;
-    least = seconds;
-    best = {std::move(ring), clearance};
+  /// What a scatterer's own waves have more than its ring: [light][point].
+  std::vector<Complex> correction(std::size_t scatterer, std::span<const Vec2> points) const {
+    std::vector<Complex> field(solution_.light_angles().size() * points.size());
+    add_scattered(solution_, scatterer, points, field);
+    std::vector<double> distances;
+    const std::size_t first = first_[scatterer], count = ring(scatterer).ring.points;
+    for (std::size_t s = first; s < first + count; ++s)
+      for (const Vec2 point : points)
+        distances.push_back(solution_.system().k() * length(point - positions_[s]));
+    std::vector<Complex> waves(distances.size());
+    std::vector<std::size_t> coincident;
+    for (std::size_t i = 0; i < distances.size(); ++i)
+      if (distances[i] == 0) coincident.push_back(i);
+    for (const std::size_t i : coincident) distances[i] = 1;
+    hankel0(distances, waves);
+    for (const std::size_t i : coincident) waves[i] = 0;  // as in HelmholtzSum
+    add_columns(waves, points.size(), &charges_[first], positions_.size(), -1, field);
+    return field;
   }
-  return *best;
-}
 
-void RingField::place_rings() {
-  const TMatrixSystem& system = solution_.system();
-  const Placement& placement = system.placement();
-  for (std::size_t j = 0; j < placement.size(); ++j) {
-    first_.push_back(positions_.size());
-    for (std::size_t s = 0; s < ring(j).ring.points; ++s)
-      positions_.push_back(placement[j].position + ring(j).ring.position(s));
+ private:
+  static constexpr double smallest_tolerance = 1e-14;
+  struct ClearedRing {
+    MultipoleRing ring;
+    double clearance;
+  };
+  const ClearedRing& ring(std::size_t scatterer) const { return rings_[kind_[scatterer]]; }
+  // Scatterers of equal make and order share a ring.
+  void find_kinds(std::vector<std::size_t>& examples) {
+    const TMatrixSystem& system = solution_.system();
+    const Placement& placement = system.placement();
+    for (std::size_t j = 0; j < placement.size(); ++j) {
+      const auto known = std::find_if(examples.begin(), examples.end(), [&](std::size_t example) {
+        return placement[example].scatterer == placement[j].scatterer &&
+               system.order(example) == system.order(j);
+      });
+      kind_.push_back(static_cast<std::uint32_t>(known - examples.begin()));
+      if (known == examples.end()) examples.push_back(j);
+    }
   }
-  const std::size_t lights = solution_.light_angles().size();
-  charges_.resize(lights * positions_.size());
-  for (std::size_t j = 0; j < placement.size(); ++j) {
-    const MultipoleRing& own = ring(j).ring;
-    multiply(CblasNoTrans, CblasNoTrans, own.points, lights, system.modes(j).modes.size(), 1,
-             own.charges.data(), own.points, coefficients(solution_, j), system.unknowns(), 0,
-             &charges_[first_[j]], positions_.size());
+
+  ClearedRing best_ring(std::size_t scatterer, double area_per_point) const {
+    const TMatrixSystem& system = solution_.system();
+    const ModeSet modes = system.modes(scatterer);
+    const double radius = system.placement()[scatterer].scatterer.disk_radius();
+    if (modes.order == 0) return {MultipoleRing(modes, system.k(), radius, radius, tolerance_), 0};
+    std::optional<ClearedRing> best;
+    double least = std::numeric_limits<double>::infinity();
+    for (const double factor : {1.25, 1.5, 2.0, 3.0, 5.0, 8.0}) {
+      const double clearance = factor * radius;
+      MultipoleRing ring(modes, system.k(), radius, clearance, 0.1 * tolerance_);
+      const double near = std::numbers::pi * (clearance - radius) * (clearance + radius);
+      const double seconds =
+          ring_cost(static_cast<double>(ring.points), static_cast<double>(modes.modes.size()),
+                    near / area_per_point);
+      if (seconds >= least) continue;
+      least = seconds;
+      best = {std::move(ring), clearance};
+    }
+    return *best;
   }
-}
 
-std::optional<std::vector<Complex>> RingField::sum(std::span<const Vec2> points) const {
-  const double finer = std::max(tolerance_ / largest_charge_, smallest_tolerance);
-  const HelmholtzSum sum(solution_.system().k(), positions_, points, finer);
-  if (sum.range() == 0) return std::nullopt;
-  return sum(charges_);
-}
+  void place_rings() {
+    const TMatrixSystem& system = solution_.system();
+    const Placement& placement = system.placement();
+    for (std::size_t j = 0; j < placement.size(); ++j) {
+      first_.push_back(positions_.size());
+      for (std::size_t s = 0; s < ring(j).ring.points; ++s)
+        positions_.push_back(placement[j].position + ring(j).ring.position(s));
+    }
+    const std::size_t lights = solution_.light_angles().size();
+    charges_.resize(lights * positions_.size());
+    for (std::size_t j = 0; j < placement.size(); ++j) {
+      const MultipoleRing& own = ring(j).ring;
+      multiply(CblasNoTrans, CblasNoTrans, own.points, lights, system.modes(j).modes.size(), 1,
+               own.charges.data(), own.points, coefficients(solution_, j), system.unknowns(), 0,
+               &charges_[first_[j]], positions_.size());
+    }
+  }
 
-std::vector<Complex> RingField::correction(std::size_t scatterer,
-                                           std::span<const Vec2> points) const {
-  std::vector<Complex> field(solution_.light_angles().size() * points.size());
-  add_scattered(solution_, scatterer, points, field);
-  std::vector<double> distances;
-  const std::size_t first = first_[scatterer], count = ring(scatterer).ring.points;
-  for (std::size_t s = first; s < first + count; ++s)
-    for (const Vec2 point : points)
-      distances.push_back(solution_.system().k() * length(point - positions_[s]));
-  std::vector<Complex> waves(distances.size());
-  std::vector<std::size_t> coincident;
-  for (std::size_t i = 0; i < distances.size(); ++i)
-    if (distances[i] == 0) coincident.push_back(i);
-  for (const std::size_t i : coincident) distances[i] = 1;
-  hankel0(distances, waves);
-  for (const std::size_t i : coincident) waves[i] = 0;  // as in HelmholtzSum
-  add_columns(waves, points.size(), &charges_[first], positions_.size(), -1, field);
-  return field;
-}
+  const WaveSolution& solution_;
+  double tolerance_, largest_charge_ = 1;
+  std::vector<std::uint32_t> kind_;
+  std::vector<ClearedRing> rings_;
+  std::vector<std::size_t> first_;  // position of each scatterer's ring
+  std::vector<Vec2> positions_;
+  std::vector<Complex> charges_;  // [light][position]
+};
 
 // The pixels of a tile: those in a disk by disk, the others in a list.
 struct FieldMap::Points {

@@ -1,29 +1,9 @@
 #include "wave_solver/skeletons/box_tree.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace flatspeckle::wave {
-
-namespace {
-
-// Between two intervals, 0 if they overlap.
-double gap(double a_low, double a_high, double b_low, double b_high) {
-  return std::max({0.0, b_low - a_high, a_low - b_high});
-}
-
-}  // namespace
-
-double Rectangle::distance(const Rectangle& other) const {
-  return std::hypot(gap(low.x, high.x, other.low.x, other.high.x),
-                    gap(low.z, high.z, other.low.z, other.high.z));
-}
-
-Rectangle Rectangle::joined(const Rectangle& other) const {
-  return {{std::min(low.x, other.low.x), std::min(low.z, other.low.z)},
-          {std::max(high.x, other.high.x), std::max(high.z, other.high.z)}};
-}
 
 BoxTree::BoxTree(std::span<const SortedDisk> disks, std::size_t leaf_unknowns)
     : level_{0}, order_(disks.size()) {

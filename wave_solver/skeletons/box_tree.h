@@ -8,18 +8,6 @@
 
 namespace flatspeckle::wave {
 
-/// Axis-parallel.
-struct Rectangle {
-  Vec2 low, high;
-
-  double width() const { return high.x - low.x; }
-  double depth() const { return high.z - low.z; }
-  /// From rim to rim; 0 where they overlap.
-  double distance(const Rectangle& other) const;
-  double distance(Vec2 point) const { return distance(Rectangle{point, point}); }
-  Rectangle joined(const Rectangle& other) const;
-};
-
 /// What is sorted into boxes: a disk, or a point of radius 0, that carries some unknowns.
 struct SortedDisk {
   Vec2 centre;

@@ -19,10 +19,6 @@ std::size_t panel_of(std::size_t columns) {
   return columns < 400 ? 8 : 16;
 }
 
-blasint blas(std::size_t n) {
-  return static_cast<blasint>(n);
-}
-
 // LU of the transposed sketch, n rows (the columns of A) by samples; pivots take their order.
 class PivotedLu {
  public:
@@ -38,14 +34,15 @@ class PivotedLu {
     const std::size_t depth = rank() - from, width = last - first;
     if (depth == 0 || width == 0) return;
     double* const block = &a_[first * n_];
-    LAPACKE_dlaswp(LAPACK_COL_MAJOR, blas(width), block, blas(n_), blas(from + 1), blas(rank()),
-                   pivots_.data(), 1);
-    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasUnit, blas(depth),
-                blas(width), 1, &a_[from * (n_ + 1)], blas(n_), block + from, blas(n_));
+    LAPACKE_dlaswp(LAPACK_COL_MAJOR, blas_size(width), block, blas_size(n_), blas_size(from + 1),
+                   blas_size(rank()), pivots_.data(), 1);
+    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasUnit, blas_size(depth),
+                blas_size(width), 1, &a_[from * (n_ + 1)], blas_size(n_), block + from,
+                blas_size(n_));
     if (rank() == n_) return;
-    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, blas(n_ - rank()), blas(width),
-                blas(depth), -1, &a_[rank() + n_ * from], blas(n_), block + from, blas(n_), 1,
-                block + rank(), blas(n_));
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, blas_size(n_ - rank()), blas_size(width),
+                blas_size(depth), -1, &a_[rank() + n_ * from], blas_size(n_), block + from,
+                blas_size(n_), 1, block + rank(), blas_size(n_));
   }
 
   // What is left of a column in the next samples, mean square, the largest of all columns.
@@ -62,23 +59,23 @@ class PivotedLu {
   void eliminate(std::size_t width) {
     const std::size_t from = rank();
     pivots_.resize(from + std::min(width, n_ - from));
-    LAPACKE_dgetrf(LAPACK_COL_MAJOR, blas(n_ - from), blas(rank() - from), &a_[from * (n_ + 1)],
-                   blas(n_), &pivots_[from]);
+    LAPACKE_dgetrf(LAPACK_COL_MAJOR, blas_size(n_ - from), blas_size(rank() - from),
+                   &a_[from * (n_ + 1)], blas_size(n_), &pivots_[from]);
     for (std::size_t i = from; i < rank(); ++i) {
-      pivots_[i] += blas(from);
+      pivots_[i] += blas_size(from);
       std::swap(order_[i], order_[pivots_[i] - 1]);
     }
     if (from > 0)
-      LAPACKE_dlaswp(LAPACK_COL_MAJOR, blas(from), a_.data(), blas(n_), blas(from + 1),
-                     blas(rank()), pivots_.data(), 1);
+      LAPACKE_dlaswp(LAPACK_COL_MAJOR, blas_size(from), a_.data(), blas_size(n_),
+                     blas_size(from + 1), blas_size(rank()), pivots_.data(), 1);
   }
 
   // T^T = L_2 L_1^-1
   Interpolation interpolation() {
     const std::size_t rest = n_ - rank();
     if (rank() > 0 && rest > 0)
-      cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans, CblasUnit, blas(rest),
-                  blas(rank()), 1, a_.data(), blas(n_), &a_[rank()], blas(n_));
+      cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasNoTrans, CblasUnit, blas_size(rest),
+                  blas_size(rank()), 1, a_.data(), blas_size(n_), &a_[rank()], blas_size(n_));
     const auto skeleton = sorted_places(0, rank()), redundant = sorted_places(rank(), n_);
     Interpolation result;
     for (std::size_t i : skeleton) result.skeleton.push_back(order_[i]);

@@ -61,6 +61,11 @@ struct Fields {
   }
 };
 
+// (sum u_a u_b* - sum u_a sum u_b* / n) / (n - 1); 0 while one sample shows no spread.
+Complex sample_covariance(double samples, Complex products, Complex a, Complex b) {
+  return samples < 2 ? 0 : (products - a * std::conj(b) / samples) / (samples - 1);
+}
+
 // Of one placement at all frequencies: u per channel, u_a u_b* per entry, then for each shift and
 // changing entry, with u_b at that frequency, u_b and u_a u_b*.
 class Ensemble {
@@ -98,12 +103,7 @@ class Ensemble {
   }
 
   std::vector<Complex> covariance(double samples, std::span<const Complex> sums) const {
-    std::vector<Complex> values;
-    for (std::size_t e = 0; e < entries(); ++e) {
-      const auto [a, b] = request().entries[e];
-      values.push_back(sample_covariance(samples, sums[channels() + e], sums[a], sums[b]));
-    }
-    return values;
+    return placement_covariance(request(), samples, sums);
   }
 
   // [1 + shift][entry]
@@ -121,11 +121,6 @@ class Ensemble {
  private:
   const CovarianceRequest& request() const { return first_.scene.request; }
   std::size_t at(std::size_t shift) const { return channels() + entries() + 2 * changing_ * shift; }
-
-  // (sum u_a u_b* - sum u_a sum u_b* / n) / (n - 1); 0 while one sample shows no spread.
-  static Complex sample_covariance(double samples, Complex products, Complex a, Complex b) {
-    return samples < 2 ? 0 : (products - a * std::conj(b) / samples) / (samples - 1);
-  }
 
   Fields first_;
   std::size_t changing_;
@@ -167,6 +162,17 @@ void require_memory(const Scene& scene, double tolerance) {
 }
 
 }  // namespace
+
+std::vector<Complex> placement_covariance(const CovarianceRequest& request, double samples,
+                                          std::span<const Complex> sums) {
+  std::vector<Complex> values;
+  for (std::size_t e = 0; e < request.entries.size(); ++e) {
+    const auto [a, b] = request.entries[e];
+    values.push_back(
+        sample_covariance(samples, sums[request.channels.size() + e], sums[a], sums[b]));
+  }
+  return values;
+}
 
 FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance, Method method) {
   return frequency_job(scene, {}, seed, tolerance, method).field;

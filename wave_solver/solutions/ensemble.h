@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "flatland/request/field_moments.h"
@@ -18,6 +19,10 @@ namespace flatspeckle::wave {
 /// surely need more memory than there is.
 FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance,
                   Method method = Method::automatic);
+
+/// Returns the covariance of each entry from such sums; 0 while one sample shows no spread.
+std::vector<Complex> placement_covariance(const CovarianceRequest& request, double samples,
+                                          std::span<const Complex> sums);
 
 /// The same, each placement solved at shifted frequencies too (conventions, C39; checked by
 /// check_frequency_shifts()). all: the entries, then those with the second field at each shifted

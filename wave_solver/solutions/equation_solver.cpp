@@ -54,17 +54,13 @@ EquationSolver::EquationSolver(const WaveEquations& system, Method method, doubl
 EquationSolver::~EquationSolver() = default;
 
 std::vector<Complex> EquationSolver::solve(const std::vector<Complex>& sides, bool condition) {
-  if (!dense_) return iterate(sides);
+  if (fast_)
+    if (auto x = refined(sides)) return std::move(*x);
+  if (!dense_) return by_gmres(sides);
   auto x = dense_->solve(sides, condition);
   remainder_ = dense_->remainder();
   description_ = dense_->is_pivoted() ? "dense LU with pivoting" : "dense L L^T without pivoting";
   return x;
-}
-
-std::vector<Complex> EquationSolver::iterate(const std::vector<Complex>& sides) {
-  if (fast_)
-    if (auto x = refined(sides)) return std::move(*x);
-  return by_gmres(sides);
 }
 
 // Columns of norm 1 each, so that none is neglected beside others.

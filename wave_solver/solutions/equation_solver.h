@@ -46,7 +46,6 @@ class EquationSolver {
   const std::string& description() const { return description_; }
 
  private:
-  std::vector<Complex> iterate(const std::vector<Complex>& sides);
   std::optional<std::vector<Complex>> refined(std::vector<Complex> sides);
   std::vector<Complex> by_gmres(const std::vector<Complex>& sides);
   std::vector<Complex> subtracted(std::vector<Complex> b, const std::vector<Complex>& x) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -13,12 +14,73 @@
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/columns.h"
 #include "wave_solver/equations/neighbours.h"
-#include "wave_solver/solutions/interior_field.h"
+#include "wave_solver/equations/rim_waves.h"
 
 namespace flatspeckle::wave {
 
-namespace {
+const DatasetTable spectrum_table{
+    "solve at several wavelengths",
+    {{"wavelength", Data::scale, "", "length", "around the scatterers"},
+     {"far_field", Data::complex, "wavelength light_angle view_angle", "length^(1/2)",
+      "far-field amplitude A, phase origin at r = 0"},
+     {"near_field", Data::complex, "wavelength light_angle sensor", "1",
+      "scattered field, without the incident wave"},
+     {"solve/unknowns", Data::count, "wavelength", "1", "of the equations"},
+     {"solve/highest_order", Data::count, "wavelength", "1", "highest angular order of all"},
+     {"solve/residual", Data::real, "wavelength", "1",
+      "relative residual of the unscaled equations"},
+     {"solve/boundary_residual", Data::real, "wavelength", "1",
+      "largest mismatch of the boundary conditions, unit incident waves"}}};
 
+Spectrum::Spectrum(const std::vector<double>& view_angles, const std::vector<Vec2>& sensors)
+    : far_views_(column(view_angles, far_view)), near_sensors_(column(sensors, near_sensor)) {}
+
+void Spectrum::add(double wavelength, const WaveSolution& solution) {
+  const auto append = [&](std::vector<Complex>& fields, const std::vector<View>& views) {
+    const auto more = solution.fields(views);
+    fields.insert(fields.end(), more.begin(), more.end());
+  };
+  append(far_, far_views_);
+  append(near_, near_sensors_);
+  wavelengths_.push_back(wavelength);
+  light_angles_ = solution.light_angles();
+  placement_ = solution.system().placement();
+  unknowns_.push_back(solution.system().unknowns());
+  const auto orders = solution.basis_order();
+  orders_.push_back(orders.empty() ? 0
+                                   : static_cast<std::uint64_t>(*std::ranges::max_element(orders)));
+  residual_.push_back(solution.diagnosis().residual);
+  boundary_residual_.push_back(solution.diagnosis().boundary_residual);
+}
+
+double Spectrum::residual() const {
+  return *std::ranges::max_element(residual_);
+}
+
+std::size_t Spectrum::unknowns() const {
+  return *std::ranges::max_element(unknowns_);
+}
+
+void Spectrum::write(ResultFile& file) const {
+  const ResultGroup root(file, spectrum_table);
+  root.put("wavelength", wavelengths_);
+  write_light_axis(file, light_angles_);
+  const auto put = [&](const std::string& name, const std::vector<Complex>& fields,
+                       const std::vector<View>& views) {
+    if (views.empty()) return;
+    write_view_axis(file, views);
+    root.put(name, fields);
+  };
+  put("far_field", far_, far_views_);
+  put("near_field", near_, near_sensors_);
+  root.put("solve/unknowns", unknowns_);
+  root.put("solve/highest_order", orders_);
+  root.put("solve/residual", residual_);
+  root.put("solve/boundary_residual", boundary_residual_);
+  write_placement(file, placement_);
+}
+
+namespace {
 
 using Kind = Scatterer::Kind;
 
@@ -208,13 +270,9 @@ bool all_far(std::span<const View> views) {
 // What each unknown adds in each view: [view][unknown].
 std::vector<Complex> view_rows(const TMatrixSystem& system, std::span<const View> views) {
   if (all_far(views)) return system.far_rows(column(views, &View::angle));
-  std::vector<Complex> rows;
-  rows.reserve(views.size() * system.unknowns());
-  for (const View& view : views) {
-    const auto row = view.near ? system.near_row(view.point) : system.far_rows({&view.angle, 1});
-    rows.insert(rows.end(), row.begin(), row.end());
-  }
-  return rows;
+  for (const View& view : views)
+    if (view.near) require_outside(system.placement(), view.point);
+  return system.view_rows(views);
 }
 
 // Of the waves and sources of a basis: [basis][unknown].

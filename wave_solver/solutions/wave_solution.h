@@ -1,13 +1,13 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/result/dataset_row.h"
-#include "flatland/request/sensor.h"
+#include "flatland/request/request.h"
 #include "wave_solver/equations/t_matrix_system.h"
-#include "wave_solver/solutions/light_basis.h"
 #include "wave_solver/solutions/light_solution.h"
 
 namespace flatspeckle::wave {
@@ -62,7 +62,7 @@ void write_solution(ResultFile& file, const WaveSolution& solution,
 void write_placement(ResultFile& file, const Placement& placement);
 
 /// What lights and views need of a placement within a circle, found once for a whole ensemble: the
-/// few of many lights, or of many far views, that stand for all (light_basis.h).
+/// few of many lights, or of many far views, that stand for all (light_solution.h).
 struct FieldPlan {
   LightBasis lights, far_views;
   std::vector<View> views;
@@ -74,5 +74,32 @@ FieldPlan make_field_plan(const Lights& lights, std::vector<View> views, double 
 /// for the fewer of lights and views.
 std::vector<Complex> scattered_fields(const Placement& placement, double k, const FieldPlan& plan,
                                       const SolveOptions& options);
+
+/// Fields of one placement at several wavelengths, one after the other, and how far each solution
+/// can be trusted: [wavelength][light][view].
+class Spectrum {
+ public:
+  Spectrum(const std::vector<double>& view_angles, const std::vector<Vec2>& sensors);
+
+  void add(double wavelength, const WaveSolution& solution);
+
+  /// With axes and placement.
+  void write(ResultFile& file) const;
+
+  /// The worst residual so far.
+  double residual() const;
+  /// Of the largest system so far.
+  std::size_t unknowns() const;
+
+ private:
+  std::vector<View> far_views_, near_sensors_;
+  std::vector<double> wavelengths_, light_angles_;
+  std::vector<Complex> far_, near_;
+  std::vector<std::uint64_t> unknowns_, orders_;
+  std::vector<double> residual_, boundary_residual_;
+  Placement placement_;
+};
+
+extern const DatasetTable spectrum_table;
 
 }  // namespace flatspeckle::wave

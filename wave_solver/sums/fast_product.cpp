@@ -13,7 +13,6 @@
 #include "core/run/parallel.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/sums/helmholtz_sum.h"
-#include "wave_solver/sums/near_sum.h"
 
 namespace flatspeckle::wave {
 
@@ -27,16 +26,10 @@ std::vector<Vec2> centres(Bodies bodies) {
   return positions;
 }
 
-std::vector<Vec2> positions(const WaveEquations& system) {
-  std::vector<Vec2> result;
-  for (const auto& body : system.bodies()) result.push_back(body.centre);
-  return result;
-}
-
 // What the choice of a range looks at: the body of the highest order stands for all.
 struct Outline {
   explicit Outline(const WaveEquations& system)
-      : k(system.k()), centres(positions(system)), box(bounds(centres, centres)) {
+      : k(system.k()), centres(wave::centres(system.bodies())), box(bounds_of(centres)) {
     std::size_t highest = 0;
     for (std::size_t j = 0; j < centres.size(); ++j) {
       if (system.order(j) > system.order(highest)) highest = j;
@@ -49,7 +42,7 @@ struct Outline {
 
   double k;
   std::vector<Vec2> centres;
-  Extent box;
+  Rectangle box;
   double radius = 0;
   ModeSet modes;
   double squares;  // elements of the matrix
@@ -85,8 +78,7 @@ std::optional<double> best_range(const WaveEquations& system, double tolerance, 
   consider(std::numeric_limits<double>::infinity(),
            cost::stored(8 * outline.squares, outline.squares / 2 * seconds_per_element));
   if (!with_grid) return range;
-  const double extent =
-      std::max(outline.box.high.x - outline.box.low.x, outline.box.high.z - outline.box.low.z);
+  const double extent = std::max(outline.box.width(), outline.box.depth());
   for (double r = extent / 3; r > extent * 1e-3; r /= std::numbers::sqrt2)
     consider(r, grid_cost(outline, r, tolerance));
   return range;
@@ -113,7 +105,7 @@ RingProduct::RingProduct(const WaveEquations& system, double range, double toler
     if (!resolved_) return;
     split.emplace(system.k(), range, finer);
     const auto points = place_rings(bodies, range);
-    const GridShape shape(system.k(), range, finer, bounds(points, points));
+    const GridShape shape(system.k(), range, finer, bounds_of(points));
     far_.emplace(*split, shape, finer, points, points);
   }
   find_neighbours(bodies, range);
@@ -159,7 +151,7 @@ void RingProduct::find_neighbours(std::span<const WaveEquations::Body> bodies, d
   const auto positions = centres(bodies);
   double largest = 0, reach = 0;
   for (const MultipoleRing& ring : rings_) largest = std::max(largest, ring.radius);
-  const Extent box = bounds(positions, positions);
+  const Rectangle box = bounds_of(positions);
   reach = std::min(range + 2 * largest, 2 * length(box.high - box.low) + 1);
   const StripOrder strips(positions, reach / 3);
   neighbours_.resize(bodies.size());
@@ -237,7 +229,7 @@ std::vector<Complex> RingProduct::operator()(std::span<const Complex> x) const {
 FastProduct::FastProduct(const WaveEquations& system, double tolerance) : system_(system) {
   if (system.unknowns() == 0) return;
   if (points_only(system)) {
-    points_ = std::make_unique<HelmholtzSum>(system.k(), positions(system), tolerance);
+    points_ = std::make_unique<HelmholtzSum>(system.k(), centres(system.bodies()), tolerance);
     for (std::size_t j = 0; j < system.unknowns(); ++j)
       sigma_.push_back(std::sqrt(system.strength(j)));
     return;

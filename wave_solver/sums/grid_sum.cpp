@@ -64,7 +64,7 @@ GridShape::Axis axis(double low, double high, double step, int width, double ran
 // The kernel resolves frequencies up to `resolved` to the full accuracy: those near k, which carry
 // almost everything. From there to the edge of the band it loses digits no faster than far itself
 // falls off, so that little more than the band's own grid is enough.
-GridShape::GridShape(double k, double range, double tolerance, const Extent& box) {
+GridShape::GridShape(double k, double range, double tolerance, const Rectangle& box) {
   const double exponent = bump_exponent(tolerance), band = KernelSplit::band(k, range, tolerance);
   constexpr double oversampling = 1.2;
   const double resolved = std::max(0.8 * band, (k + band) / 2);

@@ -11,10 +11,6 @@
 
 namespace flatspeckle::wave {
 
-struct Extent {
-  Vec2 low, high;
-};
-
 /// The periodic grid on which the far part of a KernelSplit is summed between points of a
 /// rectangle, and the kernel that carries charges to it.
 struct GridShape {
@@ -24,7 +20,7 @@ struct GridShape {
     std::size_t size;  // of one period; lines from `used` on carry nothing
     std::size_t used;
   };
-  GridShape(double k, double range, double tolerance, const Extent& box);
+  GridShape(double k, double range, double tolerance, const Rectangle& box);
 
   double step;
   int width;    // of the spreading kernel, in steps; even

@@ -8,7 +8,7 @@
 
 #include "core/numbers/complex.h"
 #include "core/numbers/statistics.h"
-#include "flatland/request/sensor.h"
+#include "flatland/request/request.h"
 
 namespace flatspeckle::mc {
 
