@@ -7,14 +7,9 @@
 #include "core/run/parallel.h"
 #include "flatland/scene/scene.h"
 #include "mc/paths/endpoint_factors/end_scattering.h"
+#include "mc/paths/endpoint_factors/wave_integral.h"
 
 namespace flatspeckle::mc {
-
-/// int dx exp(i kappa.x - mu_t/2 sum_j d(x, u_j)) over a box, or over the depth of a slab at x = 0,
-/// where d is the distance to the edge along a unit vector: exact in depth, by Gauss-Legendre
-/// quadrature across, cut where the integrand has kinks. Relative to the area about 1e-9.
-Complex attenuated_wave_integral(const Domain& domain, double mu_t, Vec2 kappa,
-                                 const std::array<Vec2, 4>& towards);
 
 /// A plane wave seen in a far view, at a wavenumber; unit vectors.
 struct FarField {
