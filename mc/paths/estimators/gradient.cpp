@@ -115,9 +115,7 @@ Values amplitude_slopes(const Scene& scene, const AmplitudeSlope& slope) {
 /// Of paths of one scatterer.
 Values single_gradient(const PathWalks& walks, const std::vector<MediumSlope>& slopes) {
   const Scene& scene = walks.scene();
-  const auto closed_form = [&](const Scene& any) {
-    return single_scattering(any, walks.scattering());
-  };
+  const auto closed_form = [&](const Scene& any) { return single_scattering(any, walks); };
   const Values single = closed_form(scene), by_mu_t = extinction_slope(scene, closed_form);
   Values all = single;
   for (const MediumSlope& slope : slopes) {

@@ -2,10 +2,10 @@
 
 namespace flatspeckle::mc {
 
-Complex single_scattering(const Scene& scene, const EndScattering& scattering, const FarField& a,
+Complex single_scattering(const Scene& scene, const PathWalks& walks, const FarField& a,
                           const FarField& b) {
-  const Complex amplitudes = product_with_conjugate(scattering.amplitude({}, a.light, a.view),
-                                                    scattering.amplitude({}, b.light, b.view));
+  const Complex amplitudes = product_with_conjugate(walks.amplitude({}, a.light, a.view),
+                                                    walks.amplitude({}, b.light, b.view));
   // Exactly 0 of equal fields.
   const Vec2 kappa =
       a.k * ((a.light - b.light) - (a.view - b.view)) + (a.k - b.k) * (b.light - b.view);
@@ -14,11 +14,11 @@ Complex single_scattering(const Scene& scene, const EndScattering& scattering, c
                                   {-a.light, a.view, -b.light, b.view});
 }
 
-std::vector<Complex> single_scattering(const Scene& scene, const EndScattering& scattering) {
+std::vector<Complex> single_scattering(const Scene& scene, const PathWalks& walks) {
   const auto& request = scene.request;
   std::vector<Complex> entries(request.entries.size());
   for_entries(entries.size(), [&](std::size_t e) {
-    entries[e] = single_scattering(scene, scattering, FarField(scene, request.entries[e].a),
+    entries[e] = single_scattering(scene, walks, FarField(scene, request.entries[e].a),
                                    FarField(scene, request.entries[e].b));
   });
   return entries;

@@ -6,8 +6,8 @@
 
 #include "core/run/parallel.h"
 #include "flatland/scene/scene.h"
-#include "mc/paths/endpoint_factors/end_scattering.h"
 #include "mc/paths/endpoint_factors/wave_integral.h"
+#include "mc/paths/walk/walks.h"
 
 namespace flatspeckle::mc {
 
@@ -26,7 +26,7 @@ struct FarField {
 };
 
 /// The part B = 1 of the covariance of two fields (conventions, C14).
-Complex single_scattering(const Scene& scene, const EndScattering& scattering, const FarField& a,
+Complex single_scattering(const Scene& scene, const PathWalks& walks, const FarField& a,
                           const FarField& b);
 
 /// Calls f with the number of each entry, in parallel where there are many: of some ten
@@ -38,6 +38,6 @@ void for_entries(std::size_t entries, F f) {
 }
 
 /// The same per entry of the request: far lights and views only. What no path has to sample.
-std::vector<Complex> single_scattering(const Scene& scene, const EndScattering& scattering);
+std::vector<Complex> single_scattering(const Scene& scene, const PathWalks& walks);
 
 }  // namespace flatspeckle::mc

@@ -73,7 +73,7 @@ class SlopeScorer : public TallyScorer<typename Terms::Tally> {
   SlopeScorer(const PathWalks& walks, const typename Terms::Tally& none, Terms terms)
       : TallyScorer<typename Terms::Tally>(none),
         channels_(walks.scene().request.channels),
-        scattering_(walks.scattering()),
+        walks_(walks),
         terms_(std::move(terms)),
         ends_(walks, [this](std::size_t ends) { return terms_.ends(ends); }) {}
 
@@ -88,7 +88,7 @@ class SlopeScorer : public TallyScorer<typename Terms::Tally> {
       const auto [i, v] = channels_[c];
       const Vec2 from = -lights.direction(i), to = views.direction(v);
       terms_.add_term(
-          c, product(product(light.value[i], view.value[v]), scattering_.amplitude(x, from, to)),
+          c, product(product(light.value[i], view.value[v]), walks_.amplitude(x, from, to)),
           terms_.one(x, from, to), light, i, view, v);
     }
     terms_.accumulate(weight);
@@ -97,7 +97,7 @@ class SlopeScorer : public TallyScorer<typename Terms::Tally> {
   void multiple(const Path& path) override {
     ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, Ends& out) {
       terms_.attenuate(ends, x, out);
-      scattering_.towards(x, arrival, ends.directions(), out.value);
+      walks_.towards(x, arrival, ends.directions(), out.value);
       terms_.turn(ends, x, arrival, out);
     });
     const auto& inner = terms_.inner(this->tally(), path.first);
@@ -117,7 +117,7 @@ class SlopeScorer : public TallyScorer<typename Terms::Tally> {
   }
 
   const std::vector<Channel>& channels_;
-  const EndScattering& scattering_;
+  const PathWalks& walks_;
   Terms terms_;
   PathEnds<Ends> ends_;
 };
