@@ -104,10 +104,6 @@ MatrixXd neglected_covariance(const FitTask& task, const Media& media, const Vec
   return all;
 }
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 constexpr double first_paths = 10000;
 
 /// Least squares at one medium, the errors of the model added to those of the measurements.
