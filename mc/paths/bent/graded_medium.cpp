@@ -7,7 +7,6 @@
 #include "core/error.h"
 #include "mc/paths/bent/homogenised_box.h"
 #include "mc/paths/bent/linear_medium.h"
-#include "mc/paths/bent/stepped_medium.h"
 
 namespace flatspeckle::mc {
 

@@ -1,5 +1,3 @@
-#include "mc/paths/bent/stepped_medium.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +12,7 @@
 #include "grin/media/fields/spline_field.h"
 #include "grin/media/fields/ultrasound.h"
 #include "mc/paths/bent/bent_chords.h"
+#include "mc/paths/bent/graded_medium.h"
 
 namespace flatspeckle::mc {
 
