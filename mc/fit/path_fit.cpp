@@ -154,10 +154,8 @@ struct Round {
 /// The search for the medium.
 class PathSearch {
  public:
-  explicit PathSearch(const FitTask& task) : task_(task), data_(task), model_(task) {
-    bounds_.lower = lower_coordinates(task.free);
-    bounds_.upper = upper_coordinates(task.free);
-  }
+  explicit PathSearch(const FitTask& task)
+      : task_(task), data_(task), model_(task), bounds_(bounds_of(task.free)) {}
 
   MediumFit fit() {
     std::optional<MediumFit> best;
