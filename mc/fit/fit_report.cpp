@@ -34,11 +34,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-VectorXd slopes_at(const FitTask& task, const VectorXd& coordinates) {
-  VectorXd slopes = coordinates;
-  for (Index i = 0; i < slopes.size(); ++i)
-    slopes[i] = task.free[static_cast<std::size_t>(i)].slope(coordinates[i]);
-  return slopes;
+/// A function of each parameter at its coordinate.
+VectorXd of_each_parameter(const FitTask& task, const VectorXd& coordinates,
+                           double (FreeParameter::*function)(double) const) {
+  VectorXd found = coordinates;
+  for (Index i = 0; i < found.size(); ++i)
+    found[i] = (task.free[static_cast<std::size_t>(i)].*function)(coordinates[i]);
+  return found;
 }
 
 /// Of the first curve's medium.
@@ -55,8 +57,8 @@ std::vector<Derived> derived_at(const FitTask& task, const VectorXd& at,
     for (Index r = 0; r < count; ++r) found[r] = rows[static_cast<std::size_t>(r)].value(of);
     return found;
   };
-  const BoundedLeastSquares as_problem{
-      values, {}, lower_coordinates(task.free), upper_coordinates(task.free)};
+  BoundedLeastSquares as_problem = bounds_of(task.free);
+  as_problem.residuals = values;
   const VectorXd here = values(at);
   const MatrixXd slopes = jacobian(as_problem, at, here);
   const VectorXd error = (slopes * covariance * slopes.transpose()).diagonal().cwiseSqrt();
@@ -71,10 +73,7 @@ std::vector<Derived> derived_at(const FitTask& task, const VectorXd& at,
 }  // namespace
 
 VectorXd values_at(const FitTask& task, const VectorXd& coordinates) {
-  VectorXd values = coordinates;
-  for (Index i = 0; i < values.size(); ++i)
-    values[i] = task.free[static_cast<std::size_t>(i)].value(coordinates[i]);
-  return values;
+  return of_each_parameter(task, coordinates, &FreeParameter::value);
 }
 
 void put_information(const FitTask& task, const Information& known, const VectorXd& coordinates,
@@ -93,7 +92,7 @@ void put_information(const FitTask& task, const Information& known, const Vector
 
 MatrixXd covariance_of_values(const FitTask& task, const VectorXd& coordinates,
                               const MatrixXd& covariance) {
-  const VectorXd slopes = slopes_at(task, coordinates);
+  const VectorXd slopes = of_each_parameter(task, coordinates, &FreeParameter::slope);
   return slopes.asDiagonal() * covariance * slopes.asDiagonal();
 }
 

@@ -13,9 +13,7 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 BoundedLeastSquares problem_of(const FitTask& task, const SlabModel& model, const FitData& data) {
-  BoundedLeastSquares problem;
-  problem.lower = lower_coordinates(task.free);
-  problem.upper = upper_coordinates(task.free);
+  BoundedLeastSquares problem = bounds_of(task.free);
   problem.residuals = [&](const VectorXd& at) -> VectorXd {
     return data.residuals(model.values(media_at(task, at)));
   };
@@ -27,8 +25,8 @@ BoundedLeastSquares problem_of(const FitTask& task, const SlabModel& model, cons
 
 /// Other starts are gone on from where the best one does not end in a likely medium. The search is
 /// by as many ordinates as a thousandth of the values needs; it goes on where errors ask for more.
-LeastSquaresFit refined_fit(const FitTask& task, const BoundedLeastSquares& problem, SlabModel& model,
-                            const FitData& data, MediumFit& fit) {
+LeastSquaresFit refined_fit(const FitTask& task, const BoundedLeastSquares& problem,
+                            SlabModel& model, const FitData& data, MediumFit& fit) {
   constexpr double share = 0.05, tolerance = 1e-3, rough = 1e-3;
   const VectorXd at_first = data.errors().cwiseMax(rough * data.values().cwiseAbs());
   model.refine(media_at(task, middle(task)), at_first, share);

@@ -104,10 +104,6 @@ MatrixXd neglected_covariance(const FitTask& task, const Media& media, const Vec
   return all;
 }
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
-
 constexpr double first_paths = 10000;
 
 /// Least squares at one medium, the errors of the model added to those of the measurements.
@@ -158,10 +154,8 @@ struct Round {
 /// The search for the medium.
 class PathSearch {
  public:
-  explicit PathSearch(const FitTask& task) : task_(task), data_(task), model_(task) {
-    bounds_.lower = lower_coordinates(task.free);
-    bounds_.upper = upper_coordinates(task.free);
-  }
+  explicit PathSearch(const FitTask& task)
+      : task_(task), data_(task), model_(task), bounds_(bounds_of(task.free)) {}
 
   MediumFit fit() {
     std::optional<MediumFit> best;

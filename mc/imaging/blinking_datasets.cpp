@@ -43,12 +43,10 @@ const DatasetTable blinking_table{
              {"sources_success", Data::estimate, "", "1", "media in which all points have"}}};
 
 FrameContrast frame_contrast(const std::vector<ImagedMedium>& media) {
-  const MeanOverMedia square =
-      mean_over(media, 0, [](const ImagedMedium& m) { return m.blinked.square; });
-  const MeanOverMedia expected =
-      mean_over(media, 0, [](const ImagedMedium& m) { return m.blinked.expected_square; });
-  const double contrast = std::sqrt(std::max(square.value, 0.0));
-  return {{contrast, contrast > 0 ? square.error / (2 * contrast) : 0}, std::sqrt(expected.value)};
+  const auto mean = [&](double Blinked::*square) {
+    return root_of(mean_over(media, 0, [=](const ImagedMedium& m) { return m.blinked.*square; }));
+  };
+  return {mean(&Blinked::square), mean(&Blinked::expected_square).value};
 }
 
 MeanOverMedia sources_success(const std::vector<ImagedMedium>& media) {

@@ -6,10 +6,6 @@
 #include "mc/imaging/imaging.h"
 #include "mc/imaging/media_statistics.h"
 
-namespace flatspeckle {
-class ResultFile;
-}
-
 namespace flatspeckle::mc {
 
 extern const DatasetTable blinking_table;

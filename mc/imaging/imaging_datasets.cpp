@@ -86,49 +86,6 @@ Expected expected(const Shares& of, const LineSpectrum& spectra, double regulari
   return result;
 }
 
-/// As psnr(), with noise on every value of the picture.
-double noisy_psnr(std::span<const double> truth, std::span<const double> picture, double noise) {
-  const auto product = [&](auto a, auto b) {
-    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-  };
-  const auto count = static_cast<double>(truth.size());
-  const double both = product(truth, picture),
-               left = product(truth, truth) -
-                      both * both / (product(picture, picture) + noise * count);
-  const double largest = *std::max_element(truth.begin(), truth.end());
-  return 10 * std::log10(largest * largest * count / left);
-}
-
-/// What a picture by Wiener's filter is expected to be, without one: its PSNR in dB.
-///
-/// A point's speckle is that of the reference, shifted, times C_I (to_reference), and something
-/// else of variance 1 - C_I^2; that part of the frame is lost, too, whose speckle has left the
-/// reference's. Speckle has a triangle as its power spectrum, up to the grains that
-/// the camera can see; the power of one frequency is distributed exponentially, over which the
-/// filter's response and what it lets through are averaged. Shot and read noise are white.
-double predicted_psnr(const LineScene& line, std::span<const double> to_reference,
-                      const CameraNoise& noise, std::size_t lags, double regularisation) {
-  const LineSpectrum spectra(line.camera.pixels);
-  const auto pixels = static_cast<double>(line.camera.pixels);
-  const double contrast = 1 / (1 + noise.background);
-  Shares of{shifts(line), {}, {}, 0, noise_variance(noise)};
-  for (std::size_t m = 0; m < spectra.size(); ++m)
-    of.speckle.push_back(contrast * contrast *
-                         speckle_power(spectra.frequency(m), most_grains(line) / pixels));
-  const auto& b = line.object.brightness;
-  const double all = std::reduce(b.begin(), b.end());
-  for (std::size_t i = 0; i < b.size(); ++i) {
-    const double share = b[i] / all, seen = 1 - std::abs(of.at.x[i]) / pixels,
-                 alike = to_reference[i] * seen;
-    of.coefficient.push_back(share * alike);
-    of.other += share * share * (1 - alike * alike);
-  }
-  const double grain = pixels / most_grains(line) * 2 / 3;
-  auto made = expected(of, spectra, regularisation, point_width(grain));
-  const auto seen = about_zero(made.picture, lags);
-  return noisy_psnr(point_picture(of.at, lags, grain), seen, made.noise);
-}
-
 }  // namespace
 
 const DatasetTable picture_table{
@@ -151,10 +108,35 @@ const DatasetTable picture_table{
              {"reference_correlation", Data::estimate, "point", "1",
               "C_I of each point's speckle and the reference's, from light paths"}}};
 
+/// A point's speckle is that of the reference, shifted, times C_I (to_reference), and something
+/// else of variance 1 - C_I^2; that part of the frame is lost, too, whose speckle has left the
+/// reference's. Speckle has a triangle as its power spectrum, up to the grains that
+/// the camera can see; the power of one frequency is distributed exponentially, over which the
+/// filter's response and what it lets through are averaged. Shot and read noise are white.
 double expected_psnr(const LineScene& line, const ImagingTask& task,
                      const ImagingPrediction& prediction) {
-  return predicted_psnr(line, real_parts(prediction.to_reference.value), task.recovery.noise,
-                        task.recovery.lags, task.deconvolution.regularisation);
+  const auto to_reference = real_parts(prediction.to_reference.value);
+  const CameraNoise& noise = task.recovery.noise;
+  const std::size_t lags = task.recovery.lags;
+  const LineSpectrum spectra(line.camera.pixels);
+  const auto pixels = static_cast<double>(line.camera.pixels);
+  const double contrast = 1 / (1 + noise.background);
+  Shares of{shifts(line), {}, {}, 0, noise_variance(noise)};
+  for (std::size_t m = 0; m < spectra.size(); ++m)
+    of.speckle.push_back(contrast * contrast *
+                         speckle_power(spectra.frequency(m), most_grains(line) / pixels));
+  const auto& b = line.object.brightness;
+  const double all = std::reduce(b.begin(), b.end());
+  for (std::size_t i = 0; i < b.size(); ++i) {
+    const double share = b[i] / all, seen = 1 - std::abs(of.at.x[i]) / pixels,
+                 alike = to_reference[i] * seen;
+    of.coefficient.push_back(share * alike);
+    of.other += share * share * (1 - alike * alike);
+  }
+  const double grain = pixels / most_grains(line) * 2 / 3;
+  auto made = expected(of, spectra, task.deconvolution.regularisation, point_width(grain));
+  const auto seen = about_zero(made.picture, lags);
+  return psnr(point_picture(of.at, lags, grain), seen, made.noise);
 }
 
 namespace {
@@ -246,19 +228,14 @@ const DatasetTable imaging_table{
 namespace {
 
 Estimate mean_autocorrelation(const std::vector<ImagedMedium>& media) {
-  const auto n = static_cast<double>(media.size());
-  const std::size_t lags = media.front().statistics.autocorrelation.size();
-  Estimate mean{std::vector<Complex>(lags), std::vector<double>(lags)};
-  for (std::size_t lag = 0; lag < lags; ++lag) {
-    double sum = 0, squares = 0;
-    for (const ImagedMedium& medium : media) {
-      const double value = medium.statistics.autocorrelation[lag];
-      sum += value / n;
-      squares += value * value / n;
-    }
-    mean.value[lag] = sum;
-    mean.error[lag] = media.size() > 1 ? std::sqrt(std::max(squares - sum * sum, 0.0) / (n - 1))
-                                       : media.front().statistics.noise;
+  const FrameStatistics& first = media.front().statistics;
+  Estimate mean;
+  for (std::size_t lag = 0; lag < first.autocorrelation.size(); ++lag) {
+    const auto [value, error] = mean_over(media, first.noise, [lag](const ImagedMedium& medium) {
+      return medium.statistics.autocorrelation[lag];
+    });
+    mean.value.emplace_back(value);
+    mean.error.push_back(error);
   }
   return mean;
 }

@@ -5,16 +5,12 @@
 #include "core/result/dataset_row.h"
 #include "mc/imaging/imaging.h"
 
-namespace flatspeckle {
-
-class ResultFile;
-}  // namespace flatspeckle
-
 namespace flatspeckle::mc {
 
 extern const DatasetTable picture_table;
 
-/// As predicted_psnr(), of a scene with a reference.
+/// PSNR in dB that a picture by Wiener's filter is expected to have, without one, of a scene with a
+/// reference.
 double expected_psnr(const LineScene& line, const ImagingTask& task,
                      const ImagingPrediction& prediction);
 

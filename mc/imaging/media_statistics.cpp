@@ -37,6 +37,11 @@ MeanOverMedia share_of(const std::vector<ImagedMedium>& media,
   return {found / n, std::sqrt(likely * (1 - likely) / (n + 3))};
 }
 
+MeanOverMedia root_of(const MeanOverMedia& square) {
+  const double root = std::sqrt(std::max(square.value, 0.0));
+  return {root, root > 0 ? square.error / (2 * root) : 0};
+}
+
 double mean_grains(const std::vector<ImagedMedium>& media) {
   return mean_over(media, 0, [](const ImagedMedium& m) { return m.statistics.grains; }).value;
 }
@@ -55,11 +60,8 @@ double gaussian_contrast(const LineObject& object, double background) {
 MeanOverMedia mean_contrast(const LineObject& object, const std::vector<ImagedMedium>& media) {
   const double two = power_sum(object, 2), four = 6 * power_sum(object, 4);
   const double relative = std::sqrt((2 + four / (two * two)) / mean_grains(media));
-  const MeanOverMedia square =
-      mean_over(media, 0, [](const ImagedMedium& m) { return m.statistics.square; });
-  const double contrast = std::sqrt(std::max(square.value, 0.0));
-  if (media.size() == 1) return {contrast, contrast * relative / 2};
-  return {contrast, contrast > 0 ? square.error / (2 * contrast) : 0};
+  return root_of(mean_over(media, relative * media.front().statistics.square,
+                           [](const ImagedMedium& m) { return m.statistics.square; }));
 }
 
 MeanOverMedia mean_fourth_moment(const std::vector<ImagedMedium>& media) {

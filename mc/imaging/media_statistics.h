@@ -22,6 +22,9 @@ MeanOverMedia mean_over(const std::vector<ImagedMedium>& media, double error_of_
 MeanOverMedia share_of(const std::vector<ImagedMedium>& media,
                        const std::function<bool(const ImagedMedium&)>& holds);
 
+/// Its root, 0 where it is negative.
+MeanOverMedia root_of(const MeanOverMedia& square);
+
 /// Grains of a frame, averaged over all media.
 double mean_grains(const std::vector<ImagedMedium>& media);
 

@@ -20,15 +20,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Entries of all curves as one request.
-Scene joint_scene(const Media& media, const std::vector<std::size_t>& curves, bool moving) {
-  Scene joint = media[curves.front()].scene;
-  joint.request = {};
-  for (const std::size_t i : curves) join(joint.request, media[i].scene.request);
-  if (moving) joint.request.kind = CovarianceRequest::Kind::intensity;
-  return joint;
-}
-
 /// By a coordinate, of a number of the spec.
 using Difference = std::function<double(double MovingSpec::*)>;
 
@@ -84,17 +75,11 @@ PathModel::PathModel(const FitTask& task) : task_(task), curves_(curves_of(task)
     const auto run =
         std::ranges::find_if(runs_, [&](const Run& one) { return joins(one, media, i); });
     if (run == runs_.end())
-      runs_.push_back({power,
-                       !power && needs_reversed(media[i].scene),
-                       curves_[i].delays,
-                       {i},
-                       {media[i].scene.request},
-                       {},
-                       {},
-                       {},
-                       {},
-                       1,
-                       {}});
+      runs_.push_back({.power = power,
+                       .reversed = !power && needs_reversed(media[i].scene),
+                       .delays = curves_[i].delays,
+                       .curves = {i},
+                       .requests = {media[i].scene.request}});
     else {
       run->curves.push_back(i);
       run->requests.push_back(media[i].scene.request);
@@ -124,7 +109,8 @@ void PathModel::move(const VectorXd& coordinates) {
 void PathModel::begin(Run& run, std::uint64_t seed, const Media& media) const {
   const MovingSpec& spec = media[run.curves.front()].spec;
   const bool moving = !run.delays.empty();
-  const Scene scene = joint_scene(media, run.curves, moving);
+  Scene scene = joint_scene(media, run.curves);
+  if (moving) scene.request.kind = CovarianceRequest::Kind::intensity;
   const auto all = slopes(run, scene);
   run.state = {};
   run.beta = spec.beta;
@@ -299,10 +285,8 @@ void PathModel::put_power(SampledModel& model) const {
     return some;
   };
   const SlabModel transport(curves, media(at_));
-  const BoundedLeastSquares problem{[&](const VectorXd& at) { return transport.values(media(at)); },
-                                    {},
-                                    lower_coordinates(task_.free),
-                                    upper_coordinates(task_.free)};
+  BoundedLeastSquares problem = bounds_of(task_.free);
+  problem.residuals = [&](const VectorXd& at) { return transport.values(media(at)); };
   const VectorXd here = problem.residuals(at_);
   const MatrixXd slopes = jacobian(problem, at_, here);
   Index next = 0;

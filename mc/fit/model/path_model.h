@@ -58,12 +58,12 @@ class PathModel {
     std::vector<double> delays;
     std::vector<std::size_t> curves;
     std::vector<CovarianceRequest> requests;  ///< of each
-    PathJob job;
-    RunState state;
-    std::optional<FixedCount> fixed_count;
-    Lights lights;  ///< of all curves, of power
+    PathJob job{};
+    RunState state{};
+    std::optional<FixedCount> fixed_count{};
+    Lights lights{};  ///< of all curves, of power
     double beta = 1;
-    std::vector<double> beta_slopes;  ///< by the coordinates
+    std::vector<double> beta_slopes{};  ///< by the coordinates
 
     /// Covariances of all curves, [0 and delays][entry].
     std::size_t covariances() const { return job.entries * (1 + delays.size()); }

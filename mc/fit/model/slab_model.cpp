@@ -77,9 +77,7 @@ void SlabModel::solve_fields(const Group& group, const Media& media, int order,
                              VectorXd& all) const {
   constexpr double tolerance = 1e-4;  // of paths of two scatterings, a hundredth of it
   const Medium& first = media[group.curves.front()];
-  Scene joint = first.scene;
-  joint.request = {};
-  for (const std::size_t i : group.curves) join(joint.request, media[i].scene.request);
+  const Scene joint = joint_scene(media, group.curves);
   const Refinement once{tolerance, order, 0};
   const auto solve = [&](const FieldChange& change) {
     return slab_covariance(joint, group.reversed, once, change);

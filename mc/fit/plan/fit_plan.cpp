@@ -10,7 +10,7 @@
 #include "core/error.h"
 #include "core/result/result_group.h"
 #include "core/search/levenberg_marquardt.h"
-#include "mc/fit/task/curve_values.h"
+#include "mc/fit/task/fit_data.h"
 #include "mc/slab/slab_covariance.h"
 
 namespace flatspeckle::mc {
@@ -176,13 +176,12 @@ class Planned {
  public:
   static constexpr Index none = -1;
 
-  explicit Planned(const PlanTask& task) : task_(task), at_(std::ssize(task.free)) {
+  explicit Planned(const PlanTask& task)
+      : task_(task), at_(std::ssize(task.free)), bounds_(bounds_of(task.free)) {
     for (Index i = 0; i < at_.size(); ++i) {
       const FreeParameter& free = task.free[static_cast<std::size_t>(i)];
       at_[i] = free.coordinate(free.start.value());
     }
-    bounds_.lower = lower_coordinates(task.free);
-    bounds_.upper = upper_coordinates(task.free);
     fields_ = fields_of(task, at_);
   }
 

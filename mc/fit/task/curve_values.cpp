@@ -43,8 +43,7 @@ std::uint32_t place_in(List& list, const One& one) {
   return place;
 }
 
-}  // namespace
-
+/// Adds the channels and entries of another request, as pairs.
 void join(CovarianceRequest& all, const CovarianceRequest& more) {
   const auto channels = static_cast<std::uint32_t>(all.channels.size());
   all.kind = CovarianceRequest::Kind::pairs;
@@ -54,8 +53,6 @@ void join(CovarianceRequest& all, const CovarianceRequest& more) {
   for (const Entry& entry : more.entries)
     all.entries.push_back({entry.a + channels, entry.b + channels});
 }
-
-namespace {
 
 /// Of entries [light][view] at time 0 and after each delay.
 class Decays {
@@ -90,6 +87,13 @@ class Decays {
 };
 
 }  // namespace
+
+Scene joint_scene(const Media& media, const std::vector<std::size_t>& curves) {
+  Scene joint = media[curves.front()].scene;
+  joint.request = {};
+  for (const std::size_t i : curves) join(joint.request, media[i].scene.request);
+  return joint;
+}
 
 std::vector<double> observed(const Curve& curve, double beta, const CovarianceRequest& request,
                              std::span<const Complex> entries) {

@@ -25,8 +25,8 @@ bool is_flux(Observable observable);
 /// whether that is a thousandth or more in some view.
 bool needs_reversed(const Scene& scene);
 
-/// Adds the channels and entries of another request, as pairs.
-void join(CovarianceRequest& all, const CovarianceRequest& more);
+/// The scene of some curves, the first's, with the channels and entries of all as pairs.
+Scene joint_scene(const Media& media, const std::vector<std::size_t>& curves);
 
 /// Those of a curve, of the covariance entries of its request, [0 and its delays][entry]. beta: K^2
 /// of still scatterers.

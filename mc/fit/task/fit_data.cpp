@@ -28,6 +28,10 @@ Media media_at(const FitTask& task, const VectorXd& coordinates) {
   return media;
 }
 
+BoundedLeastSquares bounds_of(const std::vector<FreeParameter>& free) {
+  return {{}, {}, lower_coordinates(free), upper_coordinates(free)};
+}
+
 VectorXd middle(const FitTask& task) {
   VectorXd at = (lower_coordinates(task.free) + upper_coordinates(task.free)) / 2;
   for (std::size_t i = 0; i < task.free.size(); ++i)

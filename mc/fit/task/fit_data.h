@@ -5,6 +5,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
+#include "core/search/levenberg_marquardt.h"
 #include "mc/fit/task/curve_values.h"
 #include "mc/fit/task/fit_task.h"
 
@@ -12,6 +13,9 @@ namespace flatspeckle::mc {
 
 std::vector<Curve> curves_of(const FitTask& task);
 Media media_at(const FitTask& task, const Eigen::VectorXd& coordinates);
+
+/// The bounds of the parameters, as coordinates, of a problem without residuals.
+BoundedLeastSquares bounds_of(const std::vector<FreeParameter>& free);
 
 /// Where parameters start, or amid their bounds.
 Eigen::VectorXd middle(const FitTask& task);

@@ -142,13 +142,14 @@ std::vector<double> point_picture(const LineObject& shifts, std::size_t lags, do
   return picture;
 }
 
-double psnr(std::span<const double> truth, std::span<const double> picture) {
+double psnr(std::span<const double> truth, std::span<const double> picture, double noise) {
   double both = 0, squares = 0, own = 0;
   for (std::size_t p = 0; p < truth.size(); ++p) {
     both += truth[p] * picture[p];
     squares += picture[p] * picture[p];
     own += truth[p] * truth[p];
   }
+  squares += noise * static_cast<double>(truth.size());
   constexpr double rounding = 1e-14;
   const double like = squares > 0 && both > 0 ? both * both / squares : 0,
                left = std::max(own - like, rounding * own);

@@ -44,7 +44,8 @@ double typical_power(std::span<const double> power);
 std::vector<double> point_picture(const LineObject& shifts, std::size_t lags, double grain);
 
 /// Peak signal-to-noise ratio in dB: the largest value of the true picture over the rms of what it
-/// differs by from the other, whose scale is free.
-double psnr(std::span<const double> truth, std::span<const double> picture);
+/// differs by from the other, whose scale is free. noise: variance that each value of that has
+/// besides.
+double psnr(std::span<const double> truth, std::span<const double> picture, double noise = 0);
 
 }  // namespace flatspeckle::mc

@@ -1,7 +1,7 @@
-#include "mc/imaging/unmixing/nonnegative_factors.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "mc/imaging/unmixing/unmixing.h"
 
 namespace flatspeckle::mc {
 

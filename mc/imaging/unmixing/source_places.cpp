@@ -1,5 +1,3 @@
-#include "mc/imaging/unmixing/source_places.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -8,6 +6,7 @@
 #include "core/numbers/fourier.h"
 #include "mc/imaging/recovery/frame_statistics.h"
 #include "mc/imaging/recovery/line_spectrum.h"
+#include "mc/imaging/unmixing/unmixing.h"
 
 namespace flatspeckle::mc {
 

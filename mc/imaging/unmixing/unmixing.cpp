@@ -13,6 +13,7 @@ namespace flatspeckle::mc {
 namespace {
 
 using Eigen::ArrayXd;
+using Eigen::Index;
 using Eigen::MatrixXd;
 
 /// Of each value.
@@ -57,9 +58,6 @@ std::vector<double> singular_values(const MatrixXd& matrix) {
     values.push_back(std::sqrt(std::max(squares[i], 0.0)));
   return values;
 }
-
-using Eigen::Index;
-using Eigen::MatrixXd;
 
 /// [pixel][frame], the mean 1, without the background.
 MatrixXd light_of(std::span<const std::vector<double>> frames, double background) {

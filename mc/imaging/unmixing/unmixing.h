@@ -8,10 +8,54 @@
 
 #include "mc/imaging/recovery/camera_noise.h"
 #include "mc/imaging/recovery/line_object.h"
-#include "mc/imaging/unmixing/nonnegative_factors.h"
-#include "mc/imaging/unmixing/source_places.h"
 
 namespace flatspeckle::mc {
+
+/// Frames of sources that are bright in some and dark in others: frames = pattern * brightness^T,
+/// both not negative.
+struct NonnegativeFactors {
+  Eigen::MatrixXd pattern;     ///< [pixel][source], the mean over the pixels 1
+  Eigen::MatrixXd brightness;  ///< [frame][source]
+  double residual = 0;  ///< rms of what the frames differ by from the product, over their rms
+};
+
+/// How the factors are improved.
+struct FactorTask {
+  std::size_t sources = 1;
+  int iterations = 3000;  ///< at most
+  double settled = 1e-5;  ///< stops where an iteration lowers the residual by less than this part
+};
+
+/// frames: [pixel][frame]. Hierarchical alternating least squares (Cichocki and Phan 2009), several
+/// sweeps over each factor while the other stands (Gillis and Glineur 2012). They begin with the
+/// pixels in which a single source prevails, by successive projection (Araujo et al. 2001): speckle
+/// has dark places everywhere, so that each source has pixels nearly of its own, and factors are
+/// unique but for their order.
+NonnegativeFactors nonnegative_factors(const Eigen::MatrixXd& frames, const FactorTask& task);
+
+/// Two sources whose patterns are alike where one is shifted.
+struct PatternShift {
+  std::size_t first = 0, second = 0;
+  double shift = 0;   ///< pixels from the first's pattern to the second's
+  double height = 0;  ///< of the correlation there, C_I for speckle
+  double noise = 0;   ///< its standard deviation elsewhere
+};
+
+/// Of all pairs whose correlation has a peak, within `lags` pixels, that chance makes in one of a
+/// hundred such sets. patterns: [pixel][source].
+std::vector<PatternShift> pattern_shifts(const Eigen::MatrixXd& patterns, std::size_t lags);
+
+/// Where sources are that are joined by pairs, one to the next.
+struct SourcePlaces {
+  std::vector<double> x;           ///< pixels, the first of each group at 0
+  std::vector<std::size_t> group;  ///< sources of one number are joined; 0: the largest
+};
+
+/// The tree of the highest peaks that reaches all it can, then least squares over the pairs that
+/// agree with it within so many pixels, each weighted by its peak's square. An object may so be
+/// longer than any two points share their speckle (Zhu et al. 2022).
+SourcePlaces source_places(std::size_t sources, const std::vector<PatternShift>& shifts,
+                           double within);
 
 /// How many sources frames have.
 struct SourceCount {

@@ -4,11 +4,8 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
+#include "core/result/result_file.h"
 #include "mc/imaging/unmixing/unmixing.h"
-
-namespace flatspeckle {
-class ResultFile;
-}
 
 namespace flatspeckle::mc {
 

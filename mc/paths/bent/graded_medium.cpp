@@ -5,13 +5,8 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "grin/media/fields/gaussian_blobs.h"
-#include "grin/media/fields/parabolic.h"
-#include "grin/media/fields/spline_field.h"
-#include "grin/media/fields/ultrasound.h"
 #include "mc/paths/bent/homogenised_box.h"
 #include "mc/paths/bent/linear_medium.h"
-#include "mc/paths/bent/stepped_medium.h"
 
 namespace flatspeckle::mc {
 
@@ -156,27 +151,6 @@ std::shared_ptr<const Wavefront> MeanFieldMedium::wave_from_afar(double angle) c
   return std::make_shared<BoxWave>(box, domain_, k_, angle);
 }
 
-template <class Field>
-std::shared_ptr<const GradedMedium> in_steps(const Scene& scene, Field field) {
-  const double scale = facts(field).scale;
-  return std::make_shared<const SteppedMedium<Field>>(scene, std::move(field), scale);
-}
-
-grin::GaussianBlobs blobs_of(const IndexField& field) {
-  std::vector<grin::GaussianBlob> blobs;
-  for (const IndexBlob& blob : field.blobs)
-    blobs.push_back({{blob.centre.x, 0, blob.centre.z}, blob.height, blob.width});
-  return grin::GaussianBlobs(std::move(blobs), field.origin - 1);
-}
-
-grin::StandingWave sound_of(const Scene& scene) {
-  constexpr double longest_table = 1e3;  // in k rho; beyond it the wave is slow, not wrong
-  const IndexField& field = *scene.index;
-  const double reach = 4 * (scene.domain.width + scene.domain.depth);
-  return {field.origin - 1, field.sound_amplitude, 0, field.sound_wavenumber,
-          std::min(reach, longest_table / field.sound_wavenumber)};
-}
-
 }  // namespace
 
 std::shared_ptr<const Wavefront> GradedMedium::from_point(Vec2 source) const {
@@ -198,21 +172,13 @@ std::shared_ptr<const GradedMedium> graded_medium(const Scene& scene) {
   switch (field.kind) {
     case IndexField::Kind::linear:
       return std::make_shared<const LinearMedium>(scene.domain, field);
-    case IndexField::Kind::parabolic:
-      return in_steps(scene,
-                      grin::ParabolicGuide({field.origin - 1, field.alpha}, grin::Vec3(0, 0, 0)));
-    case IndexField::Kind::blobs:
-      return in_steps(scene, blobs_of(field));
-    case IndexField::Kind::ultrasound:
-      return in_steps(scene, sound_of(scene));
-    case IndexField::Kind::grid:
-      return in_steps(scene, grin::read_spline_field(field.grid));
     case IndexField::Kind::mean_field:
       return std::make_shared<const MeanFieldMedium>(scene);
     case IndexField::Kind::homogeneous:
-      break;
+      throw InputError("index_field", field.describe(), "is not of light paths");
+    default:
+      return stepped_medium(scene);
   }
-  throw InputError("index_field", field.describe(), "is not of light paths");
 }
 
 }  // namespace flatspeckle::mc

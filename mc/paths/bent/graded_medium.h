@@ -68,6 +68,11 @@ class GradedMedium {
 /// Of a scene whose index varies. Throws InputError.
 std::shared_ptr<const GradedMedium> graded_medium(const Scene& scene);
 
+/// Index fields of grin in the plane y = 0, parabolic, blobs, ultrasound and grid, by steps along
+/// rays. Waves of ends are tables over the box; a point in it, or close by, finds the ray to each
+/// place anew.
+std::shared_ptr<const GradedMedium> stepped_medium(const Scene& scene);
+
 /// Throws InputError that says where, unless the wave of a light, or that from a view, has one ray
 /// to every place of the domain and no caustic there.
 void require_one_ray(const Scene& scene, const Wavefront& wave, const std::string& whose);

@@ -1,9 +1,9 @@
-#include "mc/paths/bent/stepped_medium.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <vector>
 
 #include "core/error.h"
 #include "core/keys/number_text.h"
@@ -11,6 +11,8 @@
 #include "grin/media/fields/parabolic.h"
 #include "grin/media/fields/spline_field.h"
 #include "grin/media/fields/ultrasound.h"
+#include "mc/paths/bent/bent_chords.h"
+#include "mc/paths/bent/graded_medium.h"
 
 namespace flatspeckle::mc {
 
@@ -44,7 +46,168 @@ grin::Vec3 in_space(Vec2 x) {
   return {x.x, 0, x.z};
 }
 
+/// A wave tabulated over a box: its eikonal by bicubic Hermite interpolation of values and
+/// directions, its amplitude by cubic convolution.
+class WaveTable : public Wavefront {
+ public:
+  /// What a place of the table holds. at(x, guess): the arrival there, and n; guess is that of a
+  /// place beside it. Throws InputError where a place has none.
+  struct Node {
+    Arrival arrival;
+    double index;
+  };
+  using At = std::function<std::optional<Node>(Vec2 x, const Node* guess)>;
+  /// spreads: from a point, so that the amplitude falls about as path^(-1/2).
+  WaveTable(const Domain& box, double spacing, bool spreads, const At& at, const std::string& whose)
+      : box_(box),
+        spreads_(spreads),
+        columns_(cells(box.width, spacing) + 3),
+        rows_(cells(box.depth, spacing) + 3) {
+    dx_ = box.width / static_cast<double>(columns_ - 3);
+    dz_ = box.depth / static_cast<double>(rows_ - 3);
+    origin_ = {-box.width / 2 - dx_, -dz_};
+    std::vector<Node> row(columns_);
+    for (std::size_t j = 0; j < rows_; ++j)
+      for (std::size_t i = 0; i < columns_; ++i) {
+        const Vec2 x = origin_ + Vec2{static_cast<double>(i) * dx_, static_cast<double>(j) * dz_};
+        const Node* guess = j > 0 ? &row[i] : i > 0 ? &row[i - 1] : nullptr;
+        const auto node = at(x, guess);
+        if (!node)
+          throw InputError("index_field: light of " + whose + " does not come to (" +
+                           number_text(x.x) + ", " + number_text(x.z) +
+                           ") by one ray: a caustic is before it; take a weaker field, a smaller "
+                           "box or other ends");
+        row[i] = *node;
+        const auto& [w, path, amplitude, inside, launch] = node->arrival;
+        const double chord = box.contains(x) ? box.distance_to_edge(x, -w) : 0;
+        entries_.push_back({path, node->index * w.x, node->index * w.z, 0,
+                            std::log(spreads ? amplitude * std::sqrt(path) : amplitude),
+                            chord > 1e-9 * dx_ ? inside / chord : 1 / node->index, launch});
+      }
+    find_mixed_derivatives();
+  }
+
+  std::optional<Arrival> at(Vec2 x) const override {
+    const double along = (x.x - origin_.x) / dx_, deep = (x.z - origin_.z) / dz_;
+    const auto cell = [](double position, std::size_t size) {
+      return static_cast<std::size_t>(std::clamp(position, 1.0, static_cast<double>(size - 3)));
+    };
+    const std::size_t i = cell(along, columns_), j = cell(deep, rows_);
+    const double s = along - static_cast<double>(i), t = deep - static_cast<double>(j);
+    const Four a = hermite(s), b = hermite(t), da = hermite_slope(s), db = hermite_slope(t),
+               p = convolution(s), q = convolution(t);
+    Arrival found{{}, 0, 0, 0, 0};
+    Vec2 v{0, 0};
+    for (std::size_t m = 0; m < 2; ++m)
+      for (std::size_t n = 0; n < 2; ++n) {
+        const Entry& e = entry(i + m, j + n);
+        const double sx = dx_ * e.by_x, sz = dz_ * e.by_z, both = dx_ * dz_ * e.by_both;
+        found.path +=
+            a[m] * (b[n] * e.path + b[2 + n] * sz) + a[2 + m] * (b[n] * sx + b[2 + n] * both);
+        v.x +=
+            (da[m] * (b[n] * e.path + b[2 + n] * sz) + da[2 + m] * (b[n] * sx + b[2 + n] * both)) /
+            dx_;
+        v.z += (a[m] * (db[n] * e.path + db[2 + n] * sz) +
+                a[2 + m] * (db[n] * sx + db[2 + n] * both)) /
+               dz_;
+        const double share = (m == 0 ? 1 - s : s) * (n == 0 ? 1 - t : t);
+        found.inside += share * e.inside_per_chord;
+        found.launch += share * e.launch;
+      }
+    double log_amplitude = 0;
+    for (std::size_t m = 0; m < 4; ++m)
+      for (std::size_t n = 0; n < 4; ++n)
+        log_amplitude += p[m] * q[n] * entry(i + m - 1, j + n - 1).log_amplitude;
+    found.w = 1 / length(v) * v;
+    found.amplitude = std::exp(log_amplitude) / (spreads_ ? std::sqrt(found.path) : 1);
+    found.inside *= box_.distance_to_edge(x, -found.w);
+    return found;
+  }
+
+ private:
+  struct Entry {
+    double path, by_x, by_z, by_both, log_amplitude, inside_per_chord, launch;
+  };
+  const Entry& entry(std::size_t i, std::size_t j) const { return entries_[j * columns_ + i]; }
+
+  /// By differences of by_x along z; at the outermost rows that of the next is as good.
+  void find_mixed_derivatives() {
+    for (std::size_t j = 0; j < rows_; ++j)
+      for (std::size_t i = 0; i < columns_; ++i) {
+        const std::size_t middle = std::clamp<std::size_t>(j, 1, rows_ - 2);
+        entries_[j * columns_ + i].by_both =
+            (entry(i, middle + 1).by_x - entry(i, middle - 1).by_x) / (2 * dz_);
+      }
+  }
+
+  Domain box_;
+  bool spreads_;
+  Vec2 origin_;
+  double dx_, dz_;
+  std::size_t columns_, rows_;  ///< one more than the box on each side
+  std::vector<Entry> entries_;
+};
+
+/// n^2, and n grad n, which bends rays, of a field in the plane.
+struct Bend {
+  double square;
+  Vec2 force;
+};
+/// The same and the force's derivatives.
+struct BentBend : Bend {
+  double xx, xz, zz;
+};
+
+/// A ray in the parameter sigma (conventions, C30): x' = v, v' = n grad n, |v| = n.
+struct BentRay {
+  Vec2 x, v;
+};
+
+/// A ray, its optical path, and how it moves as its direction turns where it begins.
+struct RayTube : BentRay {
+  Vec2 y, w;  ///< derivatives of x and v by that angle
+  double path = 0;
+
+  static RayTube from(Vec2 x, Vec2 v) { return {{x, v}, {}, {v.z, -v.x}, 0}; }
+  /// J (C32); its sign changes at caustics.
+  double spread() const { return y.x * v.z - y.z * v.x; }
+};
+
+/// Nystrom's method of fourth order.
+template <typename BendAt>
+BentRay stepped(const BentRay& ray, double h, const BendAt& bend) {
+  const auto [x, v] = ray;
+  const Vec2 a = bend(x).force, b = bend(x + h / 2 * v + h * h / 8 * a).force,
+             c = bend(x + h * v + h * h / 2 * b).force;
+  return {x + h * v + h * h / 6 * (a + 2 * b), v + h / 6 * (a + 4 * b + c)};
+}
+
+/// The same of a tube: the derivative of the step itself, and Simpson's rule of the path.
+template <typename BentBendAt>
+RayTube stepped(const RayTube& tube, double h, const BentBendAt& bend) {
+  const auto turned = [](const BentBend& at, Vec2 y) {
+    return Vec2{at.xx * y.x + at.xz * y.z, at.xz * y.x + at.zz * y.z};
+  };
+  const Vec2 x = tube.x, v = tube.v, y = tube.y, w = tube.w;
+  const BentBend first = bend(x);
+  const Vec2 a = first.force, ya = turned(first, y);
+  const BentBend second = bend(x + h / 2 * v + h * h / 8 * a);
+  const Vec2 b = second.force, yb = turned(second, y + h / 2 * w + h * h / 8 * ya);
+  const BentBend third = bend(x + h * v + h * h / 2 * b);
+  const Vec2 c = third.force, yc = turned(third, y + h * w + h * h / 2 * yb);
+  RayTube next;
+  next.x = x + h * v + h * h / 6 * (a + 2 * b);
+  next.v = v + h / 6 * (a + 4 * b + c);
+  next.y = y + h * w + h * h / 6 * (ya + 2 * yb);
+  next.w = w + h / 6 * (ya + 4 * yb + yc);
+  next.path = tube.path + h / 6 * (first.square + 4 * second.square + third.square);
+  return next;
+}
+
 /// A point in the medium or near it: every ray anew.
+template <class Field>
+class SteppedMedium;
+
 template <class Field>
 class SoughtWave : public Wavefront {
  public:
@@ -66,274 +229,233 @@ double distance_to(const Domain& box, Vec2 x) {
                     std::max({0.0, -x.z, x.z - box.depth}));
 }
 
+/// Any index field of grin in the plane y = 0, by steps along rays. Waves of ends are tables over
+/// the box; a point in it, or close by, finds the ray to each place anew.
+template <class Field>
+class SteppedMedium : public GradedMedium {
+ public:
+  SteppedMedium(const Scene& scene, Field field) : domain_(scene.domain), field_(std::move(field)) {
+    constexpr double step_per_scale = 0.25, spacing_per_scale = 0.25, step_per_box = 0.125;
+    const double scale = facts(field_).scale, size = std::max(domain_.width, domain_.depth),
+                 least = std::min(domain_.width, domain_.depth);
+    step_ = std::min(step_per_scale * scale, step_per_box * size);
+    spacing_ = std::min(spacing_per_scale * scale, least / 8);
+    low_ = {-domain_.width / 2, 0};
+    high_ = {domain_.width / 2, domain_.depth};
+    const auto take = [&](Vec2 x) {
+      low_ = {std::min(low_.x, x.x), std::min(low_.z, x.z)};
+      high_ = {std::max(high_.x, x.x), std::max(high_.z, x.z)};
+    };
+    for (const Light& light : scene.request.lights)
+      if (light.kind == Light::Kind::point) take(light.point);
+    for (const View& view : scene.request.views)
+      if (view.near) take(view.point);
+    low_ = low_ - Vec2{size, size};
+    high_ = high_ + Vec2{size, size};
+  }
+
+  double square(Vec2 x) const override { return bend(x).square; }
+
+  double inside(Vec2 x, Vec2 w) const override {
+    BentRay ray = begun(x, w);
+    double sum = 0;
+    for (int step = 0; step < most_steps && in_window(ray.x); ++step) {
+      const BentRay next = stepped(ray, step_, [this](Vec2 place) { return bend(place); });
+      sum += chords(ray, next, step_).length();
+      ray = next;
+    }
+    return sum;
+  }
+
+  std::optional<RayPlace> flown(Vec2 x, Vec2 w, double sigma) const override {
+    const auto bend_at = [this](Vec2 place) { return bend(place); };
+    BentRay ray = begun(x, w);
+    for (int step = 0; step < most_steps && in_window(ray.x); ++step) {
+      const BentRay next = stepped(ray, step_, bend_at);
+      const BentChords parts = chords(ray, next, step_);
+      if (const double at = parts.at(sigma); at <= step_) {
+        const BentRay end = stepped(ray, at, bend_at);
+        return RayPlace{end.x, 1 / length(end.v) * end.v};
+      }
+      sigma -= parts.length();
+      ray = next;
+    }
+    return std::nullopt;
+  }
+
+  /// The ray from a source to a place; guess: of its launch.
+  std::optional<WaveTable::Node> arrival(Vec2 source, Vec2 x, std::optional<double> guess) const {
+    const Vec2 chord = x - source;
+    const double middle = angle_of(Vec2{0, domain_.depth / 2} - source), r = length(chord);
+    double launch = guess.value_or(angle_of(chord));
+    constexpr int most_turns = 20;
+    constexpr double largest_turn = 0.3;
+    for (int turn = 0; turn < most_turns; ++turn) {
+      const auto end = followed(source, direction(launch), true,
+                                [&](const BentRay& ray) { return dot(x - ray.x, ray.v); });
+      if (!end) return std::nullopt;
+      const RayTube& tube = end->tube;
+      const double n = length(tube.v);
+      const Vec2 across = 1 / n * Vec2{tube.v.z, -tube.v.x};
+      const double miss = dot(x - tube.x, across);
+      if (std::abs(miss) < 1e-10 * r)
+        return WaveTable::Node{
+            {1 / n * tube.v, tube.path, 1 / std::sqrt(tube.spread()), end->inside,
+             middle + std::remainder(launch - middle, 2 * std::numbers::pi)},
+            n};
+      launch += std::clamp(miss * n / tube.spread(), -largest_turn, largest_turn);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::shared_ptr<const Wavefront> wave_from_point(Vec2 source) const override {
+    const double away = distance_to(domain_, source);
+    const double spacing = std::min(spacing_, away / 6);
+    if (away < 2 * spacing_ || away < 0.5)
+      return std::make_shared<SoughtWave<Field>>(*this, source);
+    return std::make_shared<WaveTable>(
+        domain_, spacing, true,
+        [&](Vec2 x, const WaveTable::Node* guess) {
+          return arrival(source, x, guess ? std::optional(guess->arrival.launch) : std::nullopt);
+        },
+        std::string("(").append(number_text(source.x)) + ", " + number_text(source.z) + ")");
+  }
+
+  std::shared_ptr<const Wavefront> wave_from_afar(double angle) const override {
+    return std::make_shared<WaveTable>(
+        domain_, spacing_, false,
+        [&](Vec2 x, const WaveTable::Node* guess) { return plane_arrival(angle, x, guess); },
+        "direction " + number_text(angle));
+  }
+
+  Bend bend(Vec2 x) const {
+    const auto [excess, gradient] = field_.gradient(in_space(x));
+    const double n = 1 + excess;
+    return {n * n, {n * gradient[0], n * gradient[2]}};
+  }
+
+  BentBend bent_bend(Vec2 x) const {
+    const auto [excess, g, h] = field_.hessian(in_space(x));
+    const double n = 1 + excess;
+    return {{n * n, {n * g[0], n * g[2]}},
+            g[0] * g[0] + n * h(0, 0),
+            g[0] * g[2] + n * h(0, 2),
+            g[2] * g[2] + n * h(2, 2)};
+  }
+
+  BentRay begun(Vec2 x, Vec2 w) const { return {x, std::sqrt(std::max(square(x), 0.0)) * w}; }
+  bool in_window(Vec2 x) const {
+    return x.x >= low_.x && x.x <= high_.x && x.z >= low_.z && x.z <= high_.z;
+  }
+  /// sigma of a step that is in the domain, as a parabola.
+  BentChords chords(const BentRay& from, const BentRay& to, double h) const {
+    return {domain_, from.x, from.v, 2 / (h * h) * (to.x - from.x - h * from.v), h};
+  }
+
+  struct End {
+    RayTube tube;
+    double inside;
+  };
+  /// Along a ray to where `left`, which is positive before, is 0; none beyond a caustic, if that
+  /// counts, or out of the window.
+  template <typename Left>
+  std::optional<End> followed(Vec2 x, Vec2 w, bool to_caustic, const Left& left) const {
+    const auto bend_at = [this](Vec2 place) { return bent_bend(place); };
+    End end{RayTube::from(x, begun(x, w).v), 0};
+    double before = left(end.tube);
+    if (!(before > 0)) return end;
+    for (int step = 0; step < most_steps && in_window(end.tube.x); ++step) {
+      RayTube next = stepped(end.tube, step_, bend_at);
+      double h = step_, after = left(next);
+      if (after <= 0) {  // false position with bisection where it stalls
+        double low = 0, high = h, at_low = before, at_high = after;
+        for (int turn = 0; turn < 60 && std::abs(after) > 1e-13 * (1 + before); ++turn) {
+          h = turn % 3 == 2 ? (low + high) / 2 : low + (high - low) * at_low / (at_low - at_high);
+          next = stepped(end.tube, h, bend_at);
+          after = left(next);
+          (after > 0 ? low : high) = h;
+          (after > 0 ? at_low : at_high) = after;
+        }
+        before = 0;
+      } else {
+        before = after;
+      }
+      if (to_caustic && !(next.spread() > 0)) return std::nullopt;
+      if (h > 0) end.inside += chords(end.tube, next, h).length();
+      end.tube = next;
+      if (before == 0) return end;
+    }
+    return std::nullopt;
+  }
+
+  /// By the ray from x to the face, against the light, or along it where x is before the face.
+  std::optional<WaveTable::Node> plane_arrival(double angle, Vec2 x,
+                                               const WaveTable::Node* guess) const {
+    const double sine = std::sin(angle), cosine = std::cos(angle),
+                 face = cosine > 0 ? 0 : domain_.depth, deep = (x.z - face) * cosine;
+    const double way = deep >= 0 ? -1 : 1;  // times the light's direction
+    const double n2 = square(x);
+    Vec2 w = guess ? guess->arrival.w
+                   : Vec2{sine, std::copysign(std::sqrt(std::max(n2 - sine * sine, 1e-4)), cosine)};
+    double turned = angle_of(way * w);
+    constexpr int most_turns = 20;
+    constexpr double largest_turn = 0.3;
+    for (int turn = 0; turn < most_turns; ++turn) {
+      const auto end = followed(x, direction(turned), false, [&](const BentRay& ray) {
+        return (ray.x.z - face) * cosine * -way;
+      });
+      if (!end) return std::nullopt;
+      const RayTube& tube = end->tube;
+      const double miss = tube.v.x - way * sine,
+                   slope = tube.w.x - bend(tube.x).force.x / tube.v.z * tube.y.z;
+      if (!(slope * tube.v.z > 0)) return std::nullopt;
+      if (std::abs(miss) < 1e-11)
+        return WaveTable::Node{
+            {way * direction(turned), sine * tube.x.x + cosine * face - way * tube.path,
+             std::sqrt(std::abs(cosine / slope)), way < 0 ? end->inside : 0, tube.x.x},
+            std::sqrt(n2)};
+      turned -= std::clamp(miss / slope, -largest_turn, largest_turn);
+    }
+    return std::nullopt;
+  }
+
+  Domain domain_;
+  Field field_;
+  double step_, spacing_;
+  Vec2 low_, high_;  ///< of the window
+};
+
+template <class Field>
+std::shared_ptr<const GradedMedium> in_steps(const Scene& scene, Field field) {
+  return std::make_shared<const SteppedMedium<Field>>(scene, std::move(field));
+}
+
+grin::GaussianBlobs blobs_of(const IndexField& field) {
+  std::vector<grin::GaussianBlob> blobs;
+  for (const IndexBlob& blob : field.blobs)
+    blobs.push_back({{blob.centre.x, 0, blob.centre.z}, blob.height, blob.width});
+  return grin::GaussianBlobs(std::move(blobs), field.origin - 1);
+}
+
+grin::StandingWave sound_of(const Scene& scene) {
+  constexpr double longest_table = 1e3;  // in k rho; beyond it the wave is slow, not wrong
+  const IndexField& field = *scene.index;
+  const double reach = 4 * (scene.domain.width + scene.domain.depth);
+  return {field.origin - 1, field.sound_amplitude, 0, field.sound_wavenumber,
+          std::min(reach, longest_table / field.sound_wavenumber)};
+}
+
 }  // namespace
 
-WaveTable::WaveTable(const Domain& box, double spacing, bool spreads, const At& at,
-                     const std::string& whose)
-    : box_(box),
-      spreads_(spreads),
-      columns_(cells(box.width, spacing) + 3),
-      rows_(cells(box.depth, spacing) + 3) {
-  dx_ = box.width / static_cast<double>(columns_ - 3);
-  dz_ = box.depth / static_cast<double>(rows_ - 3);
-  origin_ = {-box.width / 2 - dx_, -dz_};
-  std::vector<Node> row(columns_);
-  for (std::size_t j = 0; j < rows_; ++j)
-    for (std::size_t i = 0; i < columns_; ++i) {
-      const Vec2 x = origin_ + Vec2{static_cast<double>(i) * dx_, static_cast<double>(j) * dz_};
-      const Node* guess = j > 0 ? &row[i] : i > 0 ? &row[i - 1] : nullptr;
-      const auto node = at(x, guess);
-      if (!node)
-        throw InputError("index_field: light of " + whose + " does not come to (" +
-                         number_text(x.x) + ", " + number_text(x.z) +
-                         ") by one ray: a caustic is before it; take a weaker field, a smaller "
-                         "box or other ends");
-      row[i] = *node;
-      const auto& [w, path, amplitude, inside, launch] = node->arrival;
-      const double chord = box.contains(x) ? box.distance_to_edge(x, -w) : 0;
-      entries_.push_back({path, node->index * w.x, node->index * w.z, 0,
-                          std::log(spreads ? amplitude * std::sqrt(path) : amplitude),
-                          chord > 1e-9 * dx_ ? inside / chord : 1 / node->index, launch});
-    }
-  find_mixed_derivatives();
+std::shared_ptr<const GradedMedium> stepped_medium(const Scene& scene) {
+  const IndexField& field = *scene.index;
+  if (field.kind == IndexField::Kind::parabolic)
+    return in_steps(scene,
+                    grin::ParabolicGuide({field.origin - 1, field.alpha}, grin::Vec3(0, 0, 0)));
+  if (field.kind == IndexField::Kind::blobs) return in_steps(scene, blobs_of(field));
+  if (field.kind == IndexField::Kind::ultrasound) return in_steps(scene, sound_of(scene));
+  return in_steps(scene, grin::read_spline_field(field.grid));
 }
-
-/// By differences of by_x along z; at the outermost rows that of the next is as good.
-void WaveTable::find_mixed_derivatives() {
-  for (std::size_t j = 0; j < rows_; ++j)
-    for (std::size_t i = 0; i < columns_; ++i) {
-      const std::size_t middle = std::clamp<std::size_t>(j, 1, rows_ - 2);
-      entries_[j * columns_ + i].by_both =
-          (entry(i, middle + 1).by_x - entry(i, middle - 1).by_x) / (2 * dz_);
-    }
-}
-
-std::optional<Arrival> WaveTable::at(Vec2 x) const {
-  const double along = (x.x - origin_.x) / dx_, deep = (x.z - origin_.z) / dz_;
-  const auto cell = [](double position, std::size_t size) {
-    return static_cast<std::size_t>(std::clamp(position, 1.0, static_cast<double>(size - 3)));
-  };
-  const std::size_t i = cell(along, columns_), j = cell(deep, rows_);
-  const double s = along - static_cast<double>(i), t = deep - static_cast<double>(j);
-  const Four a = hermite(s), b = hermite(t), da = hermite_slope(s), db = hermite_slope(t),
-             p = convolution(s), q = convolution(t);
-  Arrival found{{}, 0, 0, 0, 0};
-  Vec2 v{0, 0};
-  for (std::size_t m = 0; m < 2; ++m)
-    for (std::size_t n = 0; n < 2; ++n) {
-      const Entry& e = entry(i + m, j + n);
-      const double sx = dx_ * e.by_x, sz = dz_ * e.by_z, both = dx_ * dz_ * e.by_both;
-      found.path +=
-          a[m] * (b[n] * e.path + b[2 + n] * sz) + a[2 + m] * (b[n] * sx + b[2 + n] * both);
-      v.x += (da[m] * (b[n] * e.path + b[2 + n] * sz) + da[2 + m] * (b[n] * sx + b[2 + n] * both)) /
-             dx_;
-      v.z +=
-          (a[m] * (db[n] * e.path + db[2 + n] * sz) + a[2 + m] * (db[n] * sx + db[2 + n] * both)) /
-          dz_;
-      const double share = (m == 0 ? 1 - s : s) * (n == 0 ? 1 - t : t);
-      found.inside += share * e.inside_per_chord;
-      found.launch += share * e.launch;
-    }
-  double log_amplitude = 0;
-  for (std::size_t m = 0; m < 4; ++m)
-    for (std::size_t n = 0; n < 4; ++n)
-      log_amplitude += p[m] * q[n] * entry(i + m - 1, j + n - 1).log_amplitude;
-  found.w = 1 / length(v) * v;
-  found.amplitude = std::exp(log_amplitude) / (spreads_ ? std::sqrt(found.path) : 1);
-  found.inside *= box_.distance_to_edge(x, -found.w);
-  return found;
-}
-
-template <class Field>
-SteppedMedium<Field>::SteppedMedium(const Scene& scene, Field field, double scale)
-    : domain_(scene.domain), field_(std::move(field)) {
-  constexpr double step_per_scale = 0.25, spacing_per_scale = 0.25, step_per_box = 0.125;
-  const double size = std::max(domain_.width, domain_.depth),
-               least = std::min(domain_.width, domain_.depth);
-  step_ = std::min(step_per_scale * scale, step_per_box * size);
-  spacing_ = std::min(spacing_per_scale * scale, least / 8);
-  low_ = {-domain_.width / 2, 0};
-  high_ = {domain_.width / 2, domain_.depth};
-  const auto take = [&](Vec2 x) {
-    low_ = {std::min(low_.x, x.x), std::min(low_.z, x.z)};
-    high_ = {std::max(high_.x, x.x), std::max(high_.z, x.z)};
-  };
-  for (const Light& light : scene.request.lights)
-    if (light.kind == Light::Kind::point) take(light.point);
-  for (const View& view : scene.request.views)
-    if (view.near) take(view.point);
-  low_ = low_ - Vec2{size, size};
-  high_ = high_ + Vec2{size, size};
-}
-
-template <class Field>
-Bend SteppedMedium<Field>::bend(Vec2 x) const {
-  const auto [excess, gradient] = field_.gradient(in_space(x));
-  const double n = 1 + excess;
-  return {n * n, {n * gradient[0], n * gradient[2]}};
-}
-
-template <class Field>
-BentBend SteppedMedium<Field>::bent_bend(Vec2 x) const {
-  const auto [excess, g, h] = field_.hessian(in_space(x));
-  const double n = 1 + excess;
-  return {{n * n, {n * g[0], n * g[2]}},
-          g[0] * g[0] + n * h(0, 0),
-          g[0] * g[2] + n * h(0, 2),
-          g[2] * g[2] + n * h(2, 2)};
-}
-
-template <class Field>
-bool SteppedMedium<Field>::in_window(Vec2 x) const {
-  return x.x >= low_.x && x.x <= high_.x && x.z >= low_.z && x.z <= high_.z;
-}
-
-template <class Field>
-BentChords SteppedMedium<Field>::chords(const BentRay& from, const BentRay& to, double h) const {
-  return {domain_, from.x, from.v, 2 / (h * h) * (to.x - from.x - h * from.v), h};
-}
-
-template <class Field>
-double SteppedMedium<Field>::inside(Vec2 x, Vec2 w) const {
-  BentRay ray = begun(x, w);
-  double sum = 0;
-  for (int step = 0; step < most_steps && in_window(ray.x); ++step) {
-    const BentRay next = stepped(ray, step_, [this](Vec2 place) { return bend(place); });
-    sum += chords(ray, next, step_).length();
-    ray = next;
-  }
-  return sum;
-}
-
-template <class Field>
-std::optional<RayPlace> SteppedMedium<Field>::flown(Vec2 x, Vec2 w, double sigma) const {
-  const auto bend_at = [this](Vec2 place) { return bend(place); };
-  BentRay ray = begun(x, w);
-  for (int step = 0; step < most_steps && in_window(ray.x); ++step) {
-    const BentRay next = stepped(ray, step_, bend_at);
-    const BentChords parts = chords(ray, next, step_);
-    if (const double at = parts.at(sigma); at <= step_) {
-      const BentRay end = stepped(ray, at, bend_at);
-      return RayPlace{end.x, 1 / length(end.v) * end.v};
-    }
-    sigma -= parts.length();
-    ray = next;
-  }
-  return std::nullopt;
-}
-
-template <class Field>
-template <typename Left>
-auto SteppedMedium<Field>::followed(Vec2 x, Vec2 w, bool to_caustic, const Left& left) const
-    -> std::optional<End> {
-  const auto bend_at = [this](Vec2 place) { return bent_bend(place); };
-  End end{RayTube::from(x, begun(x, w).v), 0};
-  double before = left(end.tube);
-  if (!(before > 0)) return end;
-  for (int step = 0; step < most_steps && in_window(end.tube.x); ++step) {
-    RayTube next = stepped(end.tube, step_, bend_at);
-    double h = step_, after = left(next);
-    if (after <= 0) {  // false position with bisection where it stalls
-      double low = 0, high = h, at_low = before, at_high = after;
-      for (int turn = 0; turn < 60 && std::abs(after) > 1e-13 * (1 + before); ++turn) {
-        h = turn % 3 == 2 ? (low + high) / 2 : low + (high - low) * at_low / (at_low - at_high);
-        next = stepped(end.tube, h, bend_at);
-        after = left(next);
-        (after > 0 ? low : high) = h;
-        (after > 0 ? at_low : at_high) = after;
-      }
-      before = 0;
-    } else {
-      before = after;
-    }
-    if (to_caustic && !(next.spread() > 0)) return std::nullopt;
-    if (h > 0) end.inside += chords(end.tube, next, h).length();
-    end.tube = next;
-    if (before == 0) return end;
-  }
-  return std::nullopt;
-}
-
-template <class Field>
-std::optional<WaveTable::Node> SteppedMedium<Field>::arrival(Vec2 source, Vec2 x,
-                                                             std::optional<double> guess) const {
-  const Vec2 chord = x - source;
-  const double middle = angle_of(Vec2{0, domain_.depth / 2} - source), r = length(chord);
-  double launch = guess.value_or(angle_of(chord));
-  constexpr int most_turns = 20;
-  constexpr double largest_turn = 0.3;
-  for (int turn = 0; turn < most_turns; ++turn) {
-    const auto end = followed(source, direction(launch), true,
-                              [&](const BentRay& ray) { return dot(x - ray.x, ray.v); });
-    if (!end) return std::nullopt;
-    const RayTube& tube = end->tube;
-    const double n = length(tube.v);
-    const Vec2 across = 1 / n * Vec2{tube.v.z, -tube.v.x};
-    const double miss = dot(x - tube.x, across);
-    if (std::abs(miss) < 1e-10 * r)
-      return WaveTable::Node{{1 / n * tube.v, tube.path, 1 / std::sqrt(tube.spread()), end->inside,
-                              middle + std::remainder(launch - middle, 2 * std::numbers::pi)},
-                             n};
-    launch += std::clamp(miss * n / tube.spread(), -largest_turn, largest_turn);
-  }
-  return std::nullopt;
-}
-
-/// By the ray from x to the face, against the light, or along it where x is before the face.
-template <class Field>
-std::optional<WaveTable::Node> SteppedMedium<Field>::plane_arrival(
-    double angle, Vec2 x, const WaveTable::Node* guess) const {
-  const double sine = std::sin(angle), cosine = std::cos(angle),
-               face = cosine > 0 ? 0 : domain_.depth, deep = (x.z - face) * cosine;
-  const double way = deep >= 0 ? -1 : 1;  // times the light's direction
-  const double n2 = square(x);
-  Vec2 w = guess ? guess->arrival.w
-                 : Vec2{sine, std::copysign(std::sqrt(std::max(n2 - sine * sine, 1e-4)), cosine)};
-  double turned = angle_of(way * w);
-  constexpr int most_turns = 20;
-  constexpr double largest_turn = 0.3;
-  for (int turn = 0; turn < most_turns; ++turn) {
-    const auto end = followed(x, direction(turned), false,
-                              [&](const BentRay& ray) { return (ray.x.z - face) * cosine * -way; });
-    if (!end) return std::nullopt;
-    const RayTube& tube = end->tube;
-    const double miss = tube.v.x - way * sine,
-                 slope = tube.w.x - bend(tube.x).force.x / tube.v.z * tube.y.z;
-    if (!(slope * tube.v.z > 0)) return std::nullopt;
-    if (std::abs(miss) < 1e-11)
-      return WaveTable::Node{
-          {way * direction(turned), sine * tube.x.x + cosine * face - way * tube.path,
-           std::sqrt(std::abs(cosine / slope)), way < 0 ? end->inside : 0, tube.x.x},
-          std::sqrt(n2)};
-    turned -= std::clamp(miss / slope, -largest_turn, largest_turn);
-  }
-  return std::nullopt;
-}
-
-template <class Field>
-std::shared_ptr<const Wavefront> SteppedMedium<Field>::wave_from_point(Vec2 source) const {
-  const double away = distance_to(domain_, source);
-  const double spacing = std::min(spacing_, away / 6);
-  if (away < 2 * spacing_ || away < 0.5) return std::make_shared<SoughtWave<Field>>(*this, source);
-  return std::make_shared<WaveTable>(
-      domain_, spacing, true,
-      [&](Vec2 x, const WaveTable::Node* guess) {
-        return arrival(source, x, guess ? std::optional(guess->arrival.launch) : std::nullopt);
-      },
-      std::string("(").append(number_text(source.x)) + ", " + number_text(source.z) + ")");
-}
-
-template <class Field>
-std::shared_ptr<const Wavefront> SteppedMedium<Field>::wave_from_afar(double angle) const {
-  return std::make_shared<WaveTable>(
-      domain_, spacing_, false,
-      [&](Vec2 x, const WaveTable::Node* guess) { return plane_arrival(angle, x, guess); },
-      "direction " + number_text(angle));
-}
-
-template class SteppedMedium<grin::ParabolicGuide>;
-template class SteppedMedium<grin::GaussianBlobs>;
-template class SteppedMedium<grin::StandingWave>;
-template class SteppedMedium<grin::SplineField>;
 
 }  // namespace flatspeckle::mc

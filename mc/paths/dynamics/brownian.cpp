@@ -96,7 +96,7 @@ class DelayScorer : public TallyScorer<Tally> {
               std::span<Complex> sums)
       : TallyScorer<Tally>(none),
         channels_(walks.scene().request.channels),
-        scattering_(walks.scattering()),
+        walks_(walks),
         delays_(delays),
         sums_(sums),
         ends_(walks, [&](std::size_t ends) { return Decaying<Tally>(ends, delays.size(), none); }),
@@ -113,7 +113,7 @@ class DelayScorer : public TallyScorer<Tally> {
       const auto [i, v] = channels_[c];
       const Vec2 from = -lights.direction(i), to = views.direction(v);
       const double square =
-          std::norm(light.value[i] * view.value[v] * scattering_.amplitude(x, from, to));
+          std::norm(light.value[i] * view.value[v] * walks_.amplitude(x, from, to));
       sums_[c] += weight * square;
       find_inner(turned(x, from, to));
       for (std::size_t t = 0; t < delays_.size(); ++t)
@@ -125,7 +125,7 @@ class DelayScorer : public TallyScorer<Tally> {
     ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival,
                             Decaying<Tally>& out) {
       ends.attenuate(x, out.value);
-      scattering_.towards(x, arrival, ends.directions(), out.value);
+      walks_.towards(x, arrival, ends.directions(), out.value);
       for (std::size_t j = 0; j < ends.size(); ++j)
         out.tally[j] = turned(x, arrival, ends.direction(j));
       decay_.find(out.tally, out.decay);
@@ -177,7 +177,7 @@ class DelayScorer : public TallyScorer<Tally> {
   }
 
   const std::vector<Channel>& channels_;
-  const EndScattering& scattering_;
+  const PathWalks& walks_;
   std::span<const double> delays_;
   std::span<Complex> sums_;
   PathEnds<Decaying<Tally>> ends_;
@@ -190,7 +190,7 @@ class DelayScorer : public TallyScorer<Tally> {
 Values single_covariances(const PathWalks& walks, const std::vector<double>& delays,
                           const Motion& motion) {
   const Scene& scene = walks.scene();
-  Values all = single_scattering(scene, walks.scattering());
+  Values all = single_scattering(scene, walks);
   const std::size_t channels = all.size();
   for (const double delay : delays) {
     for (std::size_t c = 0; c < channels; ++c) {
@@ -198,11 +198,11 @@ Values single_covariances(const PathWalks& walks, const std::vector<double>& del
       const Vec2 from = direction(scene.request.lights[light].angle),
                  to = direction(scene.request.views[view].angle), turn = from - to;
       const double slope = -scene.k * delay * turn.x * motion.shear;
-      const Complex value =
-          slope == 0 ? all[c]
-                     : scene.medium.mu_s * std::norm(walks.scattering().amplitude({}, from, to)) *
-                           attenuated_wave_integral(scene.domain, scene.medium.mu_t, {0, slope},
-                                                    {-from, to, -from, to});
+      const Complex value = slope == 0
+                                ? all[c]
+                                : scene.medium.mu_s * std::norm(walks.amplitude({}, from, to)) *
+                                      attenuated_wave_integral(scene.domain, scene.medium.mu_t,
+                                                               {0, slope}, {-from, to, -from, to});
       all.push_back(value *
                     std::polar(std::exp(-2 * delay * motion.diffusion * dot(turn, turn) / 2),
                                -scene.k * delay * dot(turn, motion.velocity)));

@@ -81,13 +81,13 @@ class FrequencyScorer : public TallyScorer<LengthTally> {
 /// Of paths of one scatterer.
 Values single_covariances(const PathWalks& walks, const std::vector<Scene>& shifted) {
   const Scene& scene = walks.scene();
-  Values all = single_scattering(scene, walks.scattering());
+  Values all = single_scattering(scene, walks);
   const auto& entries = scene.request.entries;
   for (const Scene& other : shifted) {
     Values values(entries.size());
     for_entries(changing_entries(scene.request), [&](std::size_t e) {
-      values[e] = single_scattering(scene, walks.scattering(), FarField(scene, entries[e].a),
-                                    FarField(other, e));
+      values[e] =
+          single_scattering(scene, walks, FarField(scene, entries[e].a), FarField(other, e));
     });
     all.insert(all.end(), values.begin(), values.end());
   }

@@ -1,10 +1,10 @@
 #include "mc/paths/dynamics/moving_slopes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
 #include "mc/paths/dynamics/brownian.h"
-#include "mc/paths/estimators/path_ends.h"
 #include "mc/paths/estimators/scored_paths.h"
 #include "mc/paths/estimators/slope_sums.h"
 #include "mc/paths/estimators/sloped_ends.h"
@@ -24,6 +24,9 @@ struct Turned {
     turn += one_minus_cosine(from, to);
     slip = slip + turned;
     sheared += turned.x * x.z;
+  }
+  Turned operator+(const Turned& more) const {
+    return {turn + more.turn, slip + more.slip, sheared + more.sheared};
   }
 };
 
@@ -57,102 +60,70 @@ struct MovingSlopes {
   std::vector<Entry> entries;      ///< of fields [1 + delay][channel]
 };
 
-class MovingScorer : public TallyScorer<MovingTally> {
+/// What a path has besides its ends.
+struct MovingInner {
+  LogSlopes half;
+  Turned turned;
+};
+
+class MovingTerms : public MediumSlopes, public SlopeSums {
  public:
-  MovingScorer(const PathWalks& walks, const MovingSlopes& of, std::span<Complex> sums)
-      : TallyScorer(MovingTally{{of.media}, {}}),
+  using Tally = MovingTally;
+  using Ends = MovingEnds;
+
+  MovingTerms(const PathWalks& walks, const MovingSlopes& of, std::span<Complex> sums)
+      : MediumSlopes(walks, of.media),
+        SlopeSums(of.entries.size(), of.entries, of.media.size(), sums),
         of_(of),
         k_(walks.scene().k),
-        channels_(walks.scene().request.channels),
-        scattering_(walks.scattering()),
-        slopes_(walks, of.media),
-        sums_(of.entries.size(), of.entries, of.media.size(), sums),
-        ends_(walks, [](std::size_t ends) { return MovingEnds(ends); }) {}
+        channels_(walks.scene().request.channels.size()) {}
 
-  /// B = 1 at x.
-  void single(Vec2 x, double weight) override {
-    EndFactors &lights = ends_.lights(), &views = ends_.views();
-    auto &light = ends_.light_last, &view = ends_.view_last;
-    slopes_.attenuate(lights, x, light);
-    slopes_.attenuate(views, x, view);
-    sums_.clear();
-    for (std::size_t c = 0; c < channels_.size(); ++c) {
-      const auto [i, v] = channels_[c];
-      const Vec2 from = -lights.direction(i), to = views.direction(v);
-      Turned turned;
-      turned.add(x, from, to);
-      LogSlopes log = slopes_.half_of_one(from, to);
-      add(log, light.slopes[i]);
-      add(log, view.slopes[v]);
-      add_term(c, light.value[i] * view.value[v] * scattering_.amplitude(x, from, to), log, turned);
-    }
-    sums_.accumulate(weight);
+  MovingEnds ends(std::size_t count) const { return MovingEnds(count); }
+
+  void attenuate(EndFactors& ends, Vec2 x, MovingEnds& out) const {
+    MediumSlopes::attenuate(ends, x, out);
+    std::fill(out.turned.begin(), out.turned.end(), Turned{});
+  }
+  void turn(const EndFactors& ends, Vec2 x, const SpaceDirection& arrival, MovingEnds& out) const {
+    MediumSlopes::turn(ends, x, arrival, out);
+    for (std::size_t j = 0; j < ends.size(); ++j) out.turned[j].add(x, arrival, ends.direction(j));
   }
 
-  void multiple(const Path& path) override {
-    ends_.find(path,
-               [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, MovingEnds& out) {
-                 slopes_.at(ends, x, arrival, out);
-                 for (std::size_t j = 0; j < ends.size(); ++j) {
-                   out.turned[j] = {};
-                   out.turned[j].add(x, arrival, ends.direction(j));
-                 }
-               });
-    const LogSlopes half = slopes_.half(tally());
-    sums_.clear();
-    for (std::size_t c = 0; c < channels_.size(); ++c) {
-      add_ends(c, half, tally().turned, ends_.light_first, ends_.view_last);
-      if (ends_.reversed()) add_ends(c, half, tally().turned, ends_.light_last, ends_.view_first);
-    }
-    sums_.accumulate(path.weight);
+  MovingInner inner(const MovingTally& tally, Vec2 first) const {
+    return {MediumSlopes::inner(tally, first), tally.turned};
   }
-
- private:
-  void add(LogSlopes& sum, const LogSlopes& more) const {
-    for (std::size_t p = 0; p < of_.media.size(); ++p) sum[p] += more[p];
-  }
-
-  void add_ends(std::size_t c, const LogSlopes& half, const Turned& inner, const MovingEnds& lights,
-                const MovingEnds& views) {
-    const auto [i, v] = channels_[c];
-    Turned all = inner;
-    for (const Turned& end : {lights.turned[i], views.turned[v]}) {
-      all.turn += end.turn;
-      all.slip = all.slip + end.slip;
-      all.sheared += end.sheared;
-    }
-    LogSlopes log = half;
-    add(log, lights.slopes[i]);
-    add(log, views.slopes[v]);
-    add_term(c, product(lights.value[i], views.value[v]), log, all);
+  MovingInner one(Vec2 x, Vec2 from, Vec2 to) const {
+    MovingInner one{MediumSlopes::one(x, from, to), {}};
+    one.turned.add(x, from, to);
+    return one;
   }
 
   /// A term of a channel's field, at time 0 and after each delay.
-  void add_term(std::size_t c, Complex term, const LogSlopes& log, const Turned& turned) {
+  void add_term(std::size_t c, Complex term, const MovingInner& inner, const MovingEnds& lights,
+                std::size_t i, const MovingEnds& views, std::size_t v) {
+    const Turned turned = inner.turned + lights.turned[i] + views.turned[v];
     const auto& [diffusion, velocity, shear] = of_.motion;
     const Complex decay = rate(turned, k_, diffusion, velocity, shear);
-    LogSlopes by_motion{};
+    LogSlopes log{}, by_motion{};
     for (std::size_t p = 0; p < of_.parameters.size(); ++p) {
       const MovingSlope& one = of_.parameters[p];
+      log[p] = inner.half[p] + lights.slopes[i][p] + views.slopes[v][p];
       by_motion[p] = rate(turned, k_, one.diffusion, one.velocity, one.shear);
     }
-    sums_.add_term(c, term, [&](std::size_t p) { return log[p]; });
+    SlopeSums::add_term(c, term, [&](std::size_t p) { return log[p]; });
     for (std::size_t t = 0; t < of_.delays.size(); ++t) {
       const double delay = of_.delays[t];
       const Complex later =
           product(term, std::polar(std::exp(-delay * decay.real()), -delay * decay.imag()));
-      sums_.add_term((1 + t) * channels_.size() + c, later,
-                     [&](std::size_t p) { return log[p] - delay * by_motion[p]; });
+      SlopeSums::add_term((1 + t) * channels_ + c, later,
+                          [&](std::size_t p) { return log[p] - delay * by_motion[p]; });
     }
   }
 
+ private:
   const MovingSlopes& of_;
   double k_;
-  const std::vector<Channel>& channels_;
-  const EndScattering& scattering_;
-  MediumSlopes slopes_;
-  SlopeSums sums_;
-  PathEnds<MovingEnds> ends_;
+  std::size_t channels_;
 };
 
 }  // namespace
@@ -171,7 +142,8 @@ PathJob moving_slope_job(const Scene& scene, const Plan& plan, const std::vector
   return path_job({quantities,
                    [of = std::make_shared<const MovingSlopes>(std::move(all))](
                        const PathWalks& walks, std::span<Complex> sums) {
-                     return std::make_unique<MovingScorer>(walks, *of, sums);
+                     return std::make_unique<SlopeScorer<MovingTerms>>(
+                         walks, MovingTally{{of->media}, {}}, MovingTerms(walks, *of, sums));
                    }},
                   scene, plan, seed);
 }

@@ -1,71 +1,142 @@
 #include "mc/paths/endpoint_factors/coherent_field.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-
-#include "mc/paths/endpoint_factors/quadrature.h"
+#include <span>
 
 namespace flatspeckle::mc {
 
 namespace {
 
-/// The integral along z at one distance from the side x = -width/2, for a light with w.x, w.z >= 0:
-/// shallow points were reached through the face z = 0, deeper ones through the side, so the
-/// exponent is linear in z on two pieces.
-class ColumnIntegral {
- public:
-  ColumnIntegral(const Domain& box, Vec2 w, Complex extra, double beta)
-      : box_(box), w_(w), extra_(extra), beta_(0, beta) {}
+/// int_0^length exp(rate t) dt
+Complex exponential_integral(Complex rate, double length) {
+  const Complex z = rate * length;
+  if (std::abs(z) < 1e-4) return length * (1.0 + z / 2.0 + z * z / 6.0);
+  return (std::exp(z) - 1.0) / rate;
+}
 
-  Complex operator()(double from_side) const {
-    const double turn =
-        w_.x * box_.depth <= w_.z * from_side ? box_.depth : w_.z * from_side / w_.x;
-    Complex sum = 0;
-    if (turn > 0) sum = exponential_integral(beta_ + extra_ / w_.z, turn);
-    if (turn < box_.depth) {
-      const Complex start = std::exp(extra_ * (from_side / w_.x) + beta_ * turn);
-      sum += start * exponential_integral(beta_, box_.depth - turn);
-    }
-    return sum;
+/// Eight-point Gauss-Legendre over panels of at most a radian or so.
+template <typename F>
+Complex integrate(F f, double from, double to, double radians) {
+  static constexpr std::array<double, 4> node = {0.1834346424956498, 0.5255324099163290,
+                                                 0.7966664774136267, 0.9602898564975363};
+  static constexpr std::array<double, 4> weight = {0.3626837833783620, 0.3137066458778873,
+                                                   0.2223810344533745, 0.1012285362903763};
+  const auto panels = static_cast<std::size_t>(std::ceil(radians)) + 1;
+  const double half = (to - from) / (2 * static_cast<double>(panels));
+  Complex sum = 0;
+  for (std::size_t p = 0; p < panels; ++p) {
+    const double middle = from + (2 * static_cast<double>(p) + 1) * half;
+    for (std::size_t i = 0; i < node.size(); ++i)
+      sum += weight[i] * (f(middle - half * node[i]) + f(middle + half * node[i]));
   }
+  return half * sum;
+}
 
- private:
-  Domain box_;
-  Vec2 w_;
-  Complex extra_, beta_;
+constexpr double no_side = 1e300;
+constexpr double parallel = 1e-12;  ///< to an edge, which is then no_side met
+
+/// Distance to the edge along a unit vector: the lesser of a function of z (to a face) and one of x
+/// (to a side).
+struct Leg {
+  Vec2 u;
+  double face, side;  ///< the z and x they end on
+
+  Leg(const Domain& domain, Vec2 w)
+      : u(w), face(w.z > 0 ? domain.depth : 0), side(std::copysign(domain.width / 2, w.x)) {}
+
+  double to_face(double z) const { return std::abs(u.z) < parallel ? no_side : (face - z) / u.z; }
+  double to_side(double x) const { return std::abs(u.x) < parallel ? no_side : (side - x) / u.x; }
+  /// Where both are equal, above or below the medium too.
+  double turn(double x) const { return face - u.z * to_side(x); }
 };
 
-Complex mean_field(const Scene& scene, double light, double view) {
-  const auto& box = scene.domain;
-  // Mirror the scene so that the light comes from the side x = -width/2 and the face z = 0.
-  Vec2 w = direction(light), v = direction(view);
-  Complex origin = 1;
-  if (w.x < 0) {
-    w.x = -w.x;
-    v.x = -v.x;
-  }
-  if (w.z < 0) {  // z -> depth - z
-    origin = std::polar(1.0, scene.k * (w.z - v.z) * box.depth);
-    w.z = -w.z;
-    v.z = -v.z;
-  }
-  const double alpha = scene.k * (w.x - v.x), beta = scene.k * (w.z - v.z);
-  const Complex extra(-scene.medium.mu_t / 2, scene.medium.k_shift);
-  const ColumnIntegral column(box, w, extra, beta);
-  const auto integrand = [&](double from_side) {
-    return std::polar(1.0, alpha * (from_side - box.width / 2)) * column(from_side);
+/// The integral along z at one x. The exponent is linear between the legs' turns.
+Complex depth_column(const Domain& domain, Complex mu_t, double kappa_z, std::span<const Leg> legs,
+                     double x) {
+  constexpr std::size_t most_legs = 4;
+  std::array<double, 2 + most_legs> cut{};
+  cut[1] = domain.depth;
+  for (std::size_t j = 0; j < legs.size(); ++j)
+    cut[2 + j] = std::clamp(legs[j].turn(x), 0.0, domain.depth);
+  std::sort(cut.begin(), cut.end());
+  const auto exponent = [&](double z) {
+    double length = 0;
+    for (const Leg& leg : legs) length += std::min(leg.to_face(z), leg.to_side(x));
+    return Complex(-mu_t.real() * length / 2, kappa_z * z - mu_t.imag() * length / 2);
   };
-  // Where the ray through the far corner enters, the integrand has a kink.
-  const double kink = w.z > 0 ? std::min(box.width, w.x / w.z * box.depth) : box.width;
-  const double shaded = w.x > 0 ? kink / w.x : 0;
-  const double radians = std::abs(alpha) * kink + (std::abs(beta) * w.z + std::abs(extra)) * shaded;
-  const Complex near_side = integrate(integrand, 0, kink, radians);
-  const Complex rest = integrate(integrand, kink, box.width, std::abs(alpha) * (box.width - kink));
-  return origin * scene.medium.density * amplitude(scene.medium.t_matrix, scene.k, view - light) *
-         (near_side + rest);
+  Complex sum = 0, at_start = exponent(0);
+  for (std::size_t i = 0; i + 1 < cut.size(); ++i) {
+    const double thickness = cut[i + 1] - cut[i];
+    if (thickness == 0) continue;
+    const Complex at_end = exponent(cut[i + 1]);
+    // From the less attenuated end, so that nothing overflows.
+    const Complex rate = (at_end - at_start) / thickness;
+    sum += rate.real() > 0 ? std::exp(at_end) * exponential_integral(-rate, thickness)
+                           : std::exp(at_start) * exponential_integral(rate, thickness);
+    at_start = at_end;
+  }
+  return sum;
+}
+
+/// Where the integrand across may have a kink: a turn enters or leaves the medium, or two cross.
+std::vector<double> kinks(const Domain& domain, std::span<const Leg> legs) {
+  const double half = domain.width / 2;
+  std::vector<double> found = {-half, half};
+  const auto add = [&](double slope, double value) {  // value + slope x = 0
+    if (slope == 0) return;
+    if (const double x = -value / slope; std::abs(x) < half) found.push_back(x);
+  };
+  std::vector<std::array<double, 2>> turns;  // slope and value at 0
+  for (const Leg& leg : legs)
+    if (std::abs(leg.u.x) >= parallel) turns.push_back({leg.u.z / leg.u.x, leg.turn(0)});
+  for (std::size_t a = 0; a < turns.size(); ++a) {
+    add(turns[a][0], turns[a][1]);
+    add(turns[a][0], turns[a][1] - domain.depth);
+    for (std::size_t b = 0; b < a; ++b) add(turns[a][0] - turns[b][0], turns[a][1] - turns[b][1]);
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+/// Panels for integrate(), by how much the exponent may change between two neighbouring kinks.
+double radians(const Domain& domain, Complex mu_t, Vec2 kappa, std::span<const Leg> legs,
+               double from, double to) {
+  double sum = std::abs(kappa.x) * (to - from);
+  for (const Leg& leg : legs) {
+    if (std::abs(leg.u.x) < parallel) continue;
+    const double moved = std::abs(std::clamp(leg.turn(to), 0.0, domain.depth) -
+                                  std::clamp(leg.turn(from), 0.0, domain.depth));
+    const double longest =
+        std::min((to - from) / std::abs(leg.u.x),
+                 std::abs(leg.u.z) < parallel ? no_side : domain.depth / std::abs(leg.u.z));
+    sum += std::abs(kappa.z) * moved + std::abs(mu_t) * longest / 2;
+  }
+  return sum / 3;  // eight nodes are enough for that much at once
 }
 
 }  // namespace
+
+Complex attenuated_wave_integral(const Domain& domain, Complex mu_t, Vec2 kappa,
+                                 const std::vector<Vec2>& towards) {
+  Domain box = domain;
+  if (domain.kind == Domain::Kind::slab) box.width = no_side;
+  std::vector<Leg> legs;
+  for (const Vec2 w : towards) legs.emplace_back(box, w);
+  if (domain.kind == Domain::Kind::slab) return depth_column(box, mu_t, kappa.z, legs, 0);
+  const auto cut = kinks(box, legs);
+  Complex sum = 0;
+  for (std::size_t i = 0; i + 1 < cut.size(); ++i) {
+    const auto integrand = [&](double x) {
+      return std::polar(1.0, kappa.x * x) * depth_column(box, mu_t, kappa.z, legs, x);
+    };
+    if (cut[i + 1] > cut[i])
+      sum += integrate(integrand, cut[i], cut[i + 1],
+                       radians(box, mu_t, kappa, legs, cut[i], cut[i + 1]));
+  }
+  return sum;
+}
 
 bool has_coherent_field(const Scene& scene) {
   return scene.domain.kind == Domain::Kind::box && scene.medium.has_scatterers && !scene.profile &&
@@ -76,10 +147,15 @@ bool has_coherent_field(const Scene& scene) {
 }
 
 std::vector<Complex> coherent_field(const Scene& scene) {
+  const BulkMedium& medium = scene.medium;
   std::vector<Complex> field;
-  for (const auto& [light, view] : scene.request.channels)
-    field.push_back(
-        mean_field(scene, scene.request.lights[light].angle, scene.request.views[view].angle));
+  for (const auto [light, view] : scene.request.channels) {
+    const double from = scene.request.lights[light].angle, to = scene.request.views[view].angle;
+    const Vec2 w = direction(from);
+    field.push_back(medium.density * amplitude(medium.t_matrix, scene.k, to - from) *
+                    attenuated_wave_integral(scene.domain, {medium.mu_t, -2 * medium.k_shift},
+                                             scene.k * (w - direction(to)), {-w}));
+  }
   return field;
 }
 

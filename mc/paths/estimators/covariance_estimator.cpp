@@ -54,7 +54,7 @@ FieldJob covariance_job(const Scene& scene, const Plan& plan, std::uint64_t seed
   const PathBatches batches = path_batches(walks);
   std::vector<Complex> single;
   if (walks && !plan.sampled_single && !scene.profile && !scene.index)
-    single = single_scattering(scene, walks->scattering());
+    single = single_scattering(scene, *walks);
   if (!plan.rank_k)
     return path_job(scene, plan, 1, single, into<EntryAccumulator>(scene.request, batches)).field;
   blas_single_thread();  // before threads compete for its memory

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <memory>
 
-#include "mc/paths/estimators/path_ends.h"
 #include "mc/paths/estimators/scored_paths.h"
 #include "mc/paths/estimators/single_scattering.h"
 #include "mc/paths/estimators/slope_sums.h"
@@ -17,60 +16,69 @@ namespace {
 using Values = std::vector<Complex>;
 
 /// Adds weight f_a conj(f_b) and its derivatives, [1 + parameter][entry].
-class GradientScorer : public TallyScorer<GradientTally> {
+class GradientTerms : public MediumSlopes, public SlopeSums {
  public:
-  GradientScorer(const PathWalks& walks, std::span<const MediumSlope> slopes,
-                 std::span<Complex> sums)
-      : TallyScorer(GradientTally{slopes}),
-        channels_(walks.scene().request.channels),
-        scattering_(walks.scattering()),
-        slopes_(walks, slopes),
-        sums_(channels_.size(), walks.scene().request.entries, slopes.size(), sums),
-        ends_(walks, [](std::size_t ends) { return SlopedEnds(ends); }) {}
+  GradientTerms(const PathWalks& walks, std::span<const MediumSlope> slopes,
+                std::span<Complex> sums)
+      : MediumSlopes(walks, slopes),
+        SlopeSums(walks.scene().request.channels.size(), walks.scene().request.entries,
+                  slopes.size(), sums) {}
 
-  /// B = 1 at x.
-  void single(Vec2 x, double weight) override {
-    EndFactors &lights = ends_.lights(), &views = ends_.views();
-    SlopedEnds &light = ends_.light_last, &view = ends_.view_last;
-    slopes_.attenuate(lights, x, light);
-    slopes_.attenuate(views, x, view);
-    sums_.clear();
-    for (std::size_t c = 0; c < channels_.size(); ++c) {
-      const auto [i, v] = channels_[c];
-      const Vec2 from = -lights.direction(i), to = views.direction(v);
-      add_term(c, slopes_.half_of_one(from, to), light, view, scattering_.amplitude(x, from, to));
-    }
-    sums_.accumulate(weight);
+  void add_term(std::size_t c, Complex term, const LogSlopes& half, const SlopedEnds& lights,
+                std::size_t i, const SlopedEnds& views, std::size_t v) {
+    SlopeSums::add_term(
+        c, term, [&](std::size_t p) { return half[p] + lights.slopes[i][p] + views.slopes[v][p]; });
+  }
+};
+
+/// Fields with their first two derivatives by the number of scatterers, relative to it.
+class FixedCountTerms : public MediumSlopes {
+ public:
+  FixedCountTerms(const PathWalks& walks, std::span<const MediumSlope> by_number,
+                  std::span<Complex> sums)
+      : MediumSlopes(walks, by_number),
+        entries_(walks.scene().request.entries),
+        sums_(sums),
+        fields_(walks.scene().request.channels.size()) {}
+
+  struct Inner {
+    Complex half;
+    int scatterers;
+  };
+  Inner inner(const GradientTally& tally, Vec2 first) const {
+    return {MediumSlopes::inner(tally, first)[0], tally.scatterers};
+  }
+  Inner one(Vec2 x, Vec2 from, Vec2 to) const { return {MediumSlopes::one(x, from, to)[0], 1}; }
+
+  void clear() { std::fill(fields_.begin(), fields_.end(), Field{}); }
+
+  void add_term(std::size_t c, Complex term, const Inner& inner, const SlopedEnds& lights,
+                std::size_t i, const SlopedEnds& views, std::size_t v) {
+    const Complex slope = inner.half + lights.slopes[i][0] + views.slopes[v][0];
+    fields_[c].value += term;
+    fields_[c].slope += product(term, slope);
+    fields_[c].curvature += product(term, product(slope, slope) - 0.5 * inner.scatterers);
   }
 
-  void multiple(const Path& path) override {
-    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival,
-                            SlopedEnds& out) { slopes_.at(ends, x, arrival, out); });
-    const LogSlopes half = slopes_.half(tally());
-    sums_.clear();
-    for (std::size_t c = 0; c < channels_.size(); ++c) {
-      add_term(c, half, ends_.light_first, ends_.view_last, 1.0);
-      if (ends_.reversed()) add_term(c, half, ends_.light_last, ends_.view_first, 1.0);
+  void accumulate(double weight) {
+    const std::size_t entries = entries_.size();
+    for (std::size_t e = 0; e < entries; ++e) {
+      const Field &a = fields_[entries_[e].a], &b = fields_[entries_[e].b];
+      sums_[e] += weight * product_with_conjugate(a.value, b.value);
+      sums_[entries + e] += weight * (product_with_conjugate(a.curvature, b.value) +
+                                      product_with_conjugate(a.value, b.curvature) +
+                                      2.0 * product_with_conjugate(a.slope, b.slope));
     }
-    sums_.accumulate(path.weight);
   }
 
  private:
-  template <typename Amplitude>
-  void add_term(std::size_t c, const LogSlopes& half, const SlopedEnds& lights,
-                const SlopedEnds& views, Amplitude amplitude) {
-    const auto [i, v] = channels_[c];
-    sums_.add_term(c, product(product(lights.value[i], views.value[v]), amplitude),
-                   [&, light = i, view = v](std::size_t p) {
-                     return half[p] + lights.slopes[light][p] + views.slopes[view][p];
-                   });
-  }
+  struct Field {
+    Complex value, slope, curvature;
+  };
 
-  const std::vector<Channel>& channels_;
-  const EndScattering& scattering_;
-  MediumSlopes slopes_;
-  SlopeSums sums_;
-  PathEnds<SlopedEnds> ends_;
+  const std::vector<Entry>& entries_;
+  std::span<Complex> sums_;
+  std::vector<Field> fields_;
 };
 
 /// Central differences in mu_t of the closed form, of fourth order. It varies over a mean free path
@@ -107,9 +115,7 @@ Values amplitude_slopes(const Scene& scene, const AmplitudeSlope& slope) {
 /// Of paths of one scatterer.
 Values single_gradient(const PathWalks& walks, const std::vector<MediumSlope>& slopes) {
   const Scene& scene = walks.scene();
-  const auto closed_form = [&](const Scene& any) {
-    return single_scattering(any, walks.scattering());
-  };
+  const auto closed_form = [&](const Scene& any) { return single_scattering(any, walks); };
   const Values single = closed_form(scene), by_mu_t = extinction_slope(scene, closed_form);
   Values all = single;
   for (const MediumSlope& slope : slopes) {
@@ -145,9 +151,21 @@ PathJob slope_job(const Scene& scene, const Plan& plan, const std::vector<Medium
   const auto shared = std::make_shared<const std::vector<MediumSlope>>(slopes);
   return path_job({1 + slopes.size(),
                    [shared](const PathWalks& walks, std::span<Complex> sums) {
-                     return std::make_unique<GradientScorer>(walks, *shared, sums);
+                     return std::make_unique<SlopeScorer<GradientTerms>>(
+                         walks, GradientTally{*shared}, GradientTerms(walks, *shared, sums));
                    },
                    [shared](const PathWalks& walks) { return single_gradient(walks, *shared); }},
+                  scene, plan, seed);
+}
+
+PathJob fixed_count_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
+  static const std::vector<MediumSlope> by_number = {{"number", 1, 0, {}}};
+  require_slopes(scene, by_number);
+  return path_job({2,
+                   [](const PathWalks& walks, std::span<Complex> sums) {
+                     return std::make_unique<SlopeScorer<FixedCountTerms>>(
+                         walks, GradientTally{by_number}, FixedCountTerms(walks, by_number, sums));
+                   }},
                   scene, plan, seed);
 }
 

@@ -15,8 +15,8 @@ class PathEnds {
   template <typename MakeValues>
   PathEnds(const PathWalks& walks, const Scene& scene, bool phases, MakeValues values)
       : reversed_(walks.plan().reversed),
-        lights_(walks.scattering().factors(scene, light_ends(scene), phases)),
-        views_(walks.scattering().factors(scene, view_ends(scene), phases)),
+        lights_(walks.factors(scene, light_ends(scene), phases)),
+        views_(walks.factors(scene, view_ends(scene), phases)),
         light_first(values(lights_->size())),
         light_last(light_first),
         view_first(values(views_->size())),

@@ -20,7 +20,7 @@ inline bool is_grid(const std::vector<Channel>& channels, std::size_t lights, st
 class PathFields {
  public:
   PathFields(const PathWalks& walks, const Scene& scene, bool phases)
-      : scattering_(walks.scattering()),
+      : walks_(walks),
         channels_(scene.request.channels),
         ends_(walks, scene, phases, [](std::size_t ends) { return std::vector<Complex>(ends); }),
         is_grid_(is_grid(channels_, ends_.lights().size(), ends_.views().size())),
@@ -37,7 +37,7 @@ class PathFields {
   std::span<const Complex> multiple(const Path& path) {
     ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, auto& out) {
       ends.attenuate(x, out);
-      scattering_.towards(x, arrival, ends.directions(), out);
+      walks_.towards(x, arrival, ends.directions(), out);
     });
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const auto [i, v] = channels_[c];
@@ -58,19 +58,19 @@ class PathFields {
     for (std::size_t i = 0; i < ends_.lights().size(); ++i) {
       const std::span<Complex> row(&field_[i * view.size()], view.size());
       for (std::size_t v = 0; v < row.size(); ++v) row[v] = product(ends_.light_last[i], view[v]);
-      scattering_.towards(x, -ends_.lights().direction(i), ends_.views().directions(), row);
+      walks_.towards(x, -ends_.lights().direction(i), ends_.views().directions(), row);
     }
   }
   void find_listed(Vec2 x) {
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const auto [i, v] = channels_[c];
-      field_[c] = product(
-          product(ends_.light_last[i], ends_.view_last[v]),
-          scattering_.amplitude(x, -ends_.lights().direction(i), ends_.views().direction(v)));
+      field_[c] =
+          product(product(ends_.light_last[i], ends_.view_last[v]),
+                  walks_.amplitude(x, -ends_.lights().direction(i), ends_.views().direction(v)));
     }
   }
 
-  const EndScattering& scattering_;
+  const PathWalks& walks_;
   const std::vector<Channel>& channels_;
   PathEnds<std::vector<Complex>> ends_;  ///< A e of every end
   bool is_grid_;                         ///< rows of views, a light each

@@ -6,15 +6,10 @@
 
 #include "core/run/parallel.h"
 #include "flatland/scene/scene.h"
-#include "mc/paths/endpoint_factors/end_scattering.h"
+#include "mc/paths/endpoint_factors/coherent_field.h"
+#include "mc/paths/walk/walks.h"
 
 namespace flatspeckle::mc {
-
-/// int dx exp(i kappa.x - mu_t/2 sum_j d(x, u_j)) over a box, or over the depth of a slab at x = 0,
-/// where d is the distance to the edge along a unit vector: exact in depth, by Gauss-Legendre
-/// quadrature across, cut where the integrand has kinks. Relative to the area about 1e-9.
-Complex attenuated_wave_integral(const Domain& domain, double mu_t, Vec2 kappa,
-                                 const std::array<Vec2, 4>& towards);
 
 /// A plane wave seen in a far view, at a wavenumber; unit vectors.
 struct FarField {
@@ -31,8 +26,17 @@ struct FarField {
 };
 
 /// The part B = 1 of the covariance of two fields (conventions, C14).
-Complex single_scattering(const Scene& scene, const EndScattering& scattering, const FarField& a,
-                          const FarField& b);
+inline Complex single_scattering(const Scene& scene, const PathWalks& walks, const FarField& a,
+                                 const FarField& b) {
+  const Complex amplitudes = product_with_conjugate(walks.amplitude({}, a.light, a.view),
+                                                    walks.amplitude({}, b.light, b.view));
+  // Exactly 0 of equal fields.
+  const Vec2 kappa =
+      a.k * ((a.light - b.light) - (a.view - b.view)) + (a.k - b.k) * (b.light - b.view);
+  return scene.medium.mu_s * amplitudes *
+         attenuated_wave_integral(scene.domain, scene.medium.mu_t, kappa,
+                                  {-a.light, a.view, -b.light, b.view});
+}
 
 /// Calls f with the number of each entry, in parallel where there are many: of some ten
 /// microseconds to a millisecond each.
@@ -43,6 +47,14 @@ void for_entries(std::size_t entries, F f) {
 }
 
 /// The same per entry of the request: far lights and views only. What no path has to sample.
-std::vector<Complex> single_scattering(const Scene& scene, const EndScattering& scattering);
+inline std::vector<Complex> single_scattering(const Scene& scene, const PathWalks& walks) {
+  const auto& request = scene.request;
+  std::vector<Complex> entries(request.entries.size());
+  for_entries(entries.size(), [&](std::size_t e) {
+    entries[e] = single_scattering(scene, walks, FarField(scene, request.entries[e].a),
+                                   FarField(scene, request.entries[e].b));
+  });
+  return entries;
+}
 
 }  // namespace flatspeckle::mc

@@ -37,17 +37,19 @@ struct SlopedEnds {
   explicit SlopedEnds(std::size_t ends) : value(ends), slopes(ends) {}
 };
 
-/// Derivatives of paths and of their ends by what a medium is made of. Each term of a field (C14's
-/// F and R) carries half of the path's own logarithmic derivative, besides those of its end
-/// factors.
+/// Derivatives of paths and of their ends by what a medium is made of (SlopeScorer). Each term of a
+/// field (C14's F and R) carries half of the path's own logarithmic derivative, besides those of
+/// its end factors.
 class MediumSlopes {
  public:
+  using Tally = GradientTally;
+  using Ends = SlopedEnds;
+
   MediumSlopes(const PathWalks& walks, std::span<const MediumSlope> slopes)
-      : medium_(walks.scene().medium), scattering_(walks.scattering()), slopes_(slopes) {}
+      : medium_(walks.scene().medium), slopes_(slopes) {}
 
-  std::span<const MediumSlope> list() const { return slopes_; }
+  SlopedEnds ends(std::size_t count) const { return SlopedEnds(count); }
 
-  /// Towards ends from x, without scattering there.
   void attenuate(EndFactors& ends, Vec2 x, SlopedEnds& out) const {
     ends.attenuate(x, out.value);
     for (std::size_t p = 0; p < slopes_.size(); ++p)
@@ -55,10 +57,7 @@ class MediumSlopes {
         out.slopes[j][p] = slopes_[p].log_mu_t * ends.log_attenuation(j);
   }
 
-  /// Of light that reaches x along `arrival`.
-  void at(EndFactors& ends, Vec2 x, const SpaceDirection& arrival, SlopedEnds& out) const {
-    attenuate(ends, x, out);
-    scattering_.towards(x, arrival, ends.directions(), out.value);
+  void turn(const EndFactors& ends, Vec2, const SpaceDirection& arrival, SlopedEnds& out) const {
     for (std::size_t p = 0; p < slopes_.size(); ++p) {
       const AmplitudeSlope& amplitude = slopes_[p].amplitude;
       if (!amplitude.depends()) continue;
@@ -67,7 +66,7 @@ class MediumSlopes {
     }
   }
 
-  LogSlopes half(const GradientTally& tally) const {
+  LogSlopes inner(const GradientTally& tally, Vec2) const {
     const double by_mu_t = tally.scatterers - medium_.mu_t * tally.length;
     LogSlopes half{};
     for (std::size_t p = 0; p < slopes_.size(); ++p)
@@ -77,9 +76,8 @@ class MediumSlopes {
     return half;
   }
 
-  /// The same of a path of one scatterer.
-  LogSlopes half_of_one(Vec2 from, Vec2 to) const {
-    LogSlopes one = half({slopes_});
+  LogSlopes one(Vec2 x, Vec2 from, Vec2 to) const {
+    LogSlopes one = inner({slopes_}, x);
     for (std::size_t p = 0; p < slopes_.size(); ++p)
       if (slopes_[p].amplitude.depends()) one[p] += slopes_[p].amplitude(from, to);
     return one;
@@ -87,7 +85,6 @@ class MediumSlopes {
 
  private:
   const BulkMedium& medium_;
-  const EndScattering& scattering_;
   std::span<const MediumSlope> slopes_;
 };
 

@@ -8,8 +8,6 @@
 #include "flatland/media/layers.h"
 #include "flatland/scene/scene.h"
 #include "mc/jobs/bulk_parameter.h"
-#include "mc/paths/endpoint_factors/space_direction.h"
-#include "mc/paths/estimators/path_ends.h"
 #include "mc/paths/estimators/scored_paths.h"
 #include "mc/paths/estimators/slope_sums.h"
 
@@ -47,65 +45,32 @@ struct LayerParameter {
   BulkParameter parameter;
 };
 
-/// As GradientScorer, of layers seen from far.
-class LayerGradientScorer : public TallyScorer<LayerTally> {
+/// A e of every end and its logarithmic derivatives, [end][parameter].
+struct LayerEnds {
+  std::vector<Complex> value;
+  std::vector<double> slope;
+};
+
+/// As GradientTerms, of layers seen from far.
+class LayerTerms : public SlopeSums {
  public:
-  LayerGradientScorer(const PathWalks& walks, const Layers& layers,
-                      std::span<const LayerParameter> parameters, std::span<Complex> sums)
-      : TallyScorer(LayerTally{&layers}),
-        channels_(walks.scene().request.channels),
+  using Tally = LayerTally;
+  using Ends = LayerEnds;
+
+  LayerTerms(const PathWalks& walks, const Layers& layers,
+             std::span<const LayerParameter> parameters, std::span<Complex> sums)
+      : SlopeSums(walks.scene().request.channels.size(), walks.scene().request.entries,
+                  parameters.size(), sums),
         domain_(walks.scene().domain),
-        scattering_(walks.scattering()),
         layers_(layers),
         parameters_(parameters),
-        path_slopes_(parameters.size()),
-        sums_(channels_.size(), walks.scene().request.entries, parameters.size(), sums),
-        ends_(walks, [&](std::size_t ends) { return EndValues(ends, parameters.size()); }) {}
+        path_slopes_(parameters.size()) {}
 
-  /// B = 1 at x.
-  void single(Vec2 x, double weight) override {
-    EndFactors &lights = ends_.lights(), &views = ends_.views();
-    EndValues &light = ends_.light_last, &view = ends_.view_last;
-    attenuate(lights, x, light);
-    attenuate(views, x, view);
-    sums_.clear();
-    for (std::size_t c = 0; c < channels_.size(); ++c) {
-      const auto [i, v] = channels_[c];
-      const Vec2 from = -lights.direction(i), to = views.direction(v);
-      LayerTally tally{&layers_};
-      tally.scattering(x, from, to);
-      find_path_slopes(tally, x);
-      add_term(c, light, view, scattering_.amplitude(x, from, to));
-    }
-    sums_.accumulate(weight);
+  LayerEnds ends(std::size_t count) const {
+    return {std::vector<Complex>(count), std::vector<double>(count * parameters_.size())};
   }
 
-  void multiple(const Path& path) override {
-    ends_.find(path,
-               [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, EndValues& out) {
-                 attenuate(ends, x, out);
-                 scattering_.towards(x, arrival, ends.directions(), out.value);
-                 turn(ends, x, arrival, out);
-               });
-    find_path_slopes(tally(), path.first);
-    sums_.clear();
-    for (std::size_t c = 0; c < channels_.size(); ++c) {
-      add_term(c, ends_.light_first, ends_.view_last, 1.0);
-      if (ends_.reversed()) add_term(c, ends_.light_last, ends_.view_first, 1.0);
-    }
-    sums_.accumulate(path.weight);
-  }
-
- private:
-  /// A e of every end and its logarithmic derivatives, [end][parameter].
-  struct EndValues {
-    std::vector<Complex> value;
-    std::vector<double> slope;
-
-    EndValues(std::size_t ends, std::size_t parameters) : value(ends), slope(ends * parameters) {}
-  };
-
-  void attenuate(EndFactors& ends, Vec2 x, EndValues& out) const {
+  void attenuate(EndFactors& ends, Vec2 x, LayerEnds& out) const {
     ends.attenuate(x, out.value);
     for (std::size_t j = 0; j < ends.size(); ++j) {
       const Vec2 w = ends.direction(j);
@@ -120,8 +85,8 @@ class LayerGradientScorer : public TallyScorer<LayerTally> {
     }
   }
 
-  /// Towards the ends, by g.
-  void turn(const EndFactors& ends, Vec2 x, const SpaceDirection& arrival, EndValues& out) const {
+  /// By g.
+  void turn(const EndFactors& ends, Vec2 x, const SpaceDirection& arrival, LayerEnds& out) const {
     const std::size_t here = layers_.material_at(x);
     for (std::size_t p = 0; p < parameters_.size(); ++p) {
       const auto [layer, parameter] = parameters_[p];
@@ -135,7 +100,7 @@ class LayerGradientScorer : public TallyScorer<LayerTally> {
   }
 
   /// Half of what a path with its first scatterer has, as of each of two fields.
-  void find_path_slopes(const LayerTally& tally, Vec2 first) {
+  const std::vector<double>& inner(const LayerTally& tally, Vec2 first) {
     for (std::size_t p = 0; p < parameters_.size(); ++p) {
       const auto [layer, parameter] = parameters_[p];
       const BulkMedium& medium = layers_.materials()[layer].medium;
@@ -146,26 +111,26 @@ class LayerGradientScorer : public TallyScorer<LayerTally> {
       if (parameter == BulkParameter::albedo) slope = scatterers / medium.albedo;
       path_slopes_[p] = slope / 2;
     }
+    return path_slopes_;
+  }
+  const std::vector<double>& one(Vec2 x, Vec2 from, Vec2 to) {
+    LayerTally tally{&layers_};
+    tally.scattering(x, from, to);
+    return inner(tally, x);
   }
 
-  template <typename Amplitude>
-  void add_term(std::size_t c, const EndValues& lights, const EndValues& views,
-                Amplitude amplitude) {
-    const auto [i, v] = channels_[c];
+  void add_term(std::size_t c, Complex term, const std::vector<double>& inner,
+                const LayerEnds& lights, std::size_t i, const LayerEnds& views, std::size_t v) {
     const std::size_t count = parameters_.size();
     const double *light = &lights.slope[i * count], *view = &views.slope[v * count];
-    sums_.add_term(c, product(product(lights.value[i], views.value[v]), amplitude),
-                   [&](std::size_t p) { return path_slopes_[p] + light[p] + view[p]; });
+    SlopeSums::add_term(c, term, [&](std::size_t p) { return inner[p] + light[p] + view[p]; });
   }
 
-  const std::vector<Channel>& channels_;
+ private:
   Domain domain_;
-  const EndScattering& scattering_;
   const Layers& layers_;
   std::span<const LayerParameter> parameters_;
   std::vector<double> path_slopes_;
-  SlopeSums sums_;
-  PathEnds<EndValues> ends_;
 };
 
 using Values = std::vector<Complex>;
@@ -199,11 +164,12 @@ void check_layer_gradient(const Scene& scene) {
 GradientJob layer_gradient_job(const Scene& scene, const Plan& plan, std::uint64_t seed) {
   check_layer_gradient(scene);
   const auto parameters = layer_parameters(scene);
-  const ScoredPaths paths{1 + parameters.size(),
-                          [parameters](const PathWalks& walks, std::span<Complex> sums) {
-                            return std::make_unique<LayerGradientScorer>(
-                                walks, *layers_of(walks.scene()), parameters, sums);
-                          }};
+  const ScoredPaths paths{
+      1 + parameters.size(), [parameters](const PathWalks& walks, std::span<Complex> sums) {
+        const Layers& layers = *layers_of(walks.scene());
+        return std::make_unique<SlopeScorer<LayerTerms>>(
+            walks, LayerTally{&layers}, LayerTerms(walks, layers, parameters, sums));
+      }};
   GradientJob job{path_job(paths, scene, plan, seed), {}, {}};
   for (const auto& [layer, parameter] : parameters)
     job.parameters.push_back(name_of(parameter) + " of layer " + std::to_string(layer + 1));

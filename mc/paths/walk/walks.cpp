@@ -295,11 +295,17 @@ class PathWalk {
 };
 
 template <typename Scattering>
-class ScatteringAtEnds final : public EndScattering {
+class WalksBy final : public PathWalks {
  public:
-  explicit ScatteringAtEnds(const Scattering& scattering) : scattering_(scattering) {}
+  WalksBy(const Scene& scene, const Plan& plan, std::uint64_t seed, const Scattering& scattering)
+      : PathWalks(scene, plan, seed), scattering_(scattering), walk_(scene_, plan_, scattering_) {}
 
-  const Scattering& form() const { return scattering_; }
+  void batch(std::uint64_t number, PathScorer& scorer) const override {
+    RandomStream random(seed_, static_cast<std::uint64_t>(Stream::light_paths), number);
+    auto own = walk_;
+    own.begin(random);
+    for (std::uint64_t path = 0; path < plan_.paths_per_batch; ++path) own.walk(random, scorer);
+  }
 
   Complex amplitude(Vec2 x, Vec2 from, Vec2 to) const override {
     return local(scattering_, x).amplitude(from, to);
@@ -318,27 +324,6 @@ class ScatteringAtEnds final : public EndScattering {
 
  private:
   const Scattering scattering_;
-};
-
-template <typename Scattering>
-class WalksBy final : public PathWalks {
- public:
-  WalksBy(const Scene& scene, const Plan& plan, std::uint64_t seed, const Scattering& scattering)
-      : PathWalks(scene, plan, seed),
-        scattering_(scattering),
-        walk_(scene_, plan_, scattering_.form()) {}
-
-  const EndScattering& scattering() const override { return scattering_; }
-
-  void batch(std::uint64_t number, PathScorer& scorer) const override {
-    RandomStream random(seed_, static_cast<std::uint64_t>(Stream::light_paths), number);
-    auto own = walk_;
-    own.begin(random);
-    for (std::uint64_t path = 0; path < plan_.paths_per_batch; ++path) own.walk(random, scorer);
-  }
-
- private:
-  const ScatteringAtEnds<Scattering> scattering_;
   const PathWalk<Scattering> walk_;
 };
 

@@ -54,8 +54,6 @@ double magnitude(const Dual<Complex>& z) {
   return std::max(std::abs(z.value), std::abs(z.slope));
 }
 
-using std::numbers::pi;
-
 /// The angle in the first quadrant that has the same |sin|.
 double folded(double angle) {
   const double from_z = std::abs(std::remainder(angle, 2 * pi));

@@ -1,5 +1,3 @@
-#include "mc/slab/adding/scattering_law.h"
-
 #include <algorithm>
 #include <cmath>
 #include <fftw3.h>
@@ -7,6 +5,7 @@
 
 #include "core/numbers/fourier.h"
 #include "mc/jobs/bulk_parameter.h"
+#include "mc/slab/adding/plane.h"
 
 namespace flatspeckle::mc {
 

@@ -48,8 +48,6 @@ std::vector<double> significant_moments(const std::function<double(double)>& p) 
   }
 }
 
-using std::numbers::pi;
-
 /// i^m
 Complex power_of_i(int m) {
   constexpr Complex powers[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
