@@ -67,7 +67,7 @@ class ConnectionTrial {
 
   Result run(RandomStream& random, ConnectionStatistics& statistics) const {
     const Result result = search(random, statistics);
-    ++statistics.outcomes[static_cast<int>(result.outcome)];
+    statistics.add(result.outcome);
     return result;
   }
 
@@ -75,7 +75,7 @@ class ConnectionTrial {
   /// it.
   Result along_chord(ConnectionStatistics& statistics) const {
     const Result result = search_along_chord(statistics);
-    ++statistics.outcomes[static_cast<int>(result.outcome)];
+    statistics.add(result.outcome);
     return result;
   }
 
