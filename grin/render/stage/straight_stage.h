@@ -103,10 +103,7 @@ class StraightStage {
     Join join{.start_direction = d,
               .end_direction = d,
               .spreading = square,
-              .optical_path = (1 + excess(p.part)) * length,
-              .optical_depth = 0,
-              .transmittance = 1,
-              .multiplicity = 1};
+              .optical_path = (1 + excess(p.part)) * length};
     const auto pass = [&](Part part, double from, double to) {
       const auto path = [&](double s) -> Vec3 { return p.x + (from + s) * d; };
       join.optical_depth += medium(part).reference() * (to - from);
