@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "core/result/result_group.h"
-#include "grin/rays/marching/light_speed.h"
+#include "grin/rays/marching/ray.h"
 #include "grin/render/pictures/picture_errors.h"
 
 namespace flatspeckle::grin {
