@@ -38,7 +38,7 @@ class Legs {
     if (space_.is_curved(part)) return curved_to_surface(part, ray, tangent, random);
     const double n = ray.v.norm();
     const Vec3 d = ray.v / n;
-    const auto [way, end] = stage_.way_to_surface({ray.x, part}, d);
+    const auto [way, end] = regions().way_out({ray.x, part}, d);
     if (end == at_boundary) return std::nullopt;
     advance_straight(way / n, ray, tangent);
     return Meeting{end, regions().beyond(part, end, ray.x, d)};
