@@ -4,8 +4,8 @@
 
 #include "bench/oracles/infinite_medium.h"
 #include "bench/oracles/lamp_map.h"
-#include "grin/render/pictures/energy_datasets.h"
 #include "grin/render/pictures/map_datasets.h"
+#include "grin/render/pictures/render_datasets.h"
 #include "tests/grin/furnace.h"
 
 namespace flatspeckle::grin::tests::test_light_map {
