@@ -11,7 +11,7 @@ using std::numbers::pi;
 
 FocusedSound::FocusedSound(double background, double amplitude, double k,
                            const std::vector<Vec3>& directions, const Vec3& focus, double psi)
-    : PlaneWaves(background), k_(k), psi_(psi) {
+    : SoundWaves(background), k_(k), psi_(psi) {
   const double share = amplitude / static_cast<double>(directions.size());
   for (const Vec3& direction : directions) {
     const Vec3 wave = k * direction.normalized();

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "grin/media/index/plane_waves.h"
 #include "grin/media/index/sound.h"
+#include "grin/media/index/sound_waves.h"
 
 namespace flatspeckle::grin {
 
@@ -14,7 +14,7 @@ namespace flatspeckle::grin {
 ///   n = 1 + background + amplitude / N sum_j cos(k d_j.(x - focus) - psi).
 /// Directions in one plane focus on the line through the focus across that plane, a cone of them on
 /// a point.
-class FocusedSound : public PlaneWaves {
+class FocusedSound : public SoundWaves {
  public:
   /// One direction at least, of any lengths but 0; k > 0.
   FocusedSound(double background, double amplitude, double k, const std::vector<Vec3>& directions,

@@ -25,7 +25,7 @@ std::vector<Vec3> directions(const Transducer& of, int waves) {
 }  // namespace
 
 Transducers::Transducers(double background, const std::vector<Transducer>& all, int waves)
-    : PlaneWaves(background) {
+    : SoundWaves(background) {
   for (const Transducer& one : all)
     largest_wavenumber_ = std::max(largest_wavenumber_, one.wavenumber);
   for (const Transducer& one : all) {

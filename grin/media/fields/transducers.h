@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "grin/media/index/plane_waves.h"
 #include "grin/media/index/sound.h"
+#include "grin/media/index/sound_waves.h"
 
 namespace flatspeckle::grin {
 
@@ -21,7 +21,7 @@ struct Transducer {
 
 /// n = 1 + background + sum over all waves of amplitude cos(k d.(x - focus) - phase - psi_j), as
 /// light meets it at a time t: psi_j = w_j t.
-class Transducers : public PlaneWaves {
+class Transducers : public SoundWaves {
  public:
   /// waves: of each transducer that has an aperture.
   Transducers(double background, const std::vector<Transducer>& all, int waves);

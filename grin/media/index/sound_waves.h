@@ -10,7 +10,7 @@ namespace flatspeckle::grin {
 
 /// Sound of plane waves, frozen: n = 1 + background + sum of amplitude cos(k.x - phase). An exact
 /// solution of the wave equation where all |k| are the same.
-class PlaneWaves {
+class SoundWaves {
  public:
   double background() const { return background_; }
   /// No place has more.
@@ -62,7 +62,7 @@ class PlaneWaves {
   }
 
  protected:
-  explicit PlaneWaves(double background) : background_(background) {}
+  explicit SoundWaves(double background) : background_(background) {}
 
   struct Wave {
     Vec3 k;
