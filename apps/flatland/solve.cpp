@@ -257,7 +257,7 @@ class SolveExperiment : public OneShot {
 
   void read(const Keys& keys) override {
     keys.read(run_.seed);
-    if (!is_placement_rule(values_.spec)) keys.disregard(run_.seed);  // nothing is drawn
+    if (has_own_places(values_.spec)) keys.disregard(run_.seed);  // nothing is drawn
     if (keys.read(values_.spec.index_field) != "homogeneous") return read_graded(keys);
     keys.read(values_.tolerance);
     keys.read(values_.solver);

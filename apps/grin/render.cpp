@@ -7,7 +7,6 @@
 #include "apps/command/experiment.h"
 #include "core/keys/number_text.h"
 #include "core/session/session.h"
-#include "grin/render/pictures/energy_datasets.h"
 #include "grin/render/pictures/map_datasets.h"
 #include "grin/render/pictures/render_datasets.h"
 #include "grin/render/values/render_values.h"

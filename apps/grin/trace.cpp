@@ -7,7 +7,7 @@
 #include "apps/command/experiment.h"
 #include "core/result/result_group.h"
 #include "grin/media/geometry/vector_values.h"
-#include "grin/rays/marching/light_speed.h"
+#include "grin/rays/marching/ray.h"
 #include "grin/trace/trace_datasets.h"
 
 namespace flatspeckle::apps {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/result/result_group.h"
-#include "grin/rays/marching/light_speed.h"
+#include "grin/rays/marching/ray.h"
 
 namespace flatspeckle::grin {
 

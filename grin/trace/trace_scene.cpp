@@ -101,6 +101,28 @@ std::vector<Surface> surfaces_of(const Stage& stage) {
   return surfaces;
 }
 
+/// Nothing without `connect`.
+std::optional<CurveSearch> make_curve_search(const Keys& keys, const CurveValues& values) {
+  const auto& ends = keys.read(values.connect);
+  if (ends.empty()) return std::nullopt;
+  const CurveSearch search{vector_of(ends), vector_of(ends, 3),
+                           static_cast<std::uint64_t>(keys.read(values.trials))};
+  if ((search.to - search.from).norm() <= 1e-10 * std::max(search.from.norm(), search.to.norm()))
+    throw InputError("connect", number_text(ends), "must be two different points");
+  return search;
+}
+
+/// On the straight line between the points, as far as there is an index; 1 where there is none.
+double largest_index(const SceneField& scene, const CurveSearch& search) {
+  constexpr int points = 101;
+  double largest = 0;
+  for (int i = 0; i < points; ++i) {
+    const Vec3 x = search.from + i / (points - 1.0) * (search.to - search.from);
+    largest = std::max(largest, index_at(scene, x));
+  }
+  return largest > 0 ? largest : 1;
+}
+
 void settle_field(TraceScene& scene, const Keys& keys, const TraceValues& values) {
   double reach = keys.required(values.stops.max_length), farthest = 0;
   for (const Vec3& x : points_of(scene)) {
@@ -138,42 +160,6 @@ void add_keys(Keys& keys, CurveValues& values) {
   keys.add("trials", values.trials, "Random starts in search of curves")
       .positive()
       .only_of("connect");
-}
-
-std::optional<CurveSearch> make_curve_search(const Keys& keys, const CurveValues& values) {
-  const auto& ends = keys.read(values.connect);
-  if (ends.empty()) return std::nullopt;
-  const CurveSearch search{vector_of(ends), vector_of(ends, 3),
-                           static_cast<std::uint64_t>(keys.read(values.trials))};
-  if ((search.to - search.from).norm() <= 1e-10 * std::max(search.from.norm(), search.to.norm()))
-    throw InputError("connect", number_text(ends), "must be two different points");
-  return search;
-}
-
-double largest_index(const SceneField& scene, const CurveSearch& search) {
-  constexpr int points = 101;
-  double largest = 0;
-  for (int i = 0; i < points; ++i) {
-    const Vec3 x = search.from + i / (points - 1.0) * (search.to - search.from);
-    largest = std::max(largest, index_at(scene, x));
-  }
-  return largest > 0 ? largest : 1;
-}
-
-FoundConnections find_connections(const SceneField& scene, const RayStops& stops, double step,
-                                  const CurveSearch& search, std::uint64_t seed) {
-  const SameSides sides(scene, stops, search);
-  const auto field = make_ray_field(scene.field);
-  for (const Vec3& x : {search.from, search.to})
-    if (!(index(*field, x) > 0))
-      throw InputError("connect", listed(x), "is where the field has no index above 0");
-  RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), 0);
-  FoundConnections found;
-  found.curves = field->connections({search.from, search.to, sides.region()},
-                                    {.step = step, .max_length = stops.max_length}, search.trials,
-                                    random, found.statistics);
-  sort_out(found, [&](const auto& curve) { return sides.holds(*field, search.from, curve); });
-  return found;
 }
 
 void add_keys(Keys& keys, TraceValues& values) {
@@ -220,7 +206,20 @@ std::vector<TracedRay> trace_rays(const TraceScene& scene) {
 }
 
 FoundConnections find_connections(const TraceScene& scene, std::uint64_t seed) {
-  return find_connections(scene.field, scene.stops, scene.steps.longest, *scene.curves, seed);
+  const CurveSearch& search = *scene.curves;
+  const SameSides sides(scene.field, scene.stops, search);
+  const auto field = make_ray_field(scene.field.field);
+  for (const Vec3& x : {search.from, search.to})
+    if (!(index(*field, x) > 0))
+      throw InputError("connect", listed(x), "is where the field has no index above 0");
+  RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), 0);
+  FoundConnections found;
+  found.curves =
+      field->connections({search.from, search.to, sides.region()},
+                         {.step = scene.steps.longest, .max_length = scene.stops.max_length},
+                         search.trials, random, found.statistics);
+  sort_out(found, [&](const auto& curve) { return sides.holds(*field, search.from, curve); });
+  return found;
 }
 
 std::vector<TracedRay> rays_along(const TraceScene& scene, const FoundConnections& found) {

@@ -27,21 +27,10 @@ struct CurveSearch {
   std::optional<Sphere> ball = {};  ///< that curves stay in: a field's rim
 };
 
-/// Nothing without `connect`. Throws InputError.
-std::optional<CurveSearch> make_curve_search(const Keys& keys, const CurveValues& values);
-
-/// On the straight line between the points, as far as there is an index; 1 where there is none.
-double largest_index(const SceneField& scene, const CurveSearch& search);
-
 struct FoundConnections {
   std::vector<FoundConnection> curves;  ///< by optical path
   ConnectionStatistics statistics;
 };
-
-/// Curves of steps of that length at the most that stay on the side of every stop surface, and
-/// within the ball or grid, that both points are on. Throws InputError.
-FoundConnections find_connections(const SceneField& scene, const RayStops& stops, double step,
-                                  const CurveSearch& search, std::uint64_t seed);
 
 /// Rays through an index field, or the curves between two points of it, as keys have them.
 struct TraceValues {
@@ -75,6 +64,8 @@ TraceScene make_trace_scene(const TraceValues& values);
 
 std::vector<TracedRay> trace_rays(const TraceScene& scene);
 
+/// Curves that stay on the side of every stop surface, and within the ball or grid, that both
+/// points are on. Throws InputError.
 FoundConnections find_connections(const TraceScene& scene, std::uint64_t seed);
 /// Each curve as a ray of its length, for its points.
 std::vector<TracedRay> rays_along(const TraceScene& scene, const FoundConnections& found);

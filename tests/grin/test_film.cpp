@@ -52,7 +52,7 @@ TEST_CASE("film: the sum over the bins is the steady picture, wherever the light
       const int pixel = i % pixels;
       const double value = (pixel + 1) * random.uniform();
       timed.add(pixel, value, 1 + 5 * random.uniform());
-      steady.add(pixel, value);
+      steady.add(pixel, value, 0);
     }
     for (int pixel = 0; pixel < pixels; ++pixel) {
       CHECK(pictures.steady[pixel].real() == doctest::Approx((pixel + 1) * 5000 / 3.).epsilon(0.1));

@@ -163,7 +163,7 @@ TEST_CASE("Focused sound: derivatives, the wave equation, all in phase at the fo
 }
 
 TEST_CASE("Sums of fields") {
-  FieldSum<Homogeneous, TanhRamp, GaussianBlobs> sum;
+  AnySum sum;
   const GaussianBlobs blobs({{{0, 0, 0}, 0.2, 0.4}});
   const TanhRamp ramp{0.1, 0.2, 0.5};
   sum.add(Homogeneous{0.3}).add(ramp).add(ramp).add(blobs);

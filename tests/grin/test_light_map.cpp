@@ -3,8 +3,8 @@
 #include <doctest/doctest.h>
 
 #include "bench/oracles/lamp_map.h"
-#include "grin/render/pictures/energy_datasets.h"
 #include "grin/render/pictures/map_datasets.h"
+#include "grin/render/pictures/render_datasets.h"
 #include "tests/grin/furnace_scenes.h"
 
 namespace flatspeckle::grin::tests::test_light_map {

@@ -159,8 +159,14 @@ std::optional<double> weight_of(const Transport& transport, const Space& space,
   const EndPosition chosen = path.chosen_sensor(transport);
   const PathVertex z = s == all - 1 ? end_vertex(transport.strategies, chosen)
                                     : sensor_subpath(transport, path, all - s);
-  const JoiningCurve curve{edge.start_direction, edge.direction, edge.spreading, edge.optical_depth,
-                           edge.passages.count,  edge.fresnel,   edge.hollows,   edge.optical_path};
+  const Join curve{.start_direction = edge.start_direction,
+                   .end_direction = edge.direction,
+                   .spreading = edge.spreading,
+                   .optical_path = edge.optical_path,
+                   .optical_depth = edge.optical_depth,
+                   .passages = edge.passages,
+                   .fresnel = edge.fresnel,
+                   .hollows = edge.hollows};
   return joined_path(allowed, y, leaving(transport, transport.lights, y, curve.start_direction), z,
                      leaving(transport, transport.sensors[0], z, -curve.end_direction), curve)
       .weight;

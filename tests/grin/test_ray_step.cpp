@@ -24,26 +24,19 @@ namespace {
 const Luneburg lens{LuneburgProfile{1}};
 const Vec3 inside{-0.6, 0.3, 0.2};
 
-struct SlantedExtinction {
-  double operator()(const Vec3& x) const { return 0.7 + 0.3 * x[0] + 0.5 * x[1] * x[1]; }
-};
-
-/// Errors of position, direction, optical path, arc length and optical depth after sigma = 1.1.
+/// Errors of position, direction, optical path and arc length after sigma = 1.1.
 template <class Integrator>
-Eigen::Array<double, 5, 1> luneburg_errors(int steps) {
-  const SlantedExtinction mu_t;
+Eigen::Array4d luneburg_errors(int steps) {
   const RayState start = start_ray(lens, inside, {0.8, 0.5, -0.3});
   const tests::LuneburgRay exact{start.x, start.v};
   const auto speed = [&](double s) { return index(lens, exact.x(s)); };
   const double sigma = 1.1;
-  AttenuatedRay<SlantedExtinction> ray(start, mu_t);
+  RayState ray = start;
   go<Integrator>(lens, sigma, steps, ray);
-  Eigen::Array<double, 5, 1> errors;
+  Eigen::Array4d errors;
   errors << (ray.x - exact.x(sigma)).norm(), (ray.v - exact.v(sigma)).norm(),
       ray.optical_path - exact.optical_path(sigma),
-      ray.arc_length - flatspeckle::tests::integral(speed, 0, sigma),
-      ray.optical_depth - flatspeckle::tests::integral(
-                              [&](double s) { return mu_t(exact.x(s)) * speed(s); }, 0, sigma);
+      ray.arc_length - flatspeckle::tests::integral(speed, 0, sigma);
   return errors.abs();
 }
 
@@ -76,7 +69,7 @@ void check_tangent(const F& field, const RayState& start, double sigma, int step
 
 TEST_CASE_TEMPLATE("Steps are of their order, with all that they accumulate", I, INTEGRATORS) {
   const auto coarse = luneburg_errors<I>(64), fine = luneburg_errors<I>(128);
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < 4; ++i) {
     CAPTURE(i);
     CAPTURE(fine[i]);
     CHECK(std::abs(std::log2(coarse[i] / fine[i]) - I::order) < 0.1);
@@ -106,10 +99,6 @@ TEST_CASE_TEMPLATE("A homogeneous medium has straight rays", I, INTEGRATORS) {
   CHECK((ray.v - Vec3(0, 0.9, 1.2)).norm() < 1e-15);
   CHECK(ray.arc_length == doctest::Approx(3));
   CHECK(ray.optical_path == doctest::Approx(4.5));
-  const SlantedExtinction mu_t;
-  AttenuatedRay dimmed(start_ray(plain, {1, 2, 3}, {0, 3, 4}), mu_t);
-  I::step(plain, dimmed, 2);
-  CHECK(dimmed.optical_depth == doctest::Approx(3 + (54.872 - 8) / 3.6));  // mu_t is quadratic
 }
 
 TEST_CASE_TEMPLATE("Symplectic steps run backwards", I, Leapfrog, Yoshida4) {

@@ -255,31 +255,6 @@ TEST_CASE("Straight rays go beside a face, however close, and along it") {
   }
 }
 
-TEST_CASE("A tangent ends with its ray") {
-  const std::vector<Surface> rim{Sphere{}};
-  const RayState start = start_ray(lens, {-0.6, 0.3, 0.2}, {1, 0.2, 0.1});
-  const auto exit = [&](const Vec3& v0) {
-    auto steps = controlled<Sharma>(1e-12);
-    RayState ray = start;
-    ray.v = v0;
-    trace(lens, rim, far, steps, ray);
-    return ray.x;
-  };
-  auto steps = controlled<Sharma>(1e-12);
-  RayState ray = start;
-  RayTangent tangent;
-  CHECK(trace(lens, rim, far, steps, ray, tangent).surface == 0);
-  CHECK((ray.x - exit(start.v)).norm() < 1e-12);
-  for (int axis = 0; axis < 3; ++axis) {
-    const Vec3 shift = 1e-4 * Vec3::Unit(axis);
-    const Vec3 moved = (exit(start.v + shift) - exit(start.v - shift)) / 2e-4;
-    const Vec3 at_fixed_sigma = tangent.dx.col(axis);
-    const Vec3 out = ray.x.normalized();
-    const Vec3 on_rim = at_fixed_sigma - ray.v * out.dot(at_fixed_sigma) / out.dot(ray.v);
-    CHECK((moved - on_rim).norm() < 1e-6);
-  }
-}
-
 TEST_CASE("Rays are lost, not bent, where there is no index") {
   const LinearRamp ramp{0, {0, 0, -1}};  // n = 1 - z
   FixedSteps<Leapfrog> fixed{0.05};

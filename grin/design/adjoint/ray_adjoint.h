@@ -12,12 +12,6 @@ namespace flatspeckle::grin::design {
 // drift. Walked backwards they retrace a ray to the rounding, so that a derivative needs no
 // storage.
 
-struct LeapfrogScheme {
-  static constexpr int order = 2;
-  static constexpr std::array<double, 2> drift{0.5, 0.5};
-  static constexpr std::array<double, 1> kick{1};
-};
-
 /// Omelyan, Mryglod and Folk 2002 ("position extended Forest-Ruth like"): a hundred times as exact
 /// as three leapfrogs of order 4.
 struct Pefrl {
@@ -35,7 +29,7 @@ template <class Scheme, IndexField F>
     ray.x += Scheme::drift[i] * h * ray.v;
     const double k = Scheme::kick[i] * h;
     const RayForce at = ray_force(field, ray.x);
-    ray.accumulate(ray.x, 1 + at.excess, k);
+    ray.accumulate(1 + at.excess, k);
     ray.v += k * at.force;
   }
   ray.x += Scheme::drift.back() * h * ray.v;
@@ -60,7 +54,7 @@ template <class Scheme, IndexField F>
     const double d = Scheme::kick[i], k = d * h;
     const IndexHessian at = field.hessian(ray.x);
     const double n = 1 + at.excess, dn = at.gradient.dot(rate.x);
-    ray.accumulate(ray.x, n, k);
+    ray.accumulate(n, k);
     rate.arc_length += d * n + k * dn;
     rate.optical_path += d * n * n + 2 * k * n * dn;
     rate.v += d * ray_force(at) + k * (ray_force_derivative(at) * rate.x);

@@ -4,7 +4,6 @@
 
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
-#include "grin/design/goals/passage.h"
 #include "grin/design/goals/solid_hull.h"
 
 namespace flatspeckle::grin::design {

@@ -8,6 +8,8 @@ namespace flatspeckle::grin::design {
 
 namespace {
 
+/// Readings are to be the same, whatever that is: residuals are their distances from their mean,
+/// over it.
 class EqualGoal : public Goal {
  public:
   std::vector<double> residuals(std::span<const double> readings) override {
@@ -42,12 +44,6 @@ class EqualGoal : public Goal {
   std::vector<double> of_mean_;  ///< readings over their mean
 };
 
-/// Readings are to be the same, whatever that is: residuals are their distances from their mean,
-/// over it.
-std::unique_ptr<Goal> make_equal_goal() {
-  return std::make_unique<EqualGoal>();
-}
-
 /// Light that fills all modes evenly, in the parabola that profiles of a fibre are near to: rays
 /// are ellipses about the axis of semiaxes a >= b, evenly in (a^2 + b^2)^2 and in 2 a b over
 /// a^2 + b^2. Of meridional rays b is 0.
@@ -65,7 +61,8 @@ class FibreAim : public Aim {
     for (int i = 0; i < count; ++i)
       rays.push_back(ray(even_share(i, count), std::fmod(golden_ratio * i + 0.3, 1)));
     std::vector<PathPerLengthReading> readings(rays.size(), PathPerLengthReading{0});
-    return {make_ray_system(std::move(rays), std::move(readings), walk), make_equal_goal()};
+    return {make_ray_system(std::move(rays), std::move(readings), walk),
+            std::make_unique<EqualGoal>()};
   }
 
  private:

@@ -13,7 +13,6 @@
 #include "core/error.h"
 #include "core/keys/number_text.h"
 #include "grin/design/goals/even_points.h"
-#include "grin/design/goals/passage.h"
 #include "grin/design/goals/picture_goal.h"
 #include "grin/design/goals/solid_hull.h"
 #include "grin/media/geometry/vector_values.h"

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "grin/design/goals/even_points.h"
-#include "grin/design/goals/passage.h"
 #include "grin/design/goals/solid_hull.h"
 #include "grin/media/geometry/frame.h"
 #include "grin/media/geometry/vector_values.h"

@@ -89,6 +89,10 @@ const DatasetTable design_table{
 
 namespace {
 
+std::vector<double> listed_numbers(const Vec3& x) {
+  return {x[0], x[1], x[2]};
+}
+
 void write_coefficients(const ResultGroup& root, const BallForm& form,
                         const std::vector<double>& values) {
   const FieldGrid grid = form.grid();
@@ -96,16 +100,14 @@ void write_coefficients(const ResultGroup& root, const BallForm& form,
   for (const char* axis : {"coefficient_x", "coefficient_y", "coefficient_z"})
     root.number(axis, static_cast<std::size_t>(form.nodes) + 2);
   root.put("ball_spline", values);
-  root.attribute("ball_spline", "origin", std::vector<double>{first[0], first[1], first[2]});
-  root.attribute("ball_spline", "spacing",
-                 std::vector<double>{grid.spacing[0], grid.spacing[1], grid.spacing[2]});
+  root.attribute("ball_spline", "origin", listed_numbers(first));
+  root.attribute("ball_spline", "spacing", listed_numbers(grid.spacing));
 }
 void write_coefficients(const ResultGroup& root, const RadialForm& form,
                         const std::vector<double>& values) {
   root.number("coefficient", values.size());
   root.put("radial_spline", values);
-  root.attribute("radial_spline", "centre",
-                 std::vector<double>{form.centre[0], form.centre[1], form.centre[2]});
+  root.attribute("radial_spline", "centre", listed_numbers(form.centre));
   root.attribute("radial_spline", "radius", form.radius);
 }
 
@@ -140,9 +142,8 @@ void write_coefficients(const ResultGroup& root, const BoxForm& form,
   for (const char* axis : {"node_x", "node_y", "node_z"})
     root.number(axis, static_cast<std::size_t>(nodes));
   root.put("excess", excess);
-  root.attribute("excess", "origin", std::vector<double>{origin[0], origin[1], origin[2]});
-  root.attribute("excess", "spacing",
-                 std::vector<double>{grid.spacing[0], grid.spacing[1], grid.spacing[2]});
+  root.attribute("excess", "origin", listed_numbers(origin));
+  root.attribute("excess", "spacing", listed_numbers(grid.spacing));
 }
 
 void write_history(const ResultGroup& root, const DesignHistory& history) {

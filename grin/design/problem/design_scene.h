@@ -1,11 +1,31 @@
 #pragma once
 
+#include <tuple>
+
 #include "core/keys/keys.h"
 #include "grin/design/descent/objective.h"
 #include "grin/design/forms/form_values.h"
-#include "grin/design/goals/aim_values.h"
+#include "grin/design/goals/deflection_aim.h"
+#include "grin/design/goals/fibre_aim.h"
+#include "grin/design/goals/focus_aim.h"
+#include "grin/design/goals/screen_aim.h"
+#include "grin/design/goals/source_aim.h"
 
 namespace flatspeckle::grin::design {
+
+/// All kinds of what light is to do; the one list of them.
+using AimKinds = std::tuple<FocusValues, FibreValues, ScreenValues, DeflectionValues,
+                            CollimationValues, ThroughputValues>;
+
+struct AimValues {
+  std::string goal = FocusValues::word;
+  AimKinds kinds{};
+};
+
+void add_keys(Keys& keys, AimValues& values);
+
+/// Throws InputError.
+std::unique_ptr<Aim> make_aim(const Keys& keys, const AimValues& values, const FieldForm& form);
 
 /// What is sought and what light is to do, as keys have it.
 struct DesignValues {

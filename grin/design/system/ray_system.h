@@ -25,7 +25,6 @@ class RayRows {
   /// Rays of a block, to be filled in their order.
   static constexpr std::size_t block_size = 32;
   static constexpr std::size_t width = 4;
-  std::size_t blocks() const { return blocks_.size(); }
   struct Block {
     std::vector<std::uint32_t> index;  ///< of the first of four
     std::vector<float> values;         ///< of each reading by these four

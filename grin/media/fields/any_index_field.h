@@ -1,7 +1,10 @@
 #pragma once
 
+#include <string>
 #include <tuple>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "grin/media/fields/ball_spline.h"
 #include "grin/media/fields/fisheye.h"
@@ -18,7 +21,6 @@
 #include "grin/media/fields/tanh_ramp.h"
 #include "grin/media/fields/transducers.h"
 #include "grin/media/fields/ultrasound.h"
-#include "grin/media/index/field_sum.h"
 
 namespace flatspeckle::grin {
 
@@ -32,17 +34,18 @@ template <class Kinds>
 struct FieldsOf;
 template <class... Kind>
 struct FieldsOf<std::tuple<Kind...>> {
-  using Sum = FieldSum<typename Kind::Field...>;
+  using Vectors = std::tuple<std::vector<typename Kind::Field>...>;
   template <class Other>
   using VariantWith = std::variant<typename Kind::Field..., Other>;
 };
 
-/// Any of them added up, compiled once: a sum is long enough for a call.
+/// n = 1 + the sum of the terms' excesses: any number of each kind, chosen at run time and without
+/// a choice in the loop. Compiled once: a sum is long enough for a call.
 class AnySum {
  public:
   template <IndexField F>
   AnySum& add(F field) {
-    sum_.add(std::move(field));
+    std::get<std::vector<F>>(terms_).push_back(std::move(field));
     return *this;
   }
 
@@ -52,10 +55,18 @@ class AnySum {
   IndexHessian hessian(const Vec3& x) const;
 
  private:
-  FieldsOf<IndexFieldKinds>::Sum sum_;
+  FieldsOf<IndexFieldKinds>::Vectors terms_;
 };
 
 /// A field chosen at run time: std::visit it once for a bundle of rays, never for a step.
 using AnyIndexField = FieldsOf<IndexFieldKinds>::VariantWith<AnySum>;
+
+/// A number of the index field, and the fields with a little less and more of it.
+struct FieldParameter {
+  std::string name;
+  double scale;  ///< what counts as a whole of it: its size, or 1
+  double step;
+  AnyIndexField less, more;
+};
 
 }  // namespace flatspeckle::grin

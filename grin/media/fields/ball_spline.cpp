@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "grin/media/index/field_file.h"
+
 namespace flatspeckle::grin {
 
 namespace {
@@ -52,8 +54,10 @@ void add_keys(Keys& keys, BallValues& values) {
 }
 
 BallSpline make_field(const Keys& keys, const BallValues& values, const FieldUse&) {
-  return read_grid_of<BallGrid>(keys.name(values.ball), keys.required(values.ball), "ball_spline")
-      .ball;
+  const auto read = [](const std::string& path) {
+    return read_grid<BallGrid>(path, "ball_spline");
+  };
+  return read_field(keys, keys.required(values.ball), read).ball;
 }
 
 }  // namespace flatspeckle::grin

@@ -1,6 +1,6 @@
 #include "grin/media/fields/focused_sound.h"
 
-#include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace flatspeckle::grin {
@@ -11,12 +11,19 @@ using std::numbers::pi;
 
 FocusedSound::FocusedSound(double background, double amplitude, double k,
                            const std::vector<Vec3>& directions, const Vec3& focus, double psi)
-    : background_(background),
-      amplitude_(amplitude / static_cast<double>(std::max<std::size_t>(directions.size(), 1))),
-      k_(k),
-      focus_(focus),
-      psi_(psi) {
-  for (const Vec3& direction : directions) waves_.push_back(k * direction.normalized());
+    : SoundWaves(background), k_(k), psi_(psi) {
+  const double share = amplitude / static_cast<double>(directions.size());
+  for (const Vec3& direction : directions) {
+    const Vec3 wave = k * direction.normalized();
+    waves_.push_back({wave, share, wave.dot(focus) + psi, 1});
+  }
+}
+
+FocusedSound FocusedSound::frozen(double psi) const {
+  FocusedSound sound = *this;
+  for (Wave& wave : sound.waves_) wave.phase += psi - psi_;
+  sound.psi_ = psi;
+  return sound;
 }
 
 std::vector<Vec3> arc_directions(int count, double aperture) {

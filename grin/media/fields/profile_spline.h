@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/error.h"
@@ -14,7 +16,13 @@ class ProfileSpline {
  public:
   /// coefficients: three more than cells. Throws InputError for fewer than 4, or one that is not
   /// finite.
-  explicit ProfileSpline(std::vector<double> coefficients);
+  explicit ProfileSpline(std::vector<double> coefficients)
+      : coefficients_(std::move(coefficients)) {
+    if (coefficients_.size() < 4)
+      throw InputError("coefficients of a profile", coefficients_.size(), "must be at least 4");
+    for (const double c : coefficients_)
+      if (!std::isfinite(c)) throw InputError("coefficient of a profile", c, "must be finite");
+  }
 
   const std::vector<double>& coefficients() const { return coefficients_; }
 

@@ -6,6 +6,7 @@
 
 #include "core/numbers/wide/every_width.h"
 #include "grin/media/index/cubic_splines.h"
+#include "grin/media/index/field_file.h"
 
 namespace flatspeckle::grin {
 
@@ -255,7 +256,7 @@ void add_keys(Keys& keys, GridValues& values) {
 }
 
 SplineField make_field(const Keys& keys, const GridValues& values, const FieldUse&) {
-  return read_grid_of<SplineField>(keys.name(values.grid), keys.required(values.grid), "excess");
+  return read_field(keys, keys.required(values.grid), read_spline_field);
 }
 
 }  // namespace flatspeckle::grin

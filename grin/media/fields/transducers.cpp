@@ -25,7 +25,7 @@ std::vector<Vec3> directions(const Transducer& of, int waves) {
 }  // namespace
 
 Transducers::Transducers(double background, const std::vector<Transducer>& all, int waves)
-    : background_(background) {
+    : SoundWaves(background) {
   for (const Transducer& one : all)
     largest_wavenumber_ = std::max(largest_wavenumber_, one.wavenumber);
   for (const Transducer& one : all) {
@@ -46,33 +46,6 @@ Transducers Transducers::frozen(double phase) const {
   for (Wave& wave : sound.waves_)
     wave.phase += wave.rate * phase + turn * std::remainder(wave.rate * before, 1);
   return sound;
-}
-
-double Transducers::largest() const {
-  double sum = 0;
-  for (const Wave& wave : waves_) sum += std::abs(wave.amplitude);
-  return sum;
-}
-
-IndexGradient Transducers::gradient(const Vec3& x) const {
-  IndexGradient sum{background_, Vec3::Zero()};
-  for (const auto& [k, amplitude, phase, rate] : waves_) {
-    const double at = k.dot(x) - phase;
-    sum.excess += amplitude * std::cos(at);
-    sum.gradient -= amplitude * std::sin(at) * k;
-  }
-  return sum;
-}
-
-IndexHessian Transducers::hessian(const Vec3& x) const {
-  IndexHessian sum{background_, Vec3::Zero(), Mat3::Zero()};
-  for (const auto& [k, amplitude, phase, rate] : waves_) {
-    const double at = k.dot(x) - phase, value = amplitude * std::cos(at);
-    sum.excess += value;
-    sum.gradient -= amplitude * std::sin(at) * k;
-    sum.hessian -= value * k * k.transpose();
-  }
-  return sum;
 }
 
 namespace {

@@ -3,9 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "core/numbers/wide/functions.h"
-#include "grin/media/index/lanes.h"
 #include "grin/media/index/sound.h"
+#include "grin/media/index/sound_waves.h"
 
 namespace flatspeckle::grin {
 
@@ -22,7 +21,7 @@ struct Transducer {
 
 /// n = 1 + background + sum over all waves of amplitude cos(k d.(x - focus) - phase - psi_j), as
 /// light meets it at a time t: psi_j = w_j t.
-class Transducers {
+class Transducers : public SoundWaves {
  public:
   /// waves: of each transducer that has an aperture.
   Transducers(double background, const std::vector<Transducer>& all, int waves);
@@ -32,41 +31,9 @@ class Transducers {
   Transducers frozen(double phase) const;
 
   double largest_wavenumber() const { return largest_wavenumber_; }
-  /// No place has more.
-  double largest() const;
-
-  double excess(const Vec3& x) const { return gradient(x).excess; }
-  IndexGradient gradient(const Vec3& x) const;
-  IndexHessian hessian(const Vec3& x) const;
-  void gradients(const LaneVectors& x, LaneGradients& found) const {
-    LaneGradients sum{};
-    for (const Wave& wave : waves_) {
-      const double kx = wave.k[0], ky = wave.k[1], kz = wave.k[2], phase = wave.phase;
-      const double amplitude = wave.amplitude;
-#pragma omp simd
-      for (int i = 0; i < lanes; ++i) {
-        const auto at = wide_sine_cosine(kx * x.x[i] + ky * x.y[i] + kz * x.z[i] - phase);
-        const double slope = amplitude * at.sine;
-        sum.excess[i] += amplitude * at.cosine;
-        sum.gradient.x[i] -= slope * kx;
-        sum.gradient.y[i] -= slope * ky;
-        sum.gradient.z[i] -= slope * kz;
-      }
-    }
-    const double background = background_;
-#pragma omp simd
-    for (int i = 0; i < lanes; ++i) sum.excess[i] += background;
-    found = sum;
-  }
 
  private:
-  struct Wave {
-    Vec3 k;
-    double amplitude, phase;  ///< phase: at the origin
-    double rate;              ///< of its frequency, to the largest
-  };
-  double background_, largest_wavenumber_ = 0;
-  std::vector<Wave> waves_;
+  double largest_wavenumber_ = 0;
 };
 
 inline Transducers at_phase(const Transducers& field, double phase) {

@@ -48,14 +48,4 @@ Grid read_grid(const std::filesystem::path& path, const std::string& dataset) {
   }
 }
 
-/// The same of the file that a key names, which every InputError names too.
-template <class Grid>
-Grid read_grid_of(const std::string& key, const std::string& path, const std::string& dataset) {
-  try {
-    return read_grid<Grid>(path, dataset);
-  } catch (const InputError& error) {
-    throw InputError(key + ": " + error.what());
-  }
-}
-
 }  // namespace flatspeckle::grin

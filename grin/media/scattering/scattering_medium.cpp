@@ -1,6 +1,7 @@
 #include "grin/media/scattering/scattering_medium.h"
 
 #include "core/keys/kinds.h"
+#include "grin/media/index/field_file.h"
 
 namespace flatspeckle::grin {
 
@@ -29,8 +30,8 @@ ScatteringMedium make_medium(const Keys& keys, const MediumValues& values) {
   with_kind(values.kinds, keys.read(values.phase),
             [&](const auto& kind) { medium.phase.which = make_phase(keys, kind); });
   if (!keys.read(values.density).empty())
-    medium.density = std::make_shared<DensityGrid>(
-        read_grid_of<DensityGrid>(keys.name(values.density), values.density, "density"));
+    medium.density =
+        std::make_shared<DensityGrid>(read_field(keys, values.density, read_density_grid));
   return medium;
 }
 

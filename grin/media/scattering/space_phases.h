@@ -8,6 +8,7 @@
 #include "grin/media/scattering/isotropic_phase.h"
 #include "grin/media/scattering/mie_phase.h"
 #include "grin/media/scattering/rayleigh_phase.h"
+#include "grin/media/scattering/start_directions.h"
 #include "grin/media/scattering/table_phase.h"
 #include "grin/media/scattering/two_term_phase.h"
 
@@ -28,13 +29,19 @@ struct PhasesOf<std::tuple<Kind...>> {
 struct SpacePhaseFunction {
   PhasesOf<SpacePhaseKinds>::Any which = {};
 
-  double density(double cosine) const;
+  double density(double cosine) const {
+    return std::visit([&](const auto& phase) { return phase.density(cosine); }, which);
+  }
   double one_minus_cosine(RandomStream& random) const {
     return std::visit([&](const auto& phase) { return phase.one_minus_cosine(random); }, which);
   }
   /// Where light that goes along `direction`, a unit vector, goes next.
-  Vec3 sample(const Vec3& direction, RandomStream& random) const;
-  double mean_cosine() const;
+  Vec3 sample(const Vec3& direction, RandomStream& random) const {
+    return random_turn(direction, one_minus_cosine(random), random);
+  }
+  double mean_cosine() const {
+    return std::visit([](const auto& phase) { return phase.mean_cosine(); }, which);
+  }
 };
 
 }  // namespace flatspeckle::grin

@@ -1,10 +1,7 @@
 #include "grin/rays/connections/connection.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <numeric>
-
 
 #include "core/result/result_group.h"
 namespace flatspeckle::grin {
@@ -34,16 +31,10 @@ double ConnectionStatistics::mean_refind() const {
 void ConnectionStatistics::record_refind(std::uint64_t further_trials) {
   refind += further_trials;
   refind_max = std::max(refind_max, further_trials);
-  const std::size_t bin = std::bit_width(std::max<std::uint64_t>(further_trials, 1)) - 1;
-  ++refind_counts[std::min(bin, refind_counts.size() - 1)];
 }
 
 ConnectionStatistics& ConnectionStatistics::operator+=(const ConnectionStatistics& other) {
-  const auto add = [](auto& sums, const auto& terms) {
-    std::transform(sums.begin(), sums.end(), terms.begin(), sums.begin(), std::plus<>());
-  };
-  add(outcomes, other.outcomes);
-  add(refind_counts, other.refind_counts);
+  for (std::size_t i = 0; i < outcomes.size(); ++i) outcomes[i] += other.outcomes[i];
   iterations += other.iterations;
   guess_steps += other.guess_steps;
   rough_steps += other.rough_steps;

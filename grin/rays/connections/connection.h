@@ -77,8 +77,14 @@ struct ConnectionStatistics {
   std::uint64_t refind = 0;         ///< further trials of these (the sum of K where no roulette)
   std::uint64_t refind_max = 0;     ///< the largest number of further trials of one pair
   std::uint64_t roulette_ends = 0;  ///< searches that roulette ended
-  std::array<std::uint64_t, 32> refind_counts{};  ///< pairs with K in [2^i, 2^(i+1))
 
+  void add(TrialOutcome outcome) { ++outcomes[static_cast<int>(outcome)]; }
+  /// A pair of points of which a closed form tells the curve.
+  void add_pair(TrialOutcome outcome) {
+    ++pairs;
+    add(outcome);
+    found += outcome == TrialOutcome::converged;
+  }
   std::uint64_t trials() const;
   std::uint64_t count(TrialOutcome outcome) const { return outcomes[static_cast<int>(outcome)]; }
   double success_rate() const;

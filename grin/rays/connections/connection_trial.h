@@ -66,17 +66,24 @@ class ConnectionTrial {
   };
 
   Result run(RandomStream& random, ConnectionStatistics& statistics) const {
-    const Result result = search(random, statistics);
-    ++statistics.outcomes[static_cast<int>(result.outcome)];
-    return result;
+    return trial(statistics, [&] {
+      const Vec3 direction = options_.start.sample((to_ - from_) / gap_, random);
+      return rough(direction, draw_approach(direction, random, statistics));
+    });
   }
 
   /// The trial that starts along the chord and goes for the first closest approach: no chance in
   /// it.
   Result along_chord(ConnectionStatistics& statistics) const {
-    const Result result = search_along_chord(statistics);
-    ++statistics.outcomes[static_cast<int>(result.outcome)];
-    return result;
+    return trial(statistics, [&] {
+      const Vec3 direction = (to_ - from_) / gap_;
+      double first = 0;
+      each_approach(direction, statistics, [&](double sigma, double) {
+        first = sigma;
+        return false;
+      });
+      return rough(direction, first);
+    });
   }
 
   /// Of a curve: it is hardly bent, and neighbours spread about as straight rays do.
@@ -140,24 +147,16 @@ class ConnectionTrial {
     return steps < most_steps ? std::max(1, static_cast<int>(steps)) : most_steps;
   }
 
-  Result search(RandomStream& random, ConnectionStatistics& statistics) const {
-    if (coincident()) return {TrialOutcome::degenerate, {}};
-    const Vec3 direction = options_.start.sample((to_ - from_) / gap_, random);
-    const double sigma = draw_approach(direction, random, statistics);
-    if (!(sigma > 0)) return {TrialOutcome::no_approach, {}};
-    return refine(rough(direction, sigma), statistics);
-  }
-
-  Result search_along_chord(ConnectionStatistics& statistics) const {
-    if (coincident()) return {TrialOutcome::degenerate, {}};
-    const Vec3 direction = (to_ - from_) / gap_;
-    double first = 0;
-    each_approach(direction, statistics, [&](double sigma, double) {
-      first = sigma;
-      return false;
-    });
-    if (!(first > 0)) return {TrialOutcome::no_approach, {}};
-    return refine(rough(direction, first), statistics);
+  /// begin(): the first aim.
+  template <class Begin>
+  Result trial(ConnectionStatistics& statistics, const Begin& begin) const {
+    Result result{TrialOutcome::degenerate, {}};
+    if (!coincident()) {
+      const Aim aim = begin();
+      result = aim.sigma > 0 ? refine(aim, statistics) : Result{TrialOutcome::no_approach, {}};
+    }
+    statistics.add(result.outcome);
+    return result;
   }
 
   /// The sigma of one of the points where the ray comes closest to Q, drawn with weights

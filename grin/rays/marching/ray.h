@@ -4,13 +4,15 @@
 
 namespace flatspeckle::grin {
 
+inline constexpr double light_speed = 299'792'458;  ///< m/s
+
 /// A point of a ray. v points along the ray and |v| = n(x) (conventions, C23).
 struct RayState {
   Vec3 x, v;
   double arc_length = 0, optical_path = 0;
 
   /// What a stretch dsigma of index n adds: ds = n dsigma, n ds = n^2 dsigma.
-  void accumulate(const Vec3& /*x*/, double n, double dsigma) {
+  void accumulate(double n, double dsigma) {
     arc_length += n * dsigma;
     optical_path += n * n * dsigma;
   }
@@ -26,22 +28,6 @@ RayState start_ray(const F& field, const Vec3& x, const Vec3& direction) {
 /// the user's to project out.
 struct RayTangent {
   Mat3 dx = Mat3::Zero(), dv = Mat3::Identity();
-};
-
-/// A ray that also collects optical depth, the integral of mu_t(x) along the arc. Extinction:
-/// mu_t(x) -> double, 1/length. Where mu_t is one number, mu_t arc_length says it already.
-template <class Extinction>
-struct AttenuatedRay : RayState {
-  const Extinction* mu_t = nullptr;
-  double optical_depth = 0;
-
-  AttenuatedRay(const RayState& start, const Extinction& extinction)
-      : RayState(start), mu_t(&extinction) {}
-
-  void accumulate(const Vec3& at, double n, double dsigma) {
-    RayState::accumulate(at, n, dsigma);
-    optical_depth += (*mu_t)(at)*n * dsigma;
-  }
 };
 
 }  // namespace flatspeckle::grin

@@ -8,29 +8,6 @@
 
 namespace flatspeckle::grin {
 
-// How the normal of a surface turns along it: d normal / d x at a point on the surface, for
-// displacements along it.
-
-inline Mat3 curvature(const Sphere& sphere, const Vec3& x) {
-  const Vec3 n = sphere.normal(x);
-  return (Mat3::Identity() - n * n.transpose()) / sphere.radius;
-}
-inline Mat3 curvature(const Plane&, const Vec3&) {
-  return Mat3::Zero();
-}
-inline Mat3 curvature(const Box&, const Vec3&) {
-  return Mat3::Zero();
-}
-inline Mat3 curvature(const Lens& lens, const Vec3& x) {
-  return lens.curvature(x);
-}
-inline Mat3 curvature(const LevelSurface& level, const Vec3& x) {
-  return level.curvature(x);
-}
-inline Mat3 curvature(const Surface& surface, const Vec3& x) {
-  return std::visit([&](const auto& s) { return curvature(s, x); }, surface);
-}
-
 /// A ray at a surface where the index jumps (conventions, C25: the jump in dx/dv0): it goes on
 /// refracted or reflected, and its neighbours with it, each from where it meets the surface.
 class RayJump {
@@ -40,7 +17,7 @@ class RayJump {
           const IndexGradient& to)
       : normal_(normal(surface, ray.x)),
         face_(ray.v, normal_, from.excess, to.excess),
-        turn_(curvature(surface, ray.x)),
+        turn_(std::visit([&](const auto& s) { return s.curvature(ray.x); }, surface)),
         force_(ray_force(from)),
         change_of_force_(ray_force(to) - force_),
         is_hollow_(hollow(surface)) {

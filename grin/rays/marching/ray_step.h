@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <numbers>
 
 #include "grin/rays/marching/ray.h"
 
@@ -9,8 +8,7 @@ namespace flatspeckle::grin {
 
 // One step h of a ray in the parameter sigma of C23: dx/dsigma = v, dv/dsigma = n grad n, so that
 // no root and no division is left and H = (v^2 - n^2)/2 separates. A step is |v| h long. Arc
-// length, optical path and whatever else the ray accumulates are integrated with it, to the same
-// order.
+// length and optical path are integrated with it, to the same order.
 //
 //   Leapfrog   order 2, 1 gradient,  symplectic: drift h/2, kick h, drift h/2
 //   Yoshida4   order 4, 3 gradients, symplectic: three leapfrogs (Yoshida 1990)
@@ -20,16 +18,12 @@ namespace flatspeckle::grin {
 // The second overload also carries the exact derivative of the discrete step; `flatten`, as
 // compilers do not inline small matrices by themselves, makes it 1.4 times as fast.
 
-/// A straight ray, exactly; what it accumulates by Gauss's two points.
-template <class Ray>
-void straight_step(const Homogeneous& field, Ray& ray, double h) {
-  const double n = 1 + field.n_excess;
-  for (const double at : {0.5 - std::numbers::inv_sqrt3 / 2, 0.5 + std::numbers::inv_sqrt3 / 2})
-    ray.accumulate(ray.x + at * h * ray.v, n, h / 2);
+/// A straight ray, exactly.
+inline void straight_step(const Homogeneous& field, RayState& ray, double h) {
+  for (int half = 0; half < 2; ++half) ray.accumulate(1 + field.n_excess, h / 2);
   ray.x += h * ray.v;
 }
-template <class Ray>
-void straight_step(const Homogeneous& field, Ray& ray, RayTangent& tangent, double h) {
+inline void straight_step(const Homogeneous& field, RayState& ray, RayTangent& tangent, double h) {
   straight_step(field, ray, h);
   tangent.dx += h * tangent.dv;
 }
@@ -80,23 +74,23 @@ struct Leapfrog {
   static constexpr const char* word = "leapfrog";
   static constexpr int order = 2;
 
-  template <IndexField F, class Ray>
-  [[gnu::flatten]] static void step(const F& field, Ray& ray, double h) {
+  template <IndexField F>
+  [[gnu::flatten]] static void step(const F& field, RayState& ray, double h) {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, h);
     ray.x += h / 2 * ray.v;
     const RayForce at = ray_force(field, ray.x);
-    ray.accumulate(ray.x, 1 + at.excess, h);
+    ray.accumulate(1 + at.excess, h);
     ray.v += h * at.force;
     ray.x += h / 2 * ray.v;
   }
 
-  template <IndexField F, class Ray>
-  [[gnu::flatten]] static void step(const F& field, Ray& ray, RayTangent& tangent, double h) {
+  template <IndexField F>
+  [[gnu::flatten]] static void step(const F& field, RayState& ray, RayTangent& tangent, double h) {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, tangent, h);
     tangent.dx += h / 2 * tangent.dv;
     ray.x += h / 2 * ray.v;
     const auto at = ray_force_jet(field, ray.x);
-    ray.accumulate(ray.x, 1 + at.excess, h);
+    ray.accumulate(1 + at.excess, h);
     ray.v += h * at.force;
     ray.x += h / 2 * ray.v;
     tangent.dv += h * (at.derivative * tangent.dx);
@@ -111,14 +105,14 @@ struct Yoshida4 {
   static constexpr double inner = 1 - 2 * outer;
   static constexpr std::array<double, 3> parts{outer, inner, outer};
 
-  template <IndexField F, class Ray>
-  [[gnu::flatten]] static void step(const F& field, Ray& ray, double h) {
+  template <IndexField F>
+  [[gnu::flatten]] static void step(const F& field, RayState& ray, double h) {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, h);
     for (const double part : parts) Leapfrog::step(field, ray, part * h);
   }
 
-  template <IndexField F, class Ray>
-  static void step(const F& field, Ray& ray, RayTangent& tangent, double h) {
+  template <IndexField F>
+  static void step(const F& field, RayState& ray, RayTangent& tangent, double h) {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, tangent, h);
     for (const double part : parts) Leapfrog::step(field, ray, tangent, part * h);
   }
@@ -128,21 +122,21 @@ struct Sharma {
   static constexpr const char* word = "sharma";
   static constexpr int order = 4;
 
-  template <IndexField F, class Ray>
-  [[gnu::flatten]] static void step(const F& field, Ray& ray, double h) {
+  template <IndexField F>
+  [[gnu::flatten]] static void step(const F& field, RayState& ray, double h) {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, h);
     const RayForce a = ray_force(field, ray.x);
     const Vec3 middle = ray.x + h / 2 * ray.v + h * h / 8 * a.force;
     const RayForce b = ray_force(field, middle);
     const Vec3 end = ray.x + h * ray.v + h * h / 2 * b.force;
     const RayForce c = ray_force(field, end);
-    accumulate(ray, {ray.x, middle, end}, {a.excess, b.excess, c.excess}, h);
+    accumulate(ray, a.excess, b.excess, c.excess, h);
     ray.x += h * ray.v + h * h / 6 * (a.force + 2 * b.force);
     ray.v += h / 6 * (a.force + 4 * b.force + c.force);
   }
 
-  template <IndexField F, class Ray>
-  [[gnu::flatten]] static void step(const F& field, Ray& ray, RayTangent& tangent, double h) {
+  template <IndexField F>
+  [[gnu::flatten]] static void step(const F& field, RayState& ray, RayTangent& tangent, double h) {
     if constexpr (HomogeneousField<F>) return straight_step(field, ray, tangent, h);
     const auto a = ray_force_jet(field, ray.x);
     const Mat3 da = a.derivative * tangent.dx;
@@ -152,7 +146,7 @@ struct Sharma {
     const Vec3 end = ray.x + h * ray.v + h * h / 2 * b.force;
     const auto c = ray_force_jet(field, end);
     const Mat3 dc = c.derivative * (tangent.dx + h * tangent.dv + h * h / 2 * db);
-    accumulate(ray, {ray.x, middle, end}, {a.excess, b.excess, c.excess}, h);
+    accumulate(ray, a.excess, b.excess, c.excess, h);
     ray.x += h * ray.v + h * h / 6 * (a.force + 2 * b.force);
     ray.v += h / 6 * (a.force + 4 * b.force + c.force);
     tangent.dx += h * tangent.dv + h * h / 6 * (da + 2 * db);
@@ -160,17 +154,11 @@ struct Sharma {
   }
 
  private:
-  struct Points {
-    const Vec3 &start, &middle, &end;
-  };
-  struct Excesses {
-    double start, middle, end;
-  };
-  template <class Ray>
-  static void accumulate(Ray& ray, Points x, Excesses e, double h) {
-    ray.accumulate(x.start, 1 + e.start, h / 6);
-    ray.accumulate(x.middle, 1 + e.middle, 4 * h / 6);
-    ray.accumulate(x.end, 1 + e.end, h / 6);
+  /// Of the excess at the start, in the middle and at the end: Simpson's rule.
+  static void accumulate(RayState& ray, double start, double middle, double end, double h) {
+    ray.accumulate(1 + start, h / 6);
+    ray.accumulate(1 + middle, 4 * h / 6);
+    ray.accumulate(1 + end, h / 6);
   }
 };
 

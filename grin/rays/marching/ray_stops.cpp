@@ -32,22 +32,16 @@ std::vector<Surface> surfaces_of(const Keys& keys, const RayStopValues& values) 
 }
 
 /// The largest number that distances from it are differences of.
-double size(const Sphere& sphere) {
-  return sphere.centre.cwiseAbs().maxCoeff() + sphere.radius;
-}
-double size(const Plane& plane) {
-  return plane.point.cwiseAbs().maxCoeff();
-}
-double size(const Box& box) {
-  return box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
-}
-double size(const Lens& lens) {
-  double most = size(lens.bounds());
-  for (const LensFace& face : lens.faces()) most = std::max(most, size(face.sphere()));
+double size(const Surface& surface) {
+  const auto of_box = [](const Box& box) {
+    return box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
+  };
+  if (const auto* plane = std::get_if<Plane>(&surface)) return plane->point.cwiseAbs().maxCoeff();
+  double most = of_box(bounds(surface));
+  if (const auto* lens = std::get_if<Lens>(&surface))
+    for (const LensFace& face : lens->faces())
+      most = std::max(most, of_box(face.sphere().bounds()));
   return most;
-}
-double size(const LevelSurface& level) {
-  return size(level.bounds());
 }
 
 }  // namespace
@@ -88,8 +82,7 @@ RayStops make_ray_stops(const Keys& keys, const RayStopValues& values, double sc
     throw InputError("stop surfaces and bodies", stops.surfaces.size() + others.size(),
                      "must be at most " + std::to_string(most));
   for (const std::span<const Surface> surfaces : {std::span<const Surface>(stops.surfaces), others})
-    for (const auto& surface : surfaces)
-      farthest = std::max(farthest, std::visit([](const auto& s) { return size(s); }, surface));
+    for (const auto& surface : surfaces) farthest = std::max(farthest, size(surface));
   const double rounding = std::max(1e-14 * stops.max_length, 4e-15 * farthest);
   stops.location = std::max(1e-10 * std::min(scale, stops.max_length), rounding);
   return stops;

@@ -15,12 +15,12 @@ template <class Integrator>
 struct FixedSteps {
   double h;
 
-  template <IndexField F, class Ray, class... Tangent>
-  static void step(const F& field, double h, Ray& ray, Tangent&... tangent) {
+  template <IndexField F, class... Tangent>
+  static void step(const F& field, double h, RayState& ray, Tangent&... tangent) {
     Integrator::step(field, ray, tangent..., h);
   }
-  template <IndexField F, class Ray, class... Tangent>
-  double advance(const F& field, Ray& ray, Tangent&... tangent) const {
+  template <IndexField F, class... Tangent>
+  double advance(const F& field, RayState& ray, Tangent&... tangent) const {
     step(field, h, ray, tangent...);
     return h;
   }
@@ -62,19 +62,19 @@ struct ControlledSteps {
   double h;        ///< of the next step; start anywhere
   double longest;  ///< arc: steps grow no longer, so that nothing is jumped over
 
-  template <IndexField F, class Ray, class... Tangent>
-  static void step(const F& field, double h, Ray& ray, Tangent&... tangent) {
+  template <IndexField F, class... Tangent>
+  static void step(const F& field, double h, RayState& ray, Tangent&... tangent) {
     Integrator::step(field, ray, tangent..., h / 2);
     Integrator::step(field, ray, tangent..., h / 2);
     restore_index(field, ray, tangent...);
   }
 
   /// A ray that no step suits becomes NaN.
-  template <IndexField F, class Ray, class... Tangent>
-  double advance(const F& field, Ray& ray, Tangent&... tangent) {
+  template <IndexField F, class... Tangent>
+  double advance(const F& field, RayState& ray, Tangent&... tangent) {
     const double longest_h = longest / ray.v.norm();
     for (int trial = 0; trial < 50; ++trial) {
-      Ray halves = ray;
+      RayState halves = ray;
       const double tried = std::min(h, longest_h), error = tried_error(field, tried, ray, halves);
       // NaN shortens the step too.
       const double factor = error <= tolerance * 1e9
@@ -95,9 +95,9 @@ struct ControlledSteps {
 
  private:
   /// NaN for a step so short that coordinates cannot tell it.
-  template <IndexField F, class Ray>
-  static double tried_error(const F& field, double h, const Ray& ray, Ray& halves) {
-    Ray whole = ray;
+  template <IndexField F>
+  static double tried_error(const F& field, double h, const RayState& ray, RayState& halves) {
+    RayState whole = ray;
     Integrator::step(field, whole, h);
     restore_index(field, whole);
     step(field, h, halves);

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <concepts>
 #include <span>
-#include <tuple>
 
 #include "grin/rays/marching/stepper.h"
 #include "grin/rays/marching/watch.h"
@@ -12,9 +10,8 @@
 namespace flatspeckle::grin {
 
 /// What trace() does in a homogeneous medium: no steps, but the way to each surface.
-template <class... Tangent>
-TraceEnd trace_straight(const Homogeneous& field, std::span<const Surface> surfaces,
-                        const TraceLimits& limits, RayState& ray, Tangent&... tangent) {
+inline TraceEnd trace_straight(const Homogeneous& field, std::span<const Surface> surfaces,
+                               const TraceLimits& limits, RayState& ray) {
   const Watch watch(surfaces, limits, ray);
   const Vec3 direction = ray.v.normalized();
   double way = limits.max_arc_length;
@@ -26,7 +23,7 @@ TraceEnd trace_straight(const Homogeneous& field, std::span<const Surface> surfa
     way = here;
     surface = static_cast<int>(i);
   }
-  Leapfrog::step(field, ray, tangent..., way / (1 + field.n_excess));
+  Leapfrog::step(field, ray, way / (1 + field.n_excess));
   return {surface < 0 ? Stop::length : Stop::surface, surface, 0, 1};
 }
 
@@ -52,28 +49,24 @@ inline TraceEnd end_at(const Watch& watch, const RayState& ray, const TraceLimit
 /// Far from all surfaces nothing is tested: the signed distance, once known, is spent step by step
 /// (sphere tracing). A step that may cross is searched for its first crossing, and the ray ends
 /// with the part of that step that leads there; a surface that is touched for less than 1/64 of a
-/// step may be missed. Steps: grin/rays/marching/stepper.h. Tangent: nothing, or a RayTangent, which at the
-/// end is the derivative for a fixed last step (dx + v dsigma is then on the surface for the right
-/// dsigma).
-template <class Steps, IndexField F, class Ray, class... Tangent>
+/// step may be missed. Steps: grin/rays/marching/stepper.h.
+template <class Steps, IndexField F>
 TraceEnd trace(const F& field, std::span<const Surface> surfaces, const TraceLimits& limits,
-               Steps& steps, Ray& ray, Tangent&... tangent) {
-  if constexpr (HomogeneousField<F> && std::same_as<Ray, RayState>)
-    return trace_straight(field, surfaces, limits, ray, tangent...);
+               Steps& steps, RayState& ray) {
+  if constexpr (HomogeneousField<F>) return trace_straight(field, surfaces, limits, ray);
   const Watch watch(surfaces, limits, ray);
   double clearance = watch.clearance(ray);
   TraceEnd end{Stop::steps, -1, 0, 1};
   while (end.steps < limits.max_steps) {
     ++end.steps;
-    const std::tuple<Ray, Tangent...> before(ray, tangent...);
-    const Ray& start = std::get<0>(before);
-    const double h = steps.advance(field, ray, tangent...);
+    const RayState start = ray;
+    const double h = steps.advance(field, ray);
     const bool is_lost = !(ray.arc_length > start.arc_length);
     const double arc = trace_parts::longest_arc(start, ray, h);
     clearance -= arc;
     if (!is_lost && clearance > 0) continue;
     const auto at = [&](double theta) {
-      Ray part = start;
+      RayState part = start;
       steps.step(field, theta * h, part);
       ++end.looks;
       return watch.clearance(part);
@@ -82,8 +75,8 @@ TraceEnd trace(const F& field, std::span<const Surface> surfaces, const TraceLim
     const auto bracket = first_change(at, {0, 1, at(0), clearance}, arc);
     if (bracket) {
       const double theta = zero(at, *bracket, limits.tolerance / 4);
-      std::tie(ray, tangent...) = before;
-      steps.step(field, theta * h, ray, tangent...);
+      ray = start;
+      steps.step(field, theta * h, ray);
       const TraceEnd found = trace_parts::end_at(watch, ray, limits);
       return {found.stop, found.surface, end.steps, end.looks};
     }

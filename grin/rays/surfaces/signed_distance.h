@@ -2,6 +2,7 @@
 
 #include <variant>
 
+#include "core/error.h"
 #include "grin/media/geometry/shapes.h"
 #include "grin/rays/surfaces/lens.h"
 #include "grin/rays/surfaces/level_surface.h"
@@ -18,6 +19,15 @@ inline double distance(const Surface& surface, const Vec3& x) {
 }
 inline Vec3 normal(const Surface& surface, const Vec3& x) {
   return std::visit([&](const auto& s) { return s.normal(x); }, surface);
+}
+/// The box around a closed surface. Throws InputError for a plane.
+inline Box bounds(const Surface& surface) {
+  return std::visit(
+      [](const auto& s) -> Box {
+        if constexpr (requires { s.bounds(); }) return s.bounds();
+        throw InputError("a plane is no boundary of a stage or body: it is not closed");
+      },
+      surface);
 }
 
 }  // namespace flatspeckle::grin

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "grin/rays/surfaces/lens_way.h"
+#include "grin/rays/surfaces/lens.h"
 #include "grin/rays/surfaces/signed_distance.h"
 
 namespace flatspeckle::grin {
@@ -61,6 +61,9 @@ inline double way_in(const Box& box, const Vec3& x, const Vec3& d) {
   const double rounding = 1e-14 * (box.high - box.low).norm();
   return enter < leave && enter > -rounding ? std::max(0.0, enter) : no_way;
 }
+
+double way_out(const Lens& lens, const Vec3& x, const Vec3& d);
+double way_in(const Lens& lens, const Vec3& x, const Vec3& d);
 
 inline double way_out(const LevelSurface& level, const Vec3& x, const Vec3& d) {
   return level.way(x, d, -1);

@@ -174,10 +174,8 @@ class FisheyeRays final : public RayFieldOf<Fisheye> {
   ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
                              RandomStream& random,
                              ConnectionStatistics& statistics) const override {
-    ++statistics.pairs;
     const ConnectionEstimate found = one_of_ways(ends, options, random);
-    ++statistics.outcomes[static_cast<int>(found.outcome)];
-    statistics.found += found.curve.has_value();
+    statistics.add_pair(found.outcome);
     return found;
   }
 

@@ -140,7 +140,6 @@ class LuneburgRays final : public RayFieldOf<Luneburg> {
   ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
                              RandomStream& /*random*/,
                              ConnectionStatistics& statistics) const override {
-    ++statistics.pairs;
     const Vec3 from = in_units(ends.from), to = in_units(ends.to);
     const LuneburgWay way(from, to);
     const Vec3 start = way.start(), last = way.end();
@@ -150,9 +149,8 @@ class LuneburgRays final : public RayFieldOf<Luneburg> {
     const TrialOutcome outcome = !(std::abs(spreading) > 0) ? TrialOutcome::degenerate
                                  : arc > options.max_length ? TrialOutcome::too_long
                                                             : TrialOutcome::converged;
-    ++statistics.outcomes[static_cast<int>(outcome)];
+    statistics.add_pair(outcome);
     if (outcome != TrialOutcome::converged) return {outcome, std::nullopt, 0};
-    ++statistics.found;
     const double sigma = unit_ * way.t();
     return {outcome,
             Connection{start / n, last / n_last, sigma, arc, unit_ * way.optical_path(),

@@ -201,7 +201,6 @@ class ParabolicRays final : public RayFieldOf<ParabolicGuide> {
   ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
                              RandomStream& random,
                              ConnectionStatistics& statistics) const override {
-    ++statistics.pairs;
     ConnectionEstimate found{TrialOutcome::no_approach, std::nullopt, 0};
     const Vec3 from = ends.from - centre_, to = ends.to - centre_;
     ParabolicWays(n0_, alpha_, from, to)
@@ -212,8 +211,7 @@ class ParabolicRays final : public RayFieldOf<ParabolicGuide> {
           if (outcome != TrialOutcome::converged) return;
           if (random.uniform() * ++found.multiplicity < 1) found.curve = curve;
         });
-    ++statistics.outcomes[static_cast<int>(found.outcome)];
-    statistics.found += found.curve.has_value();
+    statistics.add_pair(found.outcome);
     return found;
   }
 

@@ -55,7 +55,6 @@ class RayField {
   virtual ~RayField() = default;
 
   // As of any IndexField.
-  virtual double index(const Vec3& x) const = 0;
   virtual double excess(const Vec3& x) const = 0;
   virtual IndexGradient gradient(const Vec3& x) const = 0;
   virtual IndexHessian hessian(const Vec3& x) const = 0;
@@ -113,11 +112,6 @@ class RayField {
   /// Throws InputError for a field without sound.
   virtual std::unique_ptr<const RayField> frozen(double phase) const = 0;
 };
-
-/// Of a RayField too.
-inline double index(const RayField& field, const Vec3& x) {
-  return field.index(x);
-}
 
 /// Whose rays may go by Leapfrog, which is cheaper where it is exact enough: sound, weak and finely
 /// structured.

@@ -12,7 +12,6 @@ class RayFieldOf : public RayField {
  public:
   explicit RayFieldOf(F field) : field_(std::move(field)) {}
 
-  double index(const Vec3& x) const override { return grin::index(field_, x); }
   double excess(const Vec3& x) const override { return field_.excess(x); }
   IndexGradient gradient(const Vec3& x) const override { return field_.gradient(x); }
   IndexHessian hessian(const Vec3& x) const override { return field_.hessian(x); }

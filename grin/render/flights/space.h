@@ -95,8 +95,6 @@ class Space {
   template <class Use>
   void for_points(const FlightLeg& leg, double apart, RandomStream& random, const Use& use) const;
 
-  /// All ways of light between two points.
-  bool joins_all() const { return !joins_through(); }
   /// Any, between points of these parts.
   bool can_join(const PathPoint& p, const PathPoint& q) const {
     return setup_->stage.are_alike(p.part, q.part) || joins_through();

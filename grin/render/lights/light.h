@@ -42,8 +42,6 @@ class Lights {
     return at;
   }
   EndDirection sample_direction(const EndPosition& at, RandomStream& random) const;
-  /// As SensorEnd's; lights have no other choice than that of sample_position.
-  double choice(const EndPosition&, const Vec3&) const { return 1; }
   /// Towards a given direction, for joins.
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
 

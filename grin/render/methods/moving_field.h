@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "grin/media/fields/any_index_field.h"
 #include "grin/media/scattering/scattering_medium.h"
 #include "grin/render/flights/space.h"
-#include "grin/render/methods/field_parameter.h"
 #include "grin/render/sensors/sensor_edges.h"
 
 namespace flatspeckle::grin {

@@ -8,8 +8,8 @@
 #include "core/numbers/random.h"
 #include "grin/render/flights/space.h"
 #include "grin/render/transport/film.h"
-#include "grin/render/transport/join_promises.h"
 #include "grin/render/transport/transport.h"
+#include "grin/render/transport/transport_counts.h"
 
 namespace flatspeckle::grin {
 

@@ -8,7 +8,6 @@
 #include "grin/media/fields/any_index_field.h"
 #include "grin/media/index/index_field.h"
 #include "grin/render/lights/light.h"
-#include "grin/render/methods/field_parameter.h"
 #include "grin/render/methods/light_map.h"
 #include "grin/render/sensors/sensor.h"
 #include "grin/render/stage/stage.h"

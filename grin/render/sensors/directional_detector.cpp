@@ -22,24 +22,9 @@ PixelRectangle picture_of(const DirectionalDetector& detector) {
 }
 
 DirectionalEnd::DirectionalEnd(const DirectionalDetector& detector, const Stage& stage)
-    : view_("sensor_direction", detector.forward, detector.up),
-      picture_(picture_of(detector)),
-      boundary_(stage.boundary, "sensor"),
-      regions_(stage) {}
-
-EndPosition DirectionalEnd::on_boundary(const BoundaryPoint& at) const {
-  return {.point = {at.x, regions_.at(at.x)},
-          .inward = at.inward,
-          .position_density = 1 / boundary_.area()};
-}
-
-EndPosition DirectionalEnd::sample_position(double, RandomStream& random) const {
-  return on_boundary(boundary_.sample(random));
-}
-
-std::optional<EndPosition> DirectionalEnd::position_at(const Vec3& x) const {
-  return on_boundary({x, boundary_.inward(x)});
-}
+    : WholeBoundary(stage),
+      view_("sensor_direction", detector.forward, detector.up),
+      picture_(picture_of(detector)) {}
 
 EndDirection DirectionalEnd::along(const EndPosition& at, const Vec3& direction, int pixel) const {
   EndDirection to{.direction = direction};

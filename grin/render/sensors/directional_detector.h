@@ -1,9 +1,7 @@
 #pragma once
 
 #include <numbers>
-#include <optional>
 
-#include "grin/render/endpoints/boundary_patch.h"
 #include "grin/render/sensors/sensor_kind.h"
 
 namespace flatspeckle::grin {
@@ -28,25 +26,20 @@ PixelRectangle picture_of(const DirectionalDetector& detector);
 
 /// With u, v the components of the outward direction, du dv = cos(theta) dw, theta from forward:
 /// W = cos(theta) / pixel area. Pixels beyond the horizon, in the corners, stay dark.
-class DirectionalEnd {
+class DirectionalEnd : public WholeBoundary {
  public:
   /// Throws InputError.
   DirectionalEnd(const DirectionalDetector& detector, const Stage& stage);
 
   const PixelGrid& pixels() const { return picture_.grid(); }
-  EndPosition sample_position(double stratum, RandomStream& random) const;
   EndDirection sample_direction(const EndPosition& at, double stratum, RandomStream& random) const;
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
-  std::optional<EndPosition> position_at(const Vec3& x) const;
 
  private:
   EndDirection along(const EndPosition& at, const Vec3& direction, int pixel) const;
-  EndPosition on_boundary(const BoundaryPoint& at) const;
 
   Orientation view_;
   PixelRectangle picture_;
-  BoundaryPatch boundary_;
-  Regions regions_;
 };
 
 struct DirectionalValues {

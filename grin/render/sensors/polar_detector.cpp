@@ -24,24 +24,9 @@ PixelRings picture_of(const PolarDetector& detector) {
 }
 
 PolarDetectorEnd::PolarDetectorEnd(const PolarDetector& detector, const Stage& stage)
-    : axis_(unit_direction("sensor_direction", detector.axis)),
-      rings_(picture_of(detector)),
-      boundary_(stage.boundary, "sensor"),
-      regions_(stage) {}
-
-EndPosition PolarDetectorEnd::on_boundary(const BoundaryPoint& at) const {
-  return {.point = {at.x, regions_.at(at.x)},
-          .inward = at.inward,
-          .position_density = 1 / boundary_.area()};
-}
-
-EndPosition PolarDetectorEnd::sample_position(double, RandomStream& random) const {
-  return on_boundary(boundary_.sample(random));
-}
-
-std::optional<EndPosition> PolarDetectorEnd::position_at(const Vec3& x) const {
-  return on_boundary({x, boundary_.inward(x)});
-}
+    : WholeBoundary(stage),
+      axis_(unit_direction("sensor_direction", detector.axis)),
+      rings_(picture_of(detector)) {}
 
 EndDirection PolarDetectorEnd::along(const EndPosition& at, const Vec3& direction, int ring) const {
   EndDirection to{.direction = direction, .density = rings_.density(ring)};

@@ -1,9 +1,7 @@
 #pragma once
 
 #include <numbers>
-#include <optional>
 
-#include "grin/render/endpoints/boundary_patch.h"
 #include "grin/render/sensors/pixel_rings.h"
 #include "grin/render/sensors/sensor_kind.h"
 
@@ -27,25 +25,20 @@ inline const DatasetTable& table_of(const PolarDetector&) {
 PixelRings picture_of(const PolarDetector& detector);
 
 /// W = 1 / ring's solid angle.
-class PolarDetectorEnd {
+class PolarDetectorEnd : public WholeBoundary {
  public:
   /// Throws InputError.
   PolarDetectorEnd(const PolarDetector& detector, const Stage& stage);
 
   PixelGrid pixels() const { return rings_.grid(); }
-  EndPosition sample_position(double stratum, RandomStream& random) const;
   EndDirection sample_direction(const EndPosition& at, double stratum, RandomStream& random) const;
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
-  std::optional<EndPosition> position_at(const Vec3& x) const;
 
  private:
   EndDirection along(const EndPosition& at, const Vec3& direction, int ring) const;
-  EndPosition on_boundary(const BoundaryPoint& at) const;
 
   Vec3 axis_;
   PixelRings rings_;
-  BoundaryPatch boundary_;
-  Regions regions_;
 };
 
 struct PolarValues {

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/keys/keys.h"
 #include "core/result/dataset_row.h"
+#include "grin/render/endpoints/boundary_patch.h"
 #include "grin/render/endpoints/path_end.h"
 #include "grin/render/sensors/pixel_grid.h"
 
@@ -36,6 +38,31 @@ struct SensorPixels {
   double share(std::size_t pixel) const {
     return shares.empty() ? 1.0 / grid.count() : shares[pixel];
   }
+};
+
+/// All of the boundary, evenly, as the places of an end.
+class WholeBoundary {
+ public:
+  /// Throws InputError.
+  explicit WholeBoundary(const Stage& stage)
+      : boundary_(stage.boundary, "sensor"), regions_(stage) {}
+
+  EndPosition sample_position(double, RandomStream& random) const {
+    return at(boundary_.sample(random));
+  }
+  std::optional<EndPosition> position_at(const Vec3& x) const {
+    return at({x, boundary_.inward(x)});
+  }
+
+ private:
+  EndPosition at(const BoundaryPoint& at) const {
+    return {.point = {at.x, regions_.at(at.x)},
+            .inward = at.inward,
+            .position_density = 1 / boundary_.area()};
+  }
+
+  BoundaryPatch boundary_;
+  Regions regions_;
 };
 
 /// What all kinds with a rectangle have.

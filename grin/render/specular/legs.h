@@ -2,9 +2,20 @@
 
 #include "grin/rays/marching/ray_jump.h"
 #include "grin/render/flights/space.h"
-#include "grin/render/specular/way.h"
 
 namespace flatspeckle::grin {
+
+/// Where a ray meets the surface of a body, and the part beyond.
+struct Meeting {
+  LegEnd surface;
+  Part beyond;
+};
+
+/// Where a leg crosses the plane of parallel light.
+struct PlaneCrossing {
+  bool is_reached = false;  ///< on the way of the ray
+  double sigma = 0;         ///< of the leg, ray parameter
+};
 
 /// What searches for ways of light ask of space: rays without collisions, with tangents where these
 /// are not null, from a point in a part or on its surface.
@@ -27,7 +38,7 @@ class Legs {
     if (space_.is_curved(part)) return curved_to_surface(part, ray, tangent, random);
     const double n = ray.v.norm();
     const Vec3 d = ray.v / n;
-    const auto [way, end] = stage_.way_to_surface({ray.x, part}, d);
+    const auto [way, end] = regions().way_out({ray.x, part}, d);
     if (end == at_boundary) return std::nullopt;
     advance_straight(way / n, ray, tangent);
     return Meeting{end, regions().beyond(part, end, ray.x, d)};

@@ -62,11 +62,12 @@ struct Flight {
 struct Join {
   Vec3 start_direction, end_direction;  ///< unit tangents along the way from the first point
   double spreading;                     ///< |J_PQ|
-  double optical_path;
-  double optical_depth;  ///< reference depth, see below
-  double transmittance;  ///< or an unbiased estimate of it, where the density is a grid; and the
-                         ///< chance of what happens at surfaces of bodies, Fresnel's
-  double multiplicity;   ///< K of C26: f multiplicity is unbiased for the sum of f over the curves
+  double optical_path = 1;
+  double optical_depth = 0;  ///< reference depth, see below
+  double transmittance = 1;  ///< or an unbiased estimate of it, where the density is a grid; and
+                             ///< the chance of what happens at surfaces of bodies, Fresnel's
+  double multiplicity =
+      1;  ///< K of C26: f multiplicity is unbiased for the sum of f over the curves
   Passages passages = {};  ///< of surfaces that refract, found by search
   double fresnel = 1;      ///< chance of these
   int hollows = 0;         ///< of these, at surfaces that are not convex

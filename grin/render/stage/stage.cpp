@@ -11,23 +11,6 @@ namespace flatspeckle::grin {
 
 namespace {
 
-Box bounds(const Sphere& s) {
-  const Vec3 half = Vec3::Constant(s.radius);
-  return {s.centre - half, s.centre + half};
-}
-Box bounds(const Box& b) {
-  return b;
-}
-Box bounds(const Lens& lens) {
-  return lens.bounds();
-}
-Box bounds(const LevelSurface& level) {
-  return level.bounds();
-}
-Box bounds(const Plane&) {
-  throw InputError("a plane is no boundary of a stage or body: it is not closed");
-}
-
 /// Of a path from the middle: diffusion, or what absorption and roulette leave of it.
 double most_scatterings(const ScatteringMedium& medium, const Surface& within, double density) {
   const auto [low, high] = bounds(within);
@@ -72,10 +55,6 @@ ScatteringMedium without_scattering(ScatteringMedium medium) {
 }
 
 }  // namespace
-
-Box bounds(const Surface& surface) {
-  return std::visit([](const auto& s) { return bounds(s); }, surface);
-}
 
 bool lies_in(const Surface& inner, const Surface& outer) {
   const auto [outer_low, outer_high] = bounds(outer);

@@ -51,9 +51,6 @@ struct Stage {
 /// The same stage where light that collides is lost.
 Stage without_scattering(const Stage& stage);
 
-/// The box around a closed surface. Throws InputError for a plane.
-Box bounds(const Surface& surface);
-
 /// To rounding: touching is allowed. Of a level surface, its bounds.
 bool lies_in(const Surface& inner, const Surface& outer);
 

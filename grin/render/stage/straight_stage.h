@@ -44,7 +44,7 @@ class StraightStage {
                               const Vec3* rise = nullptr) const {
     const Vec3 x = flight.point.x, d = flight.direction;
     const auto path = [&](double s) -> Vec3 { return x + s * d; };
-    auto [way, end] = way_to_surface(flight.point, d);
+    auto [way, end] = regions_.way_out(flight.point, d);
     const Part part = flight.point.part;
     const PartMedium& in = medium(part);
     const double pull = rise && in.is_uniform() ? rise->dot(d) / in.mu_t() : 0;
@@ -103,10 +103,7 @@ class StraightStage {
     Join join{.start_direction = d,
               .end_direction = d,
               .spreading = square,
-              .optical_path = (1 + excess(p.part)) * length,
-              .optical_depth = 0,
-              .transmittance = 1,
-              .multiplicity = 1};
+              .optical_path = (1 + excess(p.part)) * length};
     const auto pass = [&](Part part, double from, double to) {
       const auto path = [&](double s) -> Vec3 { return p.x + (from + s) * d; };
       join.optical_depth += medium(part).reference() * (to - from);
@@ -152,13 +149,9 @@ class StraightStage {
     return depth;
   }
 
-  /// From a point of a part or on its surface to where it ends.
-  Regions::WayOut way_to_surface(const PathPoint& p, const Vec3& d) const {
-    return regions_.way_out(p, d);
-  }
   /// To where light cannot go on straight.
   double way_to_jump(const PathPoint& p, const Vec3& d) const {
-    if (is_alone(p.part)) return way_to_surface(p, d).length;
+    if (is_alone(p.part)) return regions_.way_out(p, d).length;
     double way = 0;
     for_each_part(p, d, no_way, [&](Part, double, double to) { way = to; });
     return way;
@@ -202,7 +195,7 @@ class StraightStage {
     const Vec3 start = at.x;
     double from = 0;
     for (int leg = 0; leg < regions_.most_legs(); ++leg) {
-      const auto [way, end] = way_to_surface(at, d);
+      const auto [way, end] = regions_.way_out(at, d);
       if (from + way >= shorter) {
         use(at.part, from, length);
         return true;

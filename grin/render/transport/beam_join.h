@@ -7,17 +7,7 @@
 
 namespace flatspeckle::grin {
 
-/// A curve from a vertex of a light path to one of a sensor's path, as far as it matters here.
-struct JoiningCurve {
-  Vec3 start_direction, end_direction;  ///< unit tangents
-  double spreading;                     ///< |J| from the light's vertex to the sensor's
-  double optical_depth;                 ///< reference
-  int passages = 0;                     ///< of surfaces that refract
-  double fresnel = 1;                   ///< chance of these
-  int hollows = 0;                      ///< of these, at surfaces that are not convex
-  double optical_path = 1;              ///< where there are such
-};
-
+/// What joins two vertices.
 struct JoinedPath {
   double value = 0;   ///< what the path adds, but for transmittance and multiplicity
   double weight = 0;  ///< among the strategies that could have made it
@@ -55,10 +45,11 @@ inline double rivals_of_hit(const Strategies& strategies, const PathVertex& last
   return rivals(last, position_density, direction_density, more, 0, share);
 }
 
-/// from_y, from_z: leaving() along the curve, either way.
+/// curve: from y to z; its transmittance and multiplicity are left out. from_y, from_z: leaving()
+/// along it, either way.
 inline JoinedPath joined_path(const Strategies& strategies, const PathVertex& y,
                               const EndDirection& from_y, const PathVertex& z,
-                              const EndDirection& from_z, const JoiningCurve& curve) {
+                              const EndDirection& from_z, const Join& curve) {
   const double value = y.weight * from_y.strength * from_z.strength * z.weight /
                        (z.index * z.index * curve.spreading);
   if (!(value > 0)) return {};
@@ -77,8 +68,9 @@ inline JoinedPath joined_path(const Strategies& strategies, const PathVertex& y,
       rivals(z, z_from_y, from_z.density, strategies.most_light() - y.vertices, y.vertices, share) /
           heuristic(y.choice());
   const double wider = curve.spreading * std::pow(z.index / curve.optical_path, 2);
-  const double ours = (y.end || z.end ? 1 : heuristic(share)) *
-                      heuristic(found_share(curve.passages, curve.fresnel, curve.hollows, wider));
+  const double ours =
+      (y.end || z.end ? 1 : heuristic(share)) *
+      heuristic(found_share(curve.passages.count, curve.fresnel, curve.hollows, wider));
   return {value, ours / (ours + others), from_z.pixel};
 }
 
@@ -116,7 +108,7 @@ inline void weigh_in_beam(const Transport& transport, const Space& space, const 
 /// that the way comes from. The curve's spreading is what thins the light.
 inline JoinedPath joined_to_beam(const Transport& transport, const EndPosition& end, double density,
                                  const PathVertex& z, const EndDirection& from_z,
-                                 const JoiningCurve& curve) {
+                                 const Join& curve) {
   PathVertex y = end_vertex(transport.strategies, end);
   y.weight = 1;
   const EndDirection from_y{curve.start_direction, density, transport.lights.power() * density};
@@ -128,7 +120,10 @@ inline JoinedPath joined_to_beam(const Transport& transport, const EndPosition& 
                                  const EndDirection& from_z) {
   const LightDisk& disk = transport.lights.beam_of(end).disk;
   return joined_to_beam(transport, end, disk.density(way.place), z, from_z,
-                        {disk.axis(), -way.start_direction, way.thinning, way.optical_depth});
+                        {.start_direction = disk.axis(),
+                         .end_direction = -way.start_direction,
+                         .spreading = way.thinning,
+                         .optical_depth = way.optical_depth});
 }
 
 }  // namespace flatspeckle::grin

@@ -7,9 +7,9 @@
 #include "core/numbers/random.h"
 #include "grin/render/transport/beam_join.h"
 #include "grin/render/transport/film.h"
-#include "grin/render/transport/join_promises.h"
 #include "grin/render/transport/path_vertex.h"
 #include "grin/render/transport/subpath.h"
+#include "grin/render/transport/transport_counts.h"
 
 namespace flatspeckle::grin {
 
@@ -231,7 +231,10 @@ class Bidirectional {
     const double depth = space_.least_depth(z.point, {*place, z.point.part});
     const JoinedPath path =
         joined_to_beam(transport_, end, density, z, facing(sensor(), z, -light.direction),
-                       {light.direction, light.direction, 1, depth});
+                       {.start_direction = light.direction,
+                        .end_direction = light.direction,
+                        .spreading = 1,
+                        .optical_depth = depth});
     return path.value * path.weight * std::exp(-depth);
   }
   void join_to_end(const PathVertex& y, const PathVertex& z) {
@@ -269,7 +272,10 @@ class Bidirectional {
     const double length = way.norm();
     const double depth = space_.least_depth(y.point, z.point);
     const Vec3 direction = way / length;
-    const JoiningCurve line{direction, direction, length * length, depth};
+    const Join line{.start_direction = direction,
+                    .end_direction = direction,
+                    .spreading = length * length,
+                    .optical_depth = depth};
     const JoinedPath path =
         joined_path(transport_.strategies, y, facing(transport_.lights, y, direction), z,
                     facing(sensor(), z, -direction), line);
@@ -316,10 +322,7 @@ class Bidirectional {
     if (!curve) return;
     const EndDirection from_y = leaving(transport_, transport_.lights, y, curve->start_direction);
     const EndDirection from_z = leaving(transport_, sensor(), z, -curve->end_direction);
-    const JoiningCurve as_weighed{curve->start_direction, curve->end_direction,  curve->spreading,
-                                  curve->optical_depth,   curve->passages.count, curve->fresnel,
-                                  curve->hollows,         curve->optical_path};
-    const JoinedPath path = joined_path(transport_.strategies, y, from_y, z, from_z, as_weighed);
+    const JoinedPath path = joined_path(transport_.strategies, y, from_y, z, from_z, *curve);
     const double value =
         path.value * path.weight * curve->transmittance * curve->multiplicity / chance;
     promised_[at_].brought += value;

@@ -10,59 +10,40 @@
 
 namespace flatspeckle::grin {
 
-NearestPlace::NearestPlace(const Sensor& sensor, const Surface& boundary)
-    : place_(std::visit([&](const auto& kind) { return place(kind, boundary); }, sensor)) {}
+namespace {
 
-NearestPlace::Place NearestPlace::place(const Camera& camera, const Surface&) {
-  return Point{camera.x};
+NearestPlace nearest_place(const Camera& camera, const Surface&) {
+  return [x = camera.x](const Vec3&) { return x; };
 }
 
-NearestPlace::Place NearestPlace::place(const AreaDetector& detector, const Surface& boundary) {
+/// Of a tangent plane, or the sphere's in front of it.
+NearestPlace nearest_place(const AreaDetector& detector, const Surface& boundary) {
   const Vec3 normal = grin::normal(boundary, detector.centre);
-  const Vec3 right = normal.cross(detector.up).normalized();
+  const Vec3 right = normal.cross(detector.up).normalized(), up = right.cross(normal);
   const auto* sphere = std::get_if<Sphere>(&boundary);
-  return Rectangle{detector.centre,
-                   normal,
-                   right,
-                   right.cross(normal),
-                   detector.width / 2,
-                   detector.height / 2,
-                   sphere ? sphere->radius : 0};
+  return [=, centre = detector.centre, half_width = detector.width / 2,
+          half_height = detector.height / 2,
+          radius = sphere ? sphere->radius : 0](const Vec3& x) -> Vec3 {
+    const Vec3 away = x - centre;
+    const double u = std::clamp(away.dot(right), -half_width, half_width);
+    const double v = std::clamp(away.dot(up), -half_height, half_height);
+    const Vec3 flat = centre + u * right + v * up;
+    if (radius == 0) return flat;
+    const double height = std::max(0.0, radius * radius - u * u - v * v);
+    return flat - (radius - std::sqrt(height)) * normal;
+  };
 }
 
 /// As of the square around it.
-NearestPlace::Place NearestPlace::place(const RadialDetector& detector, const Surface& boundary) {
+NearestPlace nearest_place(const RadialDetector& detector, const Surface& boundary) {
   const Vec3 normal = grin::normal(boundary, detector.centre);
   const double side = 2 * detector.radius;
-  return place(AreaDetector{detector.centre, frame_across(normal).col(0), side, side, {}, 0},
-               boundary);
+  return nearest_place(
+      AreaDetector{detector.centre, frame_across(normal).col(0), side, side, {}, 0}, boundary);
 }
 
-NearestPlace::Place NearestPlace::place(const DirectionalDetector& detector,
-                                        const Surface& boundary) {
-  return in_front(detector.forward, boundary);
-}
-
-NearestPlace::Place NearestPlace::place(const PolarDetector& detector, const Surface& boundary) {
-  return in_front(detector.axis, boundary);
-}
-
-NearestPlace::Place NearestPlace::in_front(const Vec3& forward, const Surface& boundary) {
-  if (const auto* box = std::get_if<Box>(&boundary)) return Faces{*box, forward};
-  return HalfSphere{std::get<Sphere>(boundary), forward};
-}
-
-Vec3 NearestPlace::Rectangle::from(const Vec3& x) const {
-  const Vec3 away = x - centre;
-  const double u = std::clamp(away.dot(right), -half_width, half_width);
-  const double v = std::clamp(away.dot(up), -half_height, half_height);
-  const Vec3 flat = centre + u * right + v * up;
-  if (radius == 0) return flat;
-  const double height = std::max(0.0, radius * radius - u * u - v * v);
-  return flat - (radius - std::sqrt(height)) * normal;
-}
-
-Vec3 NearestPlace::Faces::from(const Vec3& x) const {
+/// On the faces that light of this direction leaves through.
+Vec3 nearest_on(const Box& box, const Vec3& forward, const Vec3& x) {
   double least = std::numeric_limits<double>::infinity();
   int nearest = 0;
   const auto face = [&](int axis) { return forward[axis] > 0 ? box.high[axis] : box.low[axis]; };
@@ -76,15 +57,26 @@ Vec3 NearestPlace::Faces::from(const Vec3& x) const {
   found[nearest] = face(nearest);
   return found;
 }
-
-Vec3 NearestPlace::HalfSphere::from(const Vec3& x) const {
+/// On the half that light of this direction leaves through.
+Vec3 nearest_on(const Sphere& sphere, const Vec3& forward, const Vec3& x) {
   Vec3 away = x - sphere.centre;
   away -= std::min(0.0, away.dot(forward)) * forward;
   const double length = away.norm();
   return sphere.centre + (length > 0 ? sphere.radius / length * away : sphere.radius * forward);
 }
-
-namespace {
+NearestPlace in_front(const Vec3& forward, const Surface& boundary) {
+  if (const auto* box = std::get_if<Box>(&boundary))
+    return [box = *box, forward](const Vec3& x) { return nearest_on(box, forward, x); };
+  return [sphere = std::get<Sphere>(boundary), forward](const Vec3& x) {
+    return nearest_on(sphere, forward, x);
+  };
+}
+NearestPlace nearest_place(const DirectionalDetector& detector, const Surface& boundary) {
+  return in_front(detector.forward, boundary);
+}
+NearestPlace nearest_place(const PolarDetector& detector, const Surface& boundary) {
+  return in_front(detector.axis, boundary);
+}
 
 using std::numbers::pi;
 
@@ -159,7 +151,8 @@ DepthImportance::DepthImportance(const Stage& stage, const Lights& lights,
     extinction_[part] = mean_density(stage, part) * stage.medium_in(part).mu_t();
   const std::vector<PathPoint> starts = starts_of(lights);
   for (const Sensor& sensor : sensors) {
-    Destination to{.place = NearestPlace(sensor, boundary_)};
+    Destination to{.nearest = std::visit(
+                       [&](const auto& kind) { return nearest_place(kind, boundary_); }, sensor)};
     const Vec3 direction = way(starts[0], to).direction;
     to.decay = decay(stage, direction);
     find_shares(to, starts);
@@ -219,7 +212,7 @@ void DepthImportance::find_drift(const Stage& stage, const PathPoint& start) {
 }
 
 DepthImportance::Way DepthImportance::way(const PathPoint& p, const Destination& to) const {
-  const Vec3 chord = to.place(p.x) - p.x;
+  const Vec3 chord = to.nearest(p.x) - p.x;
   const double length = chord.norm();
   if (!(length > 0)) return {Vec3::Zero()};
   Way found{chord / length, {length, 0}};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <span>
 
 #include "core/numbers/complex.h"
@@ -66,7 +67,13 @@ struct TimeBins {
 /// Sums of a batch: [pixel][TimeBins::sums].
 class Film {
  public:
-  Film(int pixels, const TimeBins& bins, std::span<Complex> sums);
+  Film([[maybe_unused]] int pixels, const TimeBins& bins, std::span<Complex> sums)
+      : sums_(sums),
+        bins_(bins),
+        per_pixel_(bins.sums()),
+        bins_per_length_(bins.count > 1 ? bins.count / (bins.last - bins.first) : 0) {
+    assert(sums.size() == static_cast<std::size_t>(pixels) * bins.sums());
+  }
 
   void add(int pixel, double value, double optical_path) {
     Complex* const own = sums_.data() + static_cast<std::size_t>(pixel) * per_pixel_;
@@ -77,10 +84,6 @@ class Film {
     if (!bins_.moments) return;
     own[bins_.parts()] += value * optical_path;
     own[bins_.parts() + 1] += value * optical_path * optical_path;
-  }
-  /// Steady state.
-  void add(int pixel, double value) {
-    sums_[static_cast<std::size_t>(pixel) * per_pixel_] += value;
   }
 
   bool has_derivatives() const { return bins_.derivatives > 0; }

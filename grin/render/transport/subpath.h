@@ -11,8 +11,8 @@ namespace flatspeckle::grin {
 /// Whether a short path (Strategies) goes on from here: the next way may be one that cannot be
 /// joined.
 inline bool short_path_goes_on(const Space& space, const PathVertex& here) {
-  if (!here.end) return !space.joins_all();
-  return here.end->is_beam || (here.end->is_point && !space.joins_all());
+  if (!here.end) return space.joins_through();
+  return here.end->is_beam || (here.end->is_point && space.joins_through());
 }
 
 /// Lights have no other choice than that of sample_position.

@@ -2,12 +2,24 @@
 
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include "core/run/interrupt.h"
 #include "grin/rays/connections/connection.h"
 #include "grin/render/transport/film.h"
 
 namespace flatspeckle::grin {
+
+/// What joins promise to a sensor, and what those that are made bring, each over its chance.
+struct JoinPromise {
+  double joins = 0;  ///< made or not
+  double made = 0, brought = 0;
+  double hits = 0;   ///< what came without a join
+  double beams = 0;  ///< what joins to beams brought
+};
+
+/// [pair of paths][sensor].
+using JoinPromises = std::vector<JoinPromise>;
 
 /// What light paths cost.
 struct TransportCounts {

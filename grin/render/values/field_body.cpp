@@ -4,13 +4,22 @@
 #include <cmath>
 #include <limits>
 
+#include "core/keys/number_text.h"
 #include "grin/media/geometry/vector_values.h"
-#include "grin/rays/surfaces/lens_values.h"
 #include "grin/rays/surfaces/mesh_surface.h"
 #include "grin/rays/surfaces/triangle_mesh.h"
 #include "grin/render/stage/stage.h"
 
 namespace flatspeckle::grin {
+
+Lens lens_of(const std::string& key, std::span<const double> numbers) {
+  const double radius = positive(key + ", radius", numbers[3]);
+  const double thickness = positive(key + ", thickness", numbers[6]);
+  if (const auto lens = Lens::make(vector_of(numbers), radius, numbers[4], numbers[5], thickness))
+    return *lens;
+  throw InputError(key, number_text({numbers.begin(), numbers.begin() + lens_numbers}),
+                   "radii of curvature must not be below the radius, and faces not meet within it");
+}
 
 namespace {
 
@@ -97,7 +106,8 @@ std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& value
   std::vector<Surface> given;
   for (const Box& box : boxes_of(keys, values.body_box)) given.push_back(box);
   for (const Sphere& sphere : spheres_of(keys, values.body_sphere)) given.push_back(sphere);
-  for (const Lens& lens : lenses_of(keys, values.body_lens)) given.push_back(lens);
+  for (const auto numbers : parts_of(keys.read(values.body_lens), lens_numbers))
+    given.push_back(lens_of(keys.name(values.body_lens), numbers));
   const std::string& file = keys.read(values.body_mesh);
   const auto body = one_surface("body", body_key_names, given);
   if (file.empty()) return body;

@@ -1,14 +1,24 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "core/keys/keys.h"
 #include "grin/media/fields/scene_field.h"
 #include "grin/media/index/index_field.h"
+#include "grin/rays/surfaces/lens.h"
 #include "grin/rays/surfaces/signed_distance.h"
 
 namespace flatspeckle::grin {
+
+// The numbers of a lens as keys have them.
+inline constexpr int lens_numbers = 7;
+inline constexpr const char* lens_words = "x y z radius front back thickness";
+
+/// Of that many numbers. Throws InputError, naming the key, for what is no lens.
+Lens lens_of(const std::string& key, std::span<const double> numbers);
 
 /// The keys that name a body.
 inline constexpr const char* body_key_names = "body_box, body_sphere, body_lens, body_mesh";

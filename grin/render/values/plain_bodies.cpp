@@ -6,7 +6,7 @@
 
 #include "core/keys/number_text.h"
 #include "grin/media/geometry/vector_values.h"
-#include "grin/rays/surfaces/lens_values.h"
+#include "grin/render/values/field_body.h"
 
 namespace flatspeckle::grin {
 

@@ -8,8 +8,8 @@
 
 #include "core/keys/number_text.h"
 #include "core/keys/written_number.h"
+#include "grin/media/fields/any_index_field.h"
 #include "grin/media/fields/scene_field.h"
-#include "grin/render/methods/field_parameter.h"
 #include "grin/render/sensors/sensor_edges.h"
 #include "grin/render/transport/path_score.h"
 #include "grin/render/values/step_choice.h"

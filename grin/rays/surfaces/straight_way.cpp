@@ -1,10 +1,8 @@
-#include "grin/rays/surfaces/lens_way.h"
+#include "grin/rays/surfaces/straight_way.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-
-#include "grin/rays/surfaces/straight_way.h"
 
 namespace flatspeckle::grin {
 
