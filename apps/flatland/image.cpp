@@ -288,27 +288,29 @@ std::optional<mc::FieldDraw> exact_fields(const mc::LineScene& line, const mc::I
   };
 }
 
-struct Fields {
+struct ImagedFields {
   mc::FieldDraw draw;
   std::string how;
 };
 
 /// Nothing where a signal came.
-std::optional<Fields> fields_of(const mc::LineScene& line, const mc::ImagingTask& task,
-                                const std::string& method, double wave_tolerance,
-                                const std::optional<std::int64_t>& paths_per_field) {
-  if (task.repeats == 0) return Fields{{}, "what is expected, without frames"};
+std::optional<ImagedFields> fields_of(const mc::LineScene& line, const mc::ImagingTask& task,
+                                      const std::string& method, double wave_tolerance,
+                                      const std::optional<std::int64_t>& paths_per_field) {
+  if (task.repeats == 0) return ImagedFields{{}, "what is expected, without frames"};
   if (method == "wave") {
     auto draw = exact_fields(line, task, wave_tolerance);
     if (!draw) return std::nullopt;
-    return Fields{std::move(*draw), "wave: placements by the exact solver, less their mean field"};
+    return ImagedFields{std::move(*draw),
+                        "wave: placements by the exact solver, less their mean field"};
   }
   const auto paths = paths_per_field ? static_cast<std::uint64_t>(*paths_per_field)
                                      : mc::paths_for_fields(line, task.seed, task.threads);
   if (!paths) return std::nullopt;
   const mc::Plan plan = mc::make_plan(line.scene, mc::ReversedPaths::automatic);
-  return Fields{mc::fields_by_paths(line.scene, plan, task.seed, *paths),
-                "mc: fields of " + std::to_string(*paths) + " light paths; " + plan.describe()};
+  return ImagedFields{
+      mc::fields_by_paths(line.scene, plan, task.seed, *paths),
+      "mc: fields of " + std::to_string(*paths) + " light paths; " + plan.describe()};
 }
 
 void print_pictures(const mc::LineScene& line, const mc::ImagingTask& task,

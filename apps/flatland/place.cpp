@@ -80,7 +80,7 @@ void add_keys(Keys& keys, PlaceKeys& values) {
 }
 
 /// What is drawn: disks of these radii, one each, or points (radii empty).
-struct Drawing {
+struct PlacementDraw {
   Domain box;
   Kind kind = Kind::poisson;
   std::vector<double> radii;
@@ -126,8 +126,8 @@ std::size_t number_of(const PlaceKeys& values, const Domain& box, double mean_ar
   return static_cast<std::size_t>(std::llround(number));
 }
 
-Drawing make_drawing(const Keys& keys, const PlaceKeys& values) {
-  Drawing drawing;
+PlacementDraw make_drawing(const Keys& keys, const PlaceKeys& values) {
+  PlacementDraw drawing;
   drawing.box = {Domain::Kind::box, keys.required(values.width), keys.required(values.depth)};
   const auto& radii = keys.read(values.radii);
   const bool disks = !radii.empty();
@@ -150,7 +150,7 @@ Drawing make_drawing(const Keys& keys, const PlaceKeys& values) {
   return drawing;
 }
 
-Placement draw(const Drawing& drawing, std::uint64_t seed, std::uint64_t realization) {
+Placement draw(const PlacementDraw& drawing, std::uint64_t seed, std::uint64_t realization) {
   RandomStream random(seed, static_cast<std::uint64_t>(Stream::placement), realization);
   if (drawing.radii.empty())
     return draw_placement(
@@ -164,7 +164,7 @@ Placement draw(const Drawing& drawing, std::uint64_t seed, std::uint64_t realiza
   return placement;
 }
 
-std::string csv_text(const Drawing& drawing, const Placement& placement,
+std::string csv_text(const PlacementDraw& drawing, const Placement& placement,
                      const std::string& command_line) {
   const bool disks = !drawing.radii.empty();
   std::ostringstream text;
@@ -182,7 +182,7 @@ std::string csv_text(const Drawing& drawing, const Placement& placement,
   return text.str();
 }
 
-MeasuredStructureFactor measure(const Drawing& drawing, std::uint64_t seed,
+MeasuredStructureFactor measure(const PlacementDraw& drawing, std::uint64_t seed,
                                 std::uint64_t realizations) {
   // Almost four times the peak of a dense fluid, in shells narrow against it.
   const double q_max =
@@ -196,7 +196,7 @@ MeasuredStructureFactor measure(const Drawing& drawing, std::uint64_t seed,
   return measured;
 }
 
-void write_drawing(ResultFile& file, const Drawing& drawing) {
+void write_drawing(ResultFile& file, const PlacementDraw& drawing) {
   const ResultGroup root(file, placement_table), scene(file, scene_table);
   root.attribute("placement", std::string(placement_word(drawing.kind)));
   root.attribute("count", static_cast<std::uint64_t>(drawing.count));
@@ -206,7 +206,7 @@ void write_drawing(ResultFile& file, const Drawing& drawing) {
   scene.attribute("depth", drawing.box.depth);
 }
 
-int save_structure(const PlaceKeys& values, const Drawing& drawing, const Session& session) {
+int save_structure(const PlaceKeys& values, const PlacementDraw& drawing, const Session& session) {
   return session.once(ResultFile(values.structure), [&](ResultFile& file) -> std::optional<Made> {
     const auto realizations = static_cast<std::uint64_t>(values.realizations);
     std::optional<HardDiskFluid> fluid;
@@ -229,7 +229,7 @@ int draw_one(const Subcommand& command, PlaceKeys& values) {
   const Keys& keys = command.keys();
   const Session session(command.text(), keys, values.run, command.only_prints(),
                         Session::Out::other);
-  const Drawing drawing = make_drawing(keys, values);
+  const PlacementDraw drawing = make_drawing(keys, values);
   if (!keys.read(values.structure).empty()) keys.read(values.realizations);
   if (!command.settle()) return ExitStatus::done;
   if (!values.structure.empty()) check_result_path(values.structure);

@@ -172,7 +172,7 @@ std::vector<std::string> SearchAxes::at_bounds(const SearchPlace& place, double 
   return keys;
 }
 
-Objective::Objective(std::string key, const std::string& text)
+SearchObjective::SearchObjective(std::string key, const std::string& text)
     : key_(std::move(key)), text_(text), path_(text.substr(0, text.find('['))) {
   if (path_ == text) return;
   std::string inside = text.substr(path_.size() + 1);
@@ -189,14 +189,15 @@ Objective::Objective(std::string key, const std::string& text)
     throw InputError(key_, text, "must be a dataset of the result, as total or image[3,4]");
 }
 
-const CollectedDataset& Objective::dataset(const CollectedResult& result) const {
+const CollectedDataset& SearchObjective::dataset(const CollectedResult& result) const {
   const CollectedDataset* const set = result.find(path_);
   if (set == nullptr || !is_plain(*set))
     throw InputError(key_, text_, "must be a real number of the result, as " + names_in(result));
   return *set;
 }
 
-std::size_t Objective::place_in(const CollectedResult& result, const CollectedDataset& set) const {
+std::size_t SearchObjective::place_in(const CollectedResult& result,
+                                      const CollectedDataset& set) const {
   if (index_.empty() && set.count() == 1) return 0;
   std::size_t place = 0;
   std::vector<std::string> extents;
@@ -215,12 +216,12 @@ std::size_t Objective::place_in(const CollectedResult& result, const CollectedDa
   return place;
 }
 
-double Objective::of(const CollectedResult& result) const {
+double SearchObjective::of(const CollectedResult& result) const {
   const CollectedDataset& set = dataset(result);
   return std::get<std::vector<double>>(set.values)[place_in(result, set)];
 }
 
-Evaluations::Evaluations(const ExperimentFamily& family, const Objective& objective,
+Evaluations::Evaluations(const ExperimentFamily& family, const SearchObjective& objective,
                          const EvaluationSettings& settings, const std::filesystem::path& path,
                          const JournalHead& head)
     : family_(family),

@@ -50,10 +50,10 @@ class SearchAxes {
 };
 
 /// A number of a result: "total", "sensors/through/total", "image[3,4]".
-class Objective {
+class SearchObjective {
  public:
   /// Throws InputError, naming the key that asks for it.
-  Objective(std::string key, const std::string& text);
+  SearchObjective(std::string key, const std::string& text);
 
   const std::string& text() const { return text_; }
   /// Throws InputError where the result has no such number.
@@ -90,7 +90,7 @@ struct Evaluation {
 class Evaluations {
  public:
   /// path, head: of the journal, as PointJournal. Throws InputError, IoError.
-  Evaluations(const ExperimentFamily& family, const Objective& objective,
+  Evaluations(const ExperimentFamily& family, const SearchObjective& objective,
               const EvaluationSettings& settings, const std::filesystem::path& path,
               const JournalHead& head);
 
@@ -117,7 +117,7 @@ class Evaluations {
   std::uint64_t samples_of(const BatchJob& job, const SearchEffort& effort) const;
 
   const ExperimentFamily& family_;
-  const Objective& objective_;
+  const SearchObjective& objective_;
   EvaluationSettings settings_;
   std::unordered_map<std::string, std::uint64_t> places_;  ///< in the journal, by their names
   std::mutex mutex_;                                       ///< of places_, while a pool works

@@ -355,7 +355,7 @@ class Optimisation : public Call {
   OptimiseKeys values_;
   Subcommand command_;
   std::optional<SearchAxes> axes_;
-  std::optional<Objective> objective_;
+  std::optional<SearchObjective> objective_;
   EvaluationSettings settings_;
   SearchSettings search_;
   std::string inputs_;

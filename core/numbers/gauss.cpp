@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/algebra/symmetric.h"
+#include "core/numbers/symmetric.h"
 
 namespace flatspeckle {
 

@@ -38,9 +38,9 @@ void work(BatchPool& pool) {
 }
 
 /// Shows how a pool gets on, however long its batches are.
-class Watch {
+class ProgressWatch {
  public:
-  explicit Watch(BatchPool& pool)
+  explicit ProgressWatch(BatchPool& pool)
       : thread_([this, &pool](const std::stop_token& end) { show(pool, end); }) {}
 
  private:
@@ -69,7 +69,7 @@ PoolEnd run_pool(const RunList& runs, const PoolOptions& options) {
   std::thread server;
   if (options.server != nullptr) server = std::thread([&] { options.server->serve(pool); });
   {
-    const Watch watch(pool);
+    const ProgressWatch watch(pool);
 #pragma omp parallel num_threads(threads)
     work(pool);
   }

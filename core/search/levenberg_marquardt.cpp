@@ -4,7 +4,7 @@
 #include <limits>
 #include <map>
 
-#include "core/algebra/symmetric.h"
+#include "core/numbers/symmetric.h"
 #include "core/run/stopwatch.h"
 
 namespace flatspeckle {

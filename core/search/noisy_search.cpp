@@ -34,14 +34,14 @@ std::vector<GroupedSums> without_blocks(const GroupedSums& sums, std::size_t blo
 namespace {
 
 /// No exception may pass through the library, which is C.
-struct Call {
+struct LocalCall {
   const std::function<std::optional<double>(const UnitPlace&)>& value;
   nlopt_opt optimiser = nullptr;
   std::exception_ptr failure = {};
 };
 
 double called(unsigned size, const double* at, double*, void* data) {
-  Call& call = *static_cast<Call*>(data);
+  LocalCall& call = *static_cast<LocalCall*>(data);
   try {
     if (const auto found = call.value(UnitPlace(at, at + size))) return *found;
   } catch (...) {
@@ -155,9 +155,10 @@ SearchBox around_best(std::vector<FoundPlace> places) {
 }
 
 /// The search around one of the scattered places, round by round.
-class Refinement {
+class RefinedSearch {
  public:
-  Refinement(const SearchTask& task, const SearchSettings& settings, FoundPlace start, double step)
+  RefinedSearch(const SearchTask& task, const SearchSettings& settings, FoundPlace start,
+                double step)
       : task_(&task), settings_(&settings), best_(std::move(start)), step_(step) {}
 
   const FoundPlace& best() const { return best_; }
@@ -244,17 +245,17 @@ std::string told(const FoundPlace& best, const SearchTask& task) {
 }
 
 /// Takes out those that are well below the best or have come to the same place.
-void drop_losers(std::vector<Refinement>& searches) {
+void drop_losers(std::vector<RefinedSearch>& searches) {
   constexpr double sure = 3;
-  std::ranges::stable_sort(searches, [](const Refinement& a, const Refinement& b) {
+  std::ranges::stable_sort(searches, [](const RefinedSearch& a, const RefinedSearch& b) {
     return is_better(a.best(), b.best());
   });
-  const Refinement first = searches.front();
-  std::vector<Refinement> kept;
-  for (const Refinement& search : searches) {
+  const RefinedSearch first = searches.front();
+  std::vector<RefinedSearch> kept;
+  for (const RefinedSearch& search : searches) {
     const double lead = first.best().measured.value - search.best().measured.value;
     const double noise = std::hypot(error(first.best().measured), error(search.best().measured));
-    const bool is_twin = std::ranges::any_of(kept, [&](const Refinement& other) {
+    const bool is_twin = std::ranges::any_of(kept, [&](const RefinedSearch& other) {
       return distance(other.best().place, search.best().place) < 2 * search.step();
     });
     if (kept.empty() || (!is_twin && lead <= sure * noise)) kept.push_back(search);
@@ -262,9 +263,9 @@ void drop_losers(std::vector<Refinement>& searches) {
   searches = std::move(kept);
 }
 
-void refine(std::vector<Refinement>& searches, const SearchTask& task) {
-  while (std::ranges::any_of(searches, [](const Refinement& one) { return !one.has_ended(); })) {
-    for (Refinement& search : searches)
+void refine(std::vector<RefinedSearch>& searches, const SearchTask& task) {
+  while (std::ranges::any_of(searches, [](const RefinedSearch& one) { return !one.has_ended(); })) {
+    for (RefinedSearch& search : searches)
       if (!search.has_ended()) search.go_on();
     drop_losers(searches);
     task.tell(std::to_string(searches.size()) +
@@ -292,7 +293,7 @@ void local_search(const UnitPlace& start, double first, double last, int most,
   const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> made(
       nlopt_create(size == 1 ? NLOPT_LN_NELDERMEAD : NLOPT_LN_BOBYQA, size), nlopt_destroy);
   nlopt_opt optimiser = made.get();
-  Call call{value, optimiser};
+  LocalCall call{value, optimiser};
   nlopt_set_max_objective(optimiser, called, &call);
   nlopt_set_lower_bounds1(optimiser, 0);
   nlopt_set_upper_bounds1(optimiser, 1);
@@ -344,13 +345,13 @@ SearchEnd noisy_search(const SearchTask& task, const SearchSettings& settings) {
   });
   const double of_each = static_cast<double>(count) / static_cast<double>(task.choices);
   const double apart = std::pow(of_each, -1 / static_cast<double>(task.dimensions));
-  std::vector<Refinement> searches;
+  std::vector<RefinedSearch> searches;
   for (const FoundPlace& start : starts_of(places, settings.starts, apart))
     searches.emplace_back(task, settings, start, std::min(0.5 * apart, 0.25));
   task.tell(std::to_string(places.size()) + " scattered places, " +
             told(searches.front().best(), task));
   end.finished = end.finished && until_spent([&] { refine(searches, task); });
-  for (const Refinement& search : searches) end.best.push_back(search.best());
+  for (const RefinedSearch& search : searches) end.best.push_back(search.best());
   std::ranges::stable_sort(end.best, is_better);
   if (end.best.size() > 1) return end;
   const auto others = starts_of(places, count, apart);

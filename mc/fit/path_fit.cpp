@@ -8,7 +8,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 
-#include "core/algebra/symmetric.h"
+#include "core/numbers/symmetric.h"
 #include "core/run/interrupt.h"
 #include "core/run/stopwatch.h"
 #include "mc/fit/fit_report.h"

@@ -180,7 +180,7 @@ class CovarianceRefiner {
         top.push_back({slab_.optical_depth(layer) * (light.top + view.top)});
         bottom.push_back({slab_.optical_depth(layer) * (light.bottom + view.bottom)});
       }
-      const auto outside = entering(top, bottom);
+      const auto outside = mc::entering(top, bottom);
       C value{};
       for (std::size_t l = 0; l < slab_.layers.size(); ++l) {
         const auto& layer = slab_.layers[l];
@@ -395,23 +395,23 @@ Refined slab_covariance(const Scene& scene, bool reversed, const Refinement& ref
     return finite_ends_covariance(scene, refinement, [&](const Scene& of_plane_waves) {
       return slab_covariance(of_plane_waves, reversed, refinement, change);
     });
-  const auto covariance =
-      scene.medium.dimension == 3 ? changed_covariance<Space> : changed_covariance<Plane>;
+  const auto covariance = scene.medium.dimension == 3 ? changed_covariance<SpaceGeometry>
+                                                      : changed_covariance<PlaneGeometry>;
   return covariance(scene, reversed, refinement, change);
 }
 
 Refined slab_slopes(const Scene& scene, bool reversed, const Refinement& refinement,
                     BulkParameter parameter) {
-  const auto slopes =
-      scene.medium.dimension == 3 ? changing_covariance<Space> : changing_covariance<Plane>;
+  const auto slopes = scene.medium.dimension == 3 ? changing_covariance<SpaceGeometry>
+                                                  : changing_covariance<PlaneGeometry>;
   return slopes(scene, reversed, refinement, parameter);
 }
 
-template Refined slab_covariance(const SlabOf<Plane, double>&, const RequestOf<double>&, bool,
-                                 const Refinement&);
-template Refined slab_covariance(const SlabOf<Space, double>&, const RequestOf<Eigen::Vector3d>&,
+template Refined slab_covariance(const SlabOf<PlaneGeometry, double>&, const RequestOf<double>&,
                                  bool, const Refinement&);
-template Refined slab_covariance(const SlabOf<Space, Complex>&, const RequestOf<Eigen::Vector3d>&,
-                                 bool, const Refinement&);
+template Refined slab_covariance(const SlabOf<SpaceGeometry, double>&,
+                                 const RequestOf<Eigen::Vector3d>&, bool, const Refinement&);
+template Refined slab_covariance(const SlabOf<SpaceGeometry, Complex>&,
+                                 const RequestOf<Eigen::Vector3d>&, bool, const Refinement&);
 
 }  // namespace flatspeckle::mc

@@ -25,7 +25,7 @@ using std::numbers::pi;
 /// power that enters, of directions with sin > 0, and of their mirror images.
 class PlaneExits {
  public:
-  using Discrete = DiscreteSlabOf<Plane, double>;
+  using Discrete = DiscreteSlabOf<PlaneGeometry, double>;
   static constexpr double first_angle = -pi, angles = 2 * pi;
 
   PlaneExits(const Discrete& discrete, double light)
@@ -81,7 +81,7 @@ double sum_of_products(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
 /// the polar angle at the ordinates.
 class SpaceExits {
  public:
-  using Discrete = DiscreteSlabOf<Space, double>;
+  using Discrete = DiscreteSlabOf<SpaceGeometry, double>;
   static constexpr double first_angle = 0, angles = pi;
 
   SpaceExits(const Discrete& discrete, double light)
@@ -212,8 +212,8 @@ Refined flux_of_absorber(const Scene& scene, std::size_t angle_bins) {
 Refined slab_flux(const Scene& scene, std::size_t angle_bins, const Refinement& refinement) {
   if (scene.medium.mu_s == 0) return flux_of_absorber(scene, angle_bins);
   return scene.medium.dimension == 3
-             ? refined_flux<Space, SpaceExits>(scene, angle_bins, refinement)
-             : refined_flux<Plane, PlaneExits>(scene, angle_bins, refinement);
+             ? refined_flux<SpaceGeometry, SpaceExits>(scene, angle_bins, refinement)
+             : refined_flux<PlaneGeometry, PlaneExits>(scene, angle_bins, refinement);
 }
 
 FluxJob slab_flux_job(const Scene& scene, std::size_t angle_bins, const Refinement& refinement) {

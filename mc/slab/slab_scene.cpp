@@ -51,7 +51,7 @@ SlabOf<Geometry, double> slab_of(const Scene& scene, double delay) {
           {{medium.mu_t, depth, medium.albedo, Geometry::law(scene, delay)}}};
 }
 
-template SlabOf<Plane, double> slab_of<Plane>(const Scene&, double);
-template SlabOf<Space, double> slab_of<Space>(const Scene&, double);
+template SlabOf<PlaneGeometry, double> slab_of<PlaneGeometry>(const Scene&, double);
+template SlabOf<SpaceGeometry, double> slab_of<SpaceGeometry>(const Scene&, double);
 
 }  // namespace flatspeckle::mc

@@ -260,7 +260,7 @@ TEST_CASE(
 TEST_CASE("a wide lens sees the glints of a beam in a glass ball as rays say") {
   const RenderScene scene = glints(lens_at, 1.2);
   const Space space(Homogeneous{glass - 1}, scene.stage);
-  const Lights lights(scene.lights, scene.stage, [](const PathPoint&) { return 1.0; });
+  const StageLights lights(scene.lights, scene.stage, [](const PathPoint&) { return 1.0; });
   const SensorEnd lens(scene.sensors[0], scene.stage);
   RandomStream random(9, 98, 0);
   constexpr int rays = 1000000;

@@ -14,7 +14,7 @@ using std::numbers::pi;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 template <class Space>
-Lights lights_in(const Surface& boundary, std::vector<Light> lights, const Space& space) {
+StageLights lights_in(const Surface& boundary, std::vector<Light> lights, const Space& space) {
   return {std::move(lights), empty_stage(boundary),
           [space](const PathPoint& p) { return space.index(p); }};
 }
@@ -39,7 +39,7 @@ FibreLight tilted_fibre(Spread spread) {
 
 /// Mean of strength / density over what is sampled: the power.
 template <class Space>
-Average sampled_power(const Lights& lights, const Space& space, std::uint64_t seed) {
+Average sampled_power(const StageLights& lights, const Space& space, std::uint64_t seed) {
   Average power;
   RandomStream random(seed, 81, 0);
   for (int i = 0; i < 100000; ++i) {
@@ -61,7 +61,7 @@ std::string complaint(const Surface& boundary, std::vector<Light> lights) {
 
 /// Shares of equal parts of a surface that is told apart by `part`.
 template <class Part>
-void check_positions(const Lights& lights, const Part& part, const std::vector<double>& shares,
+void check_positions(const StageLights& lights, const Part& part, const std::vector<double>& shares,
                      std::uint64_t seed) {
   std::vector<double> counts(shares.size());
   RandomStream random(seed, 82, 0);
@@ -78,7 +78,7 @@ int of(double share, int parts) {
 
 TEST_CASE("lights sample directions by their density") {
   RandomStream random(1, 83, 0);
-  const auto check = [&](const Lights& lights, std::uint64_t seed) {
+  const auto check = [&](const StageLights& lights, std::uint64_t seed) {
     const EndPosition at = lights.sample_position(TiltedSpace{}, random);
     const Vec3 axis = Vec3(1, 2, -3).normalized();
     check_directions([&](RandomStream& r) { return lights.sample_direction(at, r); },
@@ -167,7 +167,7 @@ TEST_CASE("Gaussian beams and fibres sample positions by their density, which is
   };
   for (const Light& light : {Light{BeamLight{centre, along, radius, 2, Spread::gaussian}},
                              Light{FibreLight{centre, along, radius, 0.2, 2, Spread::gaussian}}}) {
-    const Lights lights = lights_in(test_box, {light}, UniformSpace{});
+    const StageLights lights = lights_in(test_box, {light}, UniformSpace{});
     check_positions(lights, ring, shares, 10);
     RandomStream random(1, 86, 0);
     for (int i = 0; i < 100; ++i) {
@@ -184,7 +184,7 @@ TEST_CASE("strength integrated over positions and directions is the power") {
   const auto in_sphere = [&](Light light) {
     return lights_in(test_sphere, {light}, UniformSpace{n});
   };
-  const auto check = [&](const Lights& lights, double power, std::uint64_t seed) {
+  const auto check = [&](const StageLights& lights, double power, std::uint64_t seed) {
     CHECK(lights.power() == doctest::Approx(power).epsilon(1e-12));
     sampled_power(lights, UniformSpace{n}, seed).check(power);
   };
@@ -205,7 +205,7 @@ TEST_CASE("strength integrated over positions and directions is the power") {
   const double n0 = tilted.index({disk_light().centre});
   const double mean = n0 * n0 + (0.1 * 0.1 + 0.07 * 0.07) * 0.9 * 0.9 / 4;
   const double power = pi * mean * 2.5 * pi * 0.9 * 0.9;
-  const Lights lights = lights_in(test_box, {disk_light()}, tilted);
+  const StageLights lights = lights_in(test_box, {disk_light()}, tilted);
   sampled_power(lights, tilted, 7).check(power);
   CHECK(lights.power() == doctest::Approx(power).epsilon(2e-3));  // of 4096 points
 }
@@ -215,7 +215,7 @@ TEST_CASE("one of several lights is drawn by its power, and the sum of all is ri
   const std::vector<Light> mixed = {PointLight{Vec3(0, 0, 1), 2}, disk_light(),
                                     BeamLight{Vec3(0, 0, 1), Vec3(0, 1, 1), 0.3, 5},
                                     environment(0.01), PointLight{Vec3(1, 0, 2), 1e-9}};
-  const Lights lights = lights_in(test_box, mixed, UniformSpace{n});
+  const StageLights lights = lights_in(test_box, mixed, UniformSpace{n});
   double sum = 0;
   for (const Light& light : mixed) sum += lights_in(test_box, {light}, UniformSpace{n}).power();
   CHECK(lights.power() == doctest::Approx(sum).epsilon(1e-12));
@@ -248,7 +248,7 @@ TEST_CASE("a light that is hit is the light that is sampled") {
 }
 
 TEST_CASE("a face's value is its L/n^2 at any index and angle, and nothing is hit beside it") {
-  const Lights lights = lights_in(test_box, {disk_light()}, TiltedSpace{});
+  const StageLights lights = lights_in(test_box, {disk_light()}, TiltedSpace{});
   const auto value = [&](const Vec3& x, const Vec3& d) {
     double sum = 0;
     lights.hit(TiltedSpace{}, x, d.normalized(), [&](const EndHit& hit) { sum += hit.value; });
@@ -264,7 +264,7 @@ TEST_CASE("a face's value is its L/n^2 at any index and angle, and nothing is hi
 TEST_CASE("what a fibre's sampling says is what it is towards a direction") {
   RandomStream random(1, 87, 0);
   for (const Spread spread : {Spread::even, Spread::gaussian}) {
-    const Lights lights = lights_in(test_box, {tilted_fibre(spread)}, TiltedSpace{});
+    const StageLights lights = lights_in(test_box, {tilted_fibre(spread)}, TiltedSpace{});
     for (int i = 0; i < 1000; ++i) {
       const EndPosition at = lights.sample_position(TiltedSpace{}, random);
       const EndDirection to = lights.sample_direction(at, random);
@@ -278,8 +278,9 @@ TEST_CASE("what a fibre's sampling says is what it is towards a direction") {
 TEST_CASE("points and beams are not hit, beams not joined; a light may be in the body") {
   Stage stage = empty_stage(test_box);
   stage.bodies.push_back({Sphere{Vec3(0, 0, 1.5), 0.5}});
-  const Lights lights({PointLight{Vec3(0, 0, 1.2)}, BeamLight{Vec3(0, 0, 2.5), Vec3(0, 1, 0), 0.1}},
-                      stage, [](const PathPoint&) { return 1.0; });
+  const StageLights lights(
+      {PointLight{Vec3(0, 0, 1.2)}, BeamLight{Vec3(0, 0, 2.5), Vec3(0, 1, 0), 0.1}}, stage,
+      [](const PathPoint&) { return 1.0; });
   lights.hit(UniformSpace{}, Vec3(0, 0, 0.5), Vec3(0, 0, -1), [](const EndHit&) { CHECK(false); });
   RandomStream random(1, 85, 0);
   bool seen[2] = {};

@@ -121,7 +121,7 @@ std::optional<double> weight_in_beam(const Transport& transport, const Space& sp
   if (!transport.strategies.joins_beams || path.points.size() < 3) return {};
   RandomStream random(7, 91, 0);
   ConnectionStatistics statistics;
-  const Lights::Beam beam = transport.lights.beam_of(path.light);
+  const StageLights::Beam beam = transport.lights.beam_of(path.light);
   const auto way = space.plainest_way_to_beam(path.points[1], beam.light(), random, statistics);
   const Flight& first = path.edges[0].forth;
   if (!way || !(way->passages == first.passages) || (way->place - path.points[0].x).norm() > 1e-4)
@@ -202,7 +202,7 @@ Stage foggy_ball() {
 
 Transport transport_of(const Space& space, const Stage& stage, const Light& light,
                        const Sensor& sensor, const Strategies& strategies = {}) {
-  return {stage, Lights({light}, stage, [&](const PathPoint& p) { return space.index(p); }),
+  return {stage, StageLights({light}, stage, [&](const PathPoint& p) { return space.index(p); }),
           sensor_ends({sensor}, stage), strategies};
 }
 

@@ -74,7 +74,7 @@ struct Pair {
     CHECK(flight.end == Flight::End::boundary);
     return {flight.point.x, flight.direction};
   }
-  Lights lights() const {
+  StageLights lights() const {
     return {{light}, empty_stage(boundary), [this](const PathPoint& p) { return index(p); }};
   }
   SensorEnd end() const { return {sensor, empty_stage(boundary)}; }
@@ -82,7 +82,7 @@ struct Pair {
 
 /// From the sensor to where the light is hit.
 PixelMeans seen_from_sensor(const Pair& pair, std::uint64_t seed) {
-  const Lights lights = pair.lights();
+  const StageLights lights = pair.lights();
   const SensorEnd sensor = pair.end();
   PixelMeans picture(sensor);
   RandomStream random(seed, 91, 0);
@@ -100,7 +100,7 @@ PixelMeans seen_from_sensor(const Pair& pair, std::uint64_t seed) {
 
 /// From the light to where the sensor is hit.
 PixelMeans thrown_by_light(const Pair& pair, std::uint64_t seed) {
-  const Lights lights = pair.lights();
+  const StageLights lights = pair.lights();
   const SensorEnd sensor = pair.end();
   PixelMeans picture(sensor);
   RandomStream random(seed, 92, 0);
@@ -118,7 +118,7 @@ PixelMeans thrown_by_light(const Pair& pair, std::uint64_t seed) {
 
 /// A place on each, joined by a straight line: |J| = r^2.
 PixelMeans joined(const Pair& pair, std::uint64_t seed) {
-  const Lights lights = pair.lights();
+  const StageLights lights = pair.lights();
   const SensorEnd sensor = pair.end();
   PixelMeans picture(sensor);
   RandomStream random(seed, 93, 0);

@@ -29,9 +29,9 @@ namespace flatspeckle::wave {
 namespace {
 
 // Pixels of one axis whose centres may lie within `distance` of `place`: first and one past last.
-struct Range {
-  Range(double low, double step, double place, double distance, std::size_t from,
-        std::size_t count) {
+struct PixelRange {
+  PixelRange(double low, double step, double place, double distance, std::size_t from,
+             std::size_t count) {
     const auto limit = [&](double at) {
       return static_cast<std::size_t>(
           std::clamp(at, static_cast<double>(from), static_cast<double>(from + count)));
@@ -61,8 +61,8 @@ std::vector<MapTile> tiles(const MapGrid& grid, std::size_t pixels) {
 
 std::vector<std::uint32_t> ring_of_pixels(const MapGrid& grid, const MapTile& tile, Vec2 centre,
                                           double low, double high) {
-  const Range across(grid.low.x, grid.step().x, centre.x, high, tile.ix, tile.nx);
-  const Range along(grid.low.z, grid.step().z, centre.z, high, tile.iz, tile.nz);
+  const PixelRange across(grid.low.x, grid.step().x, centre.x, high, tile.ix, tile.nx);
+  const PixelRange along(grid.low.z, grid.step().z, centre.z, high, tile.iz, tile.nz);
   std::vector<std::uint32_t> found;
   for (std::size_t iz = along.first; iz < along.last; ++iz)
     for (std::size_t ix = across.first; ix < across.last; ++ix) {

@@ -37,13 +37,13 @@ FieldPlan field_plan(const Scene& scene, double tolerance) {
 }
 
 // Solves placements for what a scene asks for.
-struct Fields {
+struct PlacementFields {
   Scene scene;
   FieldPlan plan;
   SolveOptions options;
   std::optional<GradedFields> graded;  // where the index varies
 
-  Fields(const Scene& of, double tolerance, Method method)
+  PlacementFields(const Scene& of, double tolerance, Method method)
       : scene(of), plan(field_plan(of, tolerance)), options(batch_options(of, tolerance, method)) {
     if (scene.index && scene.index->is_around()) graded = graded_fields(scene);
   }
@@ -122,9 +122,9 @@ class Ensemble {
   const CovarianceRequest& request() const { return first_.scene.request; }
   std::size_t at(std::size_t shift) const { return channels() + entries() + 2 * changing_ * shift; }
 
-  Fields first_;
+  PlacementFields first_;
   std::size_t changing_;
-  std::vector<Fields> others_;
+  std::vector<PlacementFields> others_;
 };
 
 // Centres of disks are anywhere in the box; some placement would cover what is within a radius.

@@ -117,7 +117,7 @@ std::vector<Rim> narrowest(const Placement& placement) {
 }
 
 // A field and its derivative along r, divided by k.
-struct Trace {
+struct RimField {
   Complex field, slope;
 };
 
@@ -162,15 +162,15 @@ Traces scattered_traces(const WaveSolution& solution, std::span<const Vec2> poin
   return traces;
 }
 
-Trace incident(double k, double light_angle, Vec2 point, Vec2 normal) {
+RimField incident(double k, double light_angle, Vec2 point, Vec2 normal) {
   const Vec2 w = direction(light_angle);
   const Complex wave = std::polar(1.0, k * dot(w, point));
   return {wave, Complex(0, dot(w, normal)) * wave};
 }
 
-Trace total_inside(std::span<const Complex> beta, const ModeSet& modes,
-                   const std::vector<RimWave>& waves, double angle) {
-  Trace total{0, 0};
+RimField total_inside(std::span<const Complex> beta, const ModeSet& modes,
+                      const std::vector<RimWave>& waves, double angle) {
+  RimField total{0, 0};
   for (std::size_t i = 0; i < modes.modes.size(); ++i) {
     const int n = modes.modes[i].order;
     const double turn = modes.modes[i].odd ? std::sin(n * angle) : std::cos(n * angle);
@@ -181,7 +181,7 @@ Trace total_inside(std::span<const Complex> beta, const ModeSet& modes,
   return total;
 }
 
-double mismatch(Kind kind, const Trace& outside, const Trace& inside) {
+double mismatch(Kind kind, const RimField& outside, const RimField& inside) {
   if (kind == Kind::soft) return std::abs(outside.field);
   if (kind == Kind::hard) return std::abs(outside.slope);
   return std::max(std::abs(outside.field - inside.field), std::abs(outside.slope - inside.slope));
@@ -207,12 +207,13 @@ double residual_on(const WaveSolution& solution, const Rim& rim) {
   for (std::size_t light = 0; light < solution.light_angles().size(); ++light) {
     const auto beta = solution.coefficients(light).subspan(system.first(rim.disk));
     for (int i = 0; i < count; ++i) {
-      Trace outside = incident(system.k(), solution.light_angles()[light], points[i], normals[i]);
+      RimField outside =
+          incident(system.k(), solution.light_angles()[light], points[i], normals[i]);
       outside.field += scattered.field[light * count + i];
       outside.slope += scattered.slope[light * count + i];
-      const Trace inside = penetrable
-                               ? total_inside(beta, system.modes(rim.disk), inside_waves, angles[i])
-                               : Trace{};
+      const RimField inside =
+          penetrable ? total_inside(beta, system.modes(rim.disk), inside_waves, angles[i])
+                     : RimField{};
       worst = std::max(worst, mismatch(scatterer.kind, outside, inside));
     }
   }

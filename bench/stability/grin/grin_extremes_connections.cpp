@@ -34,7 +34,7 @@ struct Listed {
   std::vector<FoundConnection> curves;
   ConnectionStatistics statistics;
 };
-template <class Step = Sharma, IndexField F, Region R>
+template <class Step = Sharma, grin::IndexField F, Region R>
 Listed listed(const F& field, const R& region, const Vec3& p, const Vec3& q,
               const ConnectionOptions& options, int trials) {
   const ConnectionTrial<F, R, Step> trial(field, region, p, q, options);

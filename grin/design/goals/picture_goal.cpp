@@ -15,11 +15,11 @@ namespace {
 using Numbers = std::vector<double>;
 
 /// The four cubic splines that are there along an axis: the first pixel, values and derivatives.
-struct Spread {
+struct PixelShares {
   int first;
   std::array<double, 4> w, d;
 };
-Spread spread(const Picture& screen, double x) {
+PixelShares spread(const ScreenPicture& screen, double x) {
   const double pixel = screen.width / screen.pixels;
   const double at = x / pixel + 0.5 * screen.pixels - 0.5;  // a pixel's number at its middle
   const double cell = std::floor(std::clamp(at, -1e6, 1e6));
@@ -29,8 +29,8 @@ Spread spread(const Picture& screen, double x) {
 
 /// use(number of a pixel, weight, its derivatives by x and y) of those that a hit falls on.
 template <class Use>
-void each_pixel(const Picture& screen, const double* hit, const Use& use) {
-  const Spread x = spread(screen, hit[0]), y = spread(screen, -hit[1]);
+void each_pixel(const ScreenPicture& screen, const double* hit, const Use& use) {
+  const PixelShares x = spread(screen, hit[0]), y = spread(screen, -hit[1]);
   for (int j = 0; j < 4; ++j)
     for (int i = 0; i < 4; ++i) {
       const int column = x.first + i, row = y.first + j;
@@ -138,7 +138,7 @@ Numbers blurred(const Numbers& values, int pixels, std::size_t stride, std::size
 
 }  // namespace
 
-Numbers irradiance_of(const Picture& screen, std::span<const double> hits,
+Numbers irradiance_of(const ScreenPicture& screen, std::span<const double> hits,
                       std::span<const double> power) {
   Numbers light(static_cast<std::size_t>(screen.pixels) * screen.pixels, 0.0);
   for (std::size_t ray = 0; ray < power.size(); ++ray)
@@ -147,9 +147,9 @@ Numbers irradiance_of(const Picture& screen, std::span<const double> hits,
   return light;
 }
 
-Picture shown(const Picture& picture) {
+ScreenPicture shown(const ScreenPicture& picture) {
   const auto side = static_cast<std::size_t>(picture.pixels);
-  Picture shown = picture;
+  ScreenPicture shown = picture;
   shown.values = blurred(blurred(picture.values, picture.pixels, 1, side), picture.pixels, side, 1);
   const double sum = std::accumulate(shown.values.begin(), shown.values.end(), 0.0);
   for (double& v : shown.values) v /= sum;

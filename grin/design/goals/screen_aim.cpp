@@ -37,10 +37,10 @@ std::vector<double> numbers_of(std::string line, const std::string& where) {
 /// A picture of a file of numbers, a line for each row, with commas or spaces between. Throws
 /// InputError for one that is not square, has fewer than 4 rows, is dark or holds anything else
 /// than numbers from 0 to 1e50.
-Picture read_picture(const std::string& path, double width) {
+ScreenPicture read_picture(const std::string& path, double width) {
   std::ifstream file(path);
   if (!file) throw InputError("pictures", path, "cannot be read");
-  Picture picture{width, 0, {}};
+  ScreenPicture picture{width, 0, {}};
   std::size_t rows = 0, columns = 0, number = 0;
   for (std::string line; std::getline(file, line);) {
     ++number;
@@ -124,11 +124,12 @@ DesignTask ScreenAim::task(const RayWalk& walk, bool held_out) const {
           make_picture_goal(std::move(beams))};
 }
 
-std::vector<Picture> ScreenAim::shown_by(std::span<const double> readings, bool held_out) const {
+std::vector<ScreenPicture> ScreenAim::shown_by(std::span<const double> readings,
+                                               bool held_out) const {
   const auto power = powers(across(held_out));
-  std::vector<Picture> pictures;
+  std::vector<ScreenPicture> pictures;
   for (std::size_t v = 0; v < views_.size(); ++v) {
-    Picture picture = views_[v].picture;
+    ScreenPicture picture = views_[v].picture;
     picture.values =
         irradiance_of(picture, readings.subspan(2 * power.size() * v, 2 * power.size()), power);
     pictures.push_back(std::move(picture));

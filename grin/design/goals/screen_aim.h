@@ -24,7 +24,7 @@ class ScreenAim : public Aim {
  public:
   struct View {
     Vec3 direction;
-    Picture picture;  ///< as given
+    ScreenPicture picture;  ///< as given
   };
   struct Light {
     double beam_width, beam_waist;  ///< waist 0: even
@@ -38,7 +38,7 @@ class ScreenAim : public Aim {
   DesignTask task(const RayWalk& walk, bool held_out) const override;
   const std::vector<View>& views() const { return views_; }
   /// What rays show that meet the screens there, each as shown() would be: of power 1.
-  std::vector<Picture> shown_by(std::span<const double> readings, bool held_out) const;
+  std::vector<ScreenPicture> shown_by(std::span<const double> readings, bool held_out) const;
 
  private:
   static constexpr int held_out_across = 192;

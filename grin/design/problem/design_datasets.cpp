@@ -248,7 +248,7 @@ void write_pictures(const ResultGroup& root, const ScreenAim& aim,
   const auto pictures = aim.shown_by(readings, true);
   for (std::size_t v = 0; v < pictures.size(); ++v) {
     const auto& light = pictures[v].values;
-    const Picture asked = shown(aim.views()[v].picture);
+    const ScreenPicture asked = shown(aim.views()[v].picture);
     double square = 0;
     for (std::size_t p = 0; p < light.size(); ++p)
       square += std::pow(light[p] - asked.values[p], 2) / static_cast<double>(light.size());

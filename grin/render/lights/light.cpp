@@ -39,7 +39,7 @@ std::vector<Light> make_lights(const Keys& keys, const LightValues& values) {
   return make_all(keys, values);
 }
 
-Lights::Lights(const std::vector<Light>& lights, const Stage& stage, const IndexAt& index)
+StageLights::StageLights(const std::vector<Light>& lights, const Stage& stage, const IndexAt& index)
     : regions_(stage) {
   if (lights.empty())
     throw InputError(
@@ -61,7 +61,7 @@ Lights::Lights(const std::vector<Light>& lights, const Stage& stage, const Index
   settle_chances();
 }
 
-void Lights::settle_chances() {
+void StageLights::settle_chances() {
   const auto some_density = [](const auto& end) {
     RandomStream random(0, 0, 0);
     return end.density(end.sample(random).x);
@@ -78,7 +78,7 @@ void Lights::settle_chances() {
   }
 }
 
-EndPosition Lights::position(int light, const BoundaryPoint& at) const {
+EndPosition StageLights::position(int light, const BoundaryPoint& at) const {
   return std::visit(
       [&](const auto& end) -> EndPosition {
         return {.point = {at.x, regions_.at(at.x)},
@@ -91,7 +91,7 @@ EndPosition Lights::position(int light, const BoundaryPoint& at) const {
       source_[light].end);
 }
 
-Lights::PlaceInBeam Lights::beam_place(double stratum) const {
+StageLights::PlaceInBeam StageLights::beam_place(double stratum) const {
   double power = stratum * beam_power_;
   std::size_t i = 0;
   while (i + 1 < beams_.size() && power >= source_[beams_[i]].power)
@@ -99,29 +99,29 @@ Lights::PlaceInBeam Lights::beam_place(double stratum) const {
   return {i, std::min(power / source_[beams_[i]].power, 1.0)};
 }
 
-Lights::Beam Lights::beam_at(std::size_t number) const {
+StageLights::Beam StageLights::beam_at(std::size_t number) const {
   return {number, std::get<BeamLightEnd>(source_[beams_[number]].end).disk(), beam_power_};
 }
 
-Lights::Beam Lights::beam_of(const EndPosition& at) const {
+StageLights::Beam StageLights::beam_of(const EndPosition& at) const {
   const auto number = std::find(beams_.begin(), beams_.end(), at.light) - beams_.begin();
   return beam_at(static_cast<std::size_t>(number));
 }
 
-EndPosition Lights::beam_position(double stratum, double u, double v) const {
+EndPosition StageLights::beam_position(double stratum, double u, double v) const {
   return position_on(beam_place(stratum).number, u, v);
 }
 
-EndPosition Lights::beam_position(double stratum, double v) const {
+EndPosition StageLights::beam_position(double stratum, double v) const {
   const PlaceInBeam place = beam_place(stratum);
   return position_on(place.number, place.u, v);
 }
 
-EndPosition Lights::position_on(std::size_t beam, double u, double v) const {
+EndPosition StageLights::position_on(std::size_t beam, double u, double v) const {
   return position(beams_[beam], beam_at(beam).disk.from_square(u, v));
 }
 
-EndPosition Lights::draw_position(RandomStream& random) const {
+EndPosition StageLights::draw_position(RandomStream& random) const {
   const double u = random.uniform();
   int light = 0;
   while (light + 1 < static_cast<int>(source_.size()) && u >= source_[light].chance_so_far) ++light;
@@ -129,7 +129,7 @@ EndPosition Lights::draw_position(RandomStream& random) const {
       light, std::visit([&](const auto& end) { return end.sample(random); }, source_[light].end));
 }
 
-EndDirection Lights::sample_direction(const EndPosition& at, RandomStream& random) const {
+EndDirection StageLights::sample_direction(const EndPosition& at, RandomStream& random) const {
   const Source& from = source_[at.light];
   EndDirection to =
       std::visit([&](const auto& end) { return end.sample_direction(at, random); }, from.end);
@@ -137,12 +137,12 @@ EndDirection Lights::sample_direction(const EndPosition& at, RandomStream& rando
   return to;
 }
 
-EmissionChange Lights::by_index(const EndPosition& at, const Vec3& direction) const {
+EmissionChange StageLights::by_index(const EndPosition& at, const Vec3& direction) const {
   return std::visit([&](const auto& end) { return end.by_index(at, direction); },
                     source_[at.light].end);
 }
 
-EndDirection Lights::towards(const EndPosition& at, const Vec3& direction) const {
+EndDirection StageLights::towards(const EndPosition& at, const Vec3& direction) const {
   return std::visit([&](const auto& end) { return end.towards(at, direction); },
                     source_[at.light].end);
 }

@@ -28,12 +28,12 @@ std::vector<Light> make_lights(const Keys& keys, const LightValues& values);
 
 /// All lights of a scene; one of them is drawn for each path, by its power. `space` in the calls is
 /// asked for space.index(PathPoint) alone.
-class Lights {
+class StageLights {
  public:
   /// The index is that of the powers. Throws InputError naming the light for no lights, a light
   /// that is not inside the stage, a beam that leaves it at once, and sizes or powers of which
   /// nothing can be drawn.
-  Lights(const std::vector<Light>& lights, const Stage& stage, const IndexAt& index);
+  StageLights(const std::vector<Light>& lights, const Stage& stage, const IndexAt& index);
 
   template <class S>
   EndPosition sample_position(const S& space, RandomStream& random) const {

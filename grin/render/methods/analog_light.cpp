@@ -107,7 +107,7 @@ class AnalogWalk {
     }
   }
   void begin(Lane& lane, const FreshPath& fresh) {
-    const Lights& lights = batch_.transport.lights;
+    const StageLights& lights = batch_.transport.lights;
     Branch& now = lane.now.emplace(Branch{fresh.random});
     lane.end = lights.sample_position(batch_.space, now.random);
     now.from = end_vertex({}, lane.end);

@@ -15,10 +15,10 @@ bool is_on(const SensorEdges& edges, const Flight& flight) {
 }
 
 /// Where a parabola through three places turns, and its value there.
-struct Turn {
+struct Summit {
   double u, value;
 };
-Turn turn(const std::array<double, 3>& u, const std::array<double, 3>& f) {
+Summit turn(const std::array<double, 3>& u, const std::array<double, 3>& f) {
   const double first = (f[1] - f[0]) / (u[1] - u[0]), second = (f[2] - f[1]) / (u[2] - u[1]);
   const double bend = (second - first) / (u[2] - u[0]);
   const double at = (u[0] + u[1]) / 2 - first / (2 * bend);
@@ -55,7 +55,7 @@ BeamEdges::Line BeamEdges::line() const {
         f[k] = edges.beyond(edge, line[i + k].flight.point.x);
       }
       if (!((f[1] - f[0]) * (f[2] - f[1]) < 0)) return;
-      const Turn turns = turn(u, f);
+      const Summit turns = turn(u, f);
       if (std::abs(turns.value) < std::abs(f[2] - f[1]) + std::abs(f[1] - f[0]))
         at.push_back(turns.u);
     });

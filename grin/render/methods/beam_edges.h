@@ -7,8 +7,8 @@ namespace flatspeckle::grin {
 
 /// What unscattered light of beams moves over edges of pixels, per unit of each parameter of the
 /// field. Such light is a sharp picture of its beam, and edges are taken as they are: light of a
-/// beam starts at points of a square (u, v), by chance du dv (Lights::beam_position), and along a
-/// line of constant v it lands on an edge at some u, which moves by
+/// beam starts at points of a square (u, v), by chance du dv (StageLights::beam_position), and
+/// along a line of constant v it lands on an edge at some u, which moves by
 ///
 ///   du = - d(landing)/d(parameter) / (d(landing)/du),
 ///
@@ -16,7 +16,7 @@ namespace flatspeckle::grin {
 class BeamEdges {
  public:
   /// The line v of the beam that the stratum says.
-  BeamEdges(const MovingField& field, const Lights& lights, double stratum, double v)
+  BeamEdges(const MovingField& field, const StageLights& lights, double stratum, double v)
       : field_(field), lights_(lights), stratum_(stratum), v_(v) {}
 
   /// Of so much power of all beams.
@@ -54,7 +54,7 @@ class BeamEdges {
   }
 
   const MovingField& field_;
-  const Lights& lights_;
+  const StageLights& lights_;
   double stratum_, v_;
 };
 

@@ -69,7 +69,7 @@ std::shared_ptr<Transport> transport_of(const RenderScene& scene, const RenderRe
   const auto index = [&](const PathPoint& p) { return index_at(scene, p); };
   return std::make_shared<Transport>(Transport{
       .stage = scene.stage,
-      .lights = Lights(scene.lights, scene.stage, index),
+      .lights = StageLights(scene.lights, scene.stage, index),
       .sensors = sensor_ends(scene.sensors, scene.stage),
       .strategies = strategies(scene, method),
       .max_scatterings = path_limit(request),

@@ -47,7 +47,7 @@ bool is_among(std::span<const BeamWay> ways, const BeamWay& one) {
 /// Of the ways that random trials find from a few places of the sensor, those that bring most
 /// light, each once. Decided by the scene alone.
 std::vector<BeamSeed> seeds_of(const Space& space, const SensorEnd& sensor,
-                               const Lights::Beam& beam, int trials, bool& is_any_seen) {
+                               const StageLights::Beam& beam, int trials, bool& is_any_seen) {
   constexpr std::size_t most = 24;
   const int places = sensor.can_be_hit() ? 4 : 1;
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max() - 1;
@@ -148,7 +148,7 @@ class UnscatteredBeams {
   /// From each sensor that needs them to the beam that the stratum says; they stand for so many
   /// rays.
   void add_ways(double stratum) {
-    const Lights::Beam beam = transport_.lights.beam(stratum);
+    const StageLights::Beam beam = transport_.lights.beam(stratum);
     for (std::size_t i = 0; i < transport_.sensors.size(); ++i)
       if (needs_ways(space_, transport_.sensors[i]))
         add_ways(transport_.sensors[i], beam,
@@ -170,7 +170,7 @@ class UnscatteredBeams {
     flight.end == Flight::End::lost ? tally.lost(from, flight) : tally.left(from, flight);
     tally.end_path();
   }
-  void add_ways(const SensorEnd& sensor, const Lights::Beam& beam,
+  void add_ways(const SensorEnd& sensor, const StageLights::Beam& beam,
                 std::span<const BeamSeed> seeds) {
     const EndPosition z = sensor.sample_position(space_, random_);
     const auto ways =
@@ -179,7 +179,7 @@ class UnscatteredBeams {
     for (const BeamWay& way : ways)
       if (beam.disk.contains(way.place)) add_way(sensor, z, beam, way);
   }
-  void add_way(const SensorEnd& sensor, const EndPosition& z, const Lights::Beam& beam,
+  void add_way(const SensorEnd& sensor, const EndPosition& z, const StageLights::Beam& beam,
                const BeamWay& way) {
     const EndDirection to = sensor.towards(z, way.start_direction);
     const double value = beam.irradiance(way.place) * to.strength * way.transmittance /
@@ -193,7 +193,8 @@ class UnscatteredBeams {
         way.optical_path);
   }
 
-  double weight_of_ray(const Flight& flight, const EndHit& hit, const Lights::Beam& beam) const {
+  double weight_of_ray(const Flight& flight, const EndHit& hit,
+                       const StageLights::Beam& beam) const {
     if (flight.passages.count == 0 || !flight.is_joinable) return 1;
     const auto way = space_.beam_way(hit.position.point, beam.light(), -flight.direction,
                                      flight.passages.reversed(), random_);
@@ -201,7 +202,8 @@ class UnscatteredBeams {
   }
 
   /// Of the densities with which both find a way, per area of the beam.
-  double ways_over_rays(const EndPosition& z, const BeamWay& way, const Lights::Beam& beam) const {
+  double ways_over_rays(const EndPosition& z, const BeamWay& way,
+                        const StageLights::Beam& beam) const {
     const double by_rays = beam.disk.density(way.place);
     const double by_ways = z.position_density * way.thinning / z.inward.dot(way.start_direction);
     return setup_.ways_per_ray * by_ways / by_rays;
@@ -223,7 +225,7 @@ class UnscatteredBeams {
 /// Where the rays of a batch begin, evenly.
 class EvenRays {
  public:
-  EvenRays(const Lights& lights, int rays, RandomStream& random)
+  EvenRays(const StageLights& lights, int rays, RandomStream& random)
       : lights_(lights), rays_(rays), first_(random.uniform()), turn_(random.uniform()) {}
 
   double stratum(int ray) const { return (ray + first_) / rays_; }
@@ -232,7 +234,7 @@ class EvenRays {
   }
 
  private:
-  const Lights& lights_;
+  const StageLights& lights_;
   int rays_;
   double first_, turn_;
 };
@@ -262,7 +264,7 @@ bool has_area(const Transport& transport) {
 }
 
 /// Of lines, which cost as much as some hundreds of rays.
-void add_edges(const MovingField& field, const Lights& lights, int rays, double worth,
+void add_edges(const MovingField& field, const StageLights& lights, int rays, double worth,
                RandomStream& random, Film& film, TransportCounts& counts) {
   const int lines = (rays + 255) / 256;
   for (int i = 0; i < lines; ++i) {
@@ -320,7 +322,7 @@ BeamsKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Tran
                 !request.random_phase && space->has_lanes());
 }
 
-double rays_beside_path(const Lights& lights, const Space& space) {
+double rays_beside_path(const StageLights& lights, const Space& space) {
   constexpr int some = 16;
   RandomStream random(0, static_cast<std::uint64_t>(Stream::render), 0);
   const EvenRays from(lights, some, random);

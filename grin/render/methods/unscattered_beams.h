@@ -33,7 +33,7 @@ BeamsKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Tran
 /// Rays that a light path that is only counted where it hits (analog_light.h) needs beside it. The
 /// less light is left to them, the fewer; as they are spread evenly, their error falls faster than
 /// that of paths.
-double rays_beside_path(const Lights& lights, const Space& space);
+double rays_beside_path(const StageLights& lights, const Space& space);
 
 /// Whether there are beams, and a sensor that their rays can hit.
 bool are_followed(const Transport& transport);

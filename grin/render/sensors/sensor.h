@@ -50,8 +50,8 @@ std::vector<std::string> make_sensor_names(const Keys& keys, const SensorValues&
 const DatasetTable& table_of(const Sensor& sensor);
 SensorPixels pixels_of(const Sensor& sensor);
 
-/// A sensor of a scene as an end of paths; same interface as Lights. Its pixels are numbered from
-/// first_pixel on.
+/// A sensor of a scene as an end of paths; same interface as StageLights. Its pixels are numbered
+/// from first_pixel on.
 ///
 /// `stratum`, the same number in (0, 1) for the position and the direction, picks the pixel: evenly
 /// spread numbers share the paths of a batch evenly among the pixels. Densities are those of a

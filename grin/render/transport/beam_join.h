@@ -91,7 +91,7 @@ inline void weigh_in_beam(const Transport& transport, const Space& space, const 
                           const Flight& flight, RandomStream& random, TransportCounts& counts,
                           PathVertex& next) {
   constexpr double same = 1e-4;  // rad
-  const Lights::Beam beam = transport.lights.beam_of(*start.end);
+  const StageLights::Beam beam = transport.lights.beam_of(*start.end);
   const ParallelLight light = beam.light();
   if (!flight.is_joinable || flight.passages.reflected || !straight_place(light, flight.point.x))
     return;

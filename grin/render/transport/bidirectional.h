@@ -206,7 +206,7 @@ class Bidirectional {
   /// Along the plainest way (beam_join.h).
   void join_to_beam(const EndPosition& end, const PathVertex& z) {
     if (!transport_.strategies.joins_beams || z.vertices - 1 > transport_.max_scatterings) return;
-    const Lights::Beam beam = transport_.lights.beam_of(end);
+    const StageLights::Beam beam = transport_.lights.beam_of(end);
     const double chance = chance_to_join(promise(beam, end, z), transport_.beam_levels[at_]);
     if (!(chance > 0)) return;
     const auto way =
@@ -219,7 +219,7 @@ class Bidirectional {
     add(pixel_, value, way->optical_path + z.optical_path);
   }
   /// As facing(): the way may be another than the straight line.
-  double promise(const Lights::Beam& beam, const EndPosition& end, const PathVertex& z) {
+  double promise(const StageLights::Beam& beam, const EndPosition& end, const PathVertex& z) {
     ++counts_.joins_weighed;
     const ParallelLight light = beam.light();
     const auto place = straight_place(light, z.point.x);

@@ -120,7 +120,7 @@ double joined_share(const Sensor& sensor, double extinction) {
 }
 
 /// Places where light begins, the same ones always.
-std::vector<PathPoint> starts_of(const Lights& lights) {
+std::vector<PathPoint> starts_of(const StageLights& lights) {
   constexpr int count = 64;
   struct {
     double index(const PathPoint&) const { return 1; }
@@ -133,7 +133,7 @@ std::vector<PathPoint> starts_of(const Lights& lights) {
 
 }  // namespace
 
-std::optional<DepthImportance> DepthImportance::of(const Stage& stage, const Lights& lights,
+std::optional<DepthImportance> DepthImportance::of(const Stage& stage, const StageLights& lights,
                                                    const std::vector<Sensor>& sensors) {
   if (!is_in_closed_form(stage.boundary)) return std::nullopt;
   if (stage.bodies.size() > 1) return std::nullopt;
@@ -143,7 +143,7 @@ std::optional<DepthImportance> DepthImportance::of(const Stage& stage, const Lig
   return found;
 }
 
-DepthImportance::DepthImportance(const Stage& stage, const Lights& lights,
+DepthImportance::DepthImportance(const Stage& stage, const StageLights& lights,
                                  const std::vector<Sensor>& sensors)
     : boundary_(stage.boundary) {
   if (stage.parts() > 1) body_ = stage.surface(1);

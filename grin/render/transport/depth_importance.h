@@ -23,7 +23,7 @@ class DepthImportance {
  public:
   /// Nothing where no sensor is deep behind a medium, and where ways lead through several bodies
   /// or one of any shape.
-  static std::optional<DepthImportance> of(const Stage& stage, const Lights& lights,
+  static std::optional<DepthImportance> of(const Stage& stage, const StageLights& lights,
                                            const std::vector<Sensor>& sensors);
 
   struct Outlook {
@@ -73,7 +73,8 @@ class DepthImportance {
     double along(const ByPart& rate) const { return rate[0] * length[0] + rate[1] * length[1]; }
   };
 
-  DepthImportance(const Stage& stage, const Lights& lights, const std::vector<Sensor>& sensors);
+  DepthImportance(const Stage& stage, const StageLights& lights,
+                  const std::vector<Sensor>& sensors);
 
   Way way(const PathPoint& p, const Destination& to) const;
   ByPart decay(const Stage& stage, const Vec3& direction) const;

@@ -12,7 +12,7 @@ namespace flatspeckle::grin {
 /// What estimators are told of a scene, but for its space.
 struct Transport {
   Stage stage;
-  Lights lights;
+  StageLights lights;
   std::vector<SensorEnd> sensors;
   Strategies strategies = {};
   /// Of plans that are deep.

@@ -6,8 +6,8 @@
 #include <Eigen/LU>
 
 #include "core/algebra/row_major.h"
-#include "core/algebra/symmetric.h"
 #include "core/error.h"
+#include "core/numbers/symmetric.h"
 #include "core/result/result_group.h"
 #include "core/search/levenberg_marquardt.h"
 #include "mc/fit/task/fit_data.h"

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/algebra/symmetric.h"
 #include "core/numbers/fourier.h"
+#include "core/numbers/symmetric.h"
 #include "mc/imaging/recovery/frame_statistics.h"
 #include "mc/imaging/recovery/line_spectrum.h"
 #include "mc/imaging/unmixing/unmixing.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <string>
 
-#include "core/algebra/symmetric.h"
 #include "core/error.h"
+#include "core/numbers/symmetric.h"
 #include "mc/imaging/recovery/frame_statistics.h"
 
 namespace flatspeckle::mc {

@@ -160,11 +160,11 @@ auto DirectionModesOf<Geometry, Number>::part_of(const Waves& all, const Part& p
   return {all.top, all.bottom, linear(taken, all.down), linear(taken, all.up)};
 }
 
-template class DirectionModesOf<Plane, double>;
-template class DirectionModesOf<Plane, Complex>;
-template class DirectionModesOf<Plane, Dual<double>>;
-template class DirectionModesOf<Space, double>;
-template class DirectionModesOf<Space, Complex>;
-template class DirectionModesOf<Space, Dual<double>>;
+template class DirectionModesOf<PlaneGeometry, double>;
+template class DirectionModesOf<PlaneGeometry, Complex>;
+template class DirectionModesOf<PlaneGeometry, Dual<double>>;
+template class DirectionModesOf<SpaceGeometry, double>;
+template class DirectionModesOf<SpaceGeometry, Complex>;
+template class DirectionModesOf<SpaceGeometry, Dual<double>>;
 
 }  // namespace flatspeckle::mc

@@ -70,9 +70,9 @@ auto OrdinatesOf<Geometry, Real>::scattering(int m) const -> Scattering {
   return {of_degrees(m + 1), of_degrees(m)};
 }
 
-template class OrdinatesOf<Plane, double>;
-template class OrdinatesOf<Plane, Dual<double>>;
-template class OrdinatesOf<Space, double>;
-template class OrdinatesOf<Space, Dual<double>>;
+template class OrdinatesOf<PlaneGeometry, double>;
+template class OrdinatesOf<PlaneGeometry, Dual<double>>;
+template class OrdinatesOf<SpaceGeometry, double>;
+template class OrdinatesOf<SpaceGeometry, Dual<double>>;
 
 }  // namespace flatspeckle::mc

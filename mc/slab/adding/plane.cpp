@@ -133,18 +133,18 @@ template class DoubleScatteringOf<double>;
 template class DoubleScatteringOf<Complex>;
 template class DoubleScatteringOf<Dual<double>>;
 
-double Plane::matched(const Pair& lights, const Pair& views, double shift) {
+double PlaneGeometry::matched(const Pair& lights, const Pair& views, double shift) {
   return matched_view(lights.first, views.first, lights.second, views.second, shift);
 }
 
-double Plane::momentum(const Pair& lights, double k, double mu_t, double shift) {
+double PlaneGeometry::momentum(const Pair& lights, double k, double mu_t, double shift) {
   constexpr double same_momentum = 1e-12;  // of k
   const double unit = same_momentum * k / mu_t,
                q = k / mu_t * (std::sin(lights.first) - (1 + shift) * std::sin(lights.second));
   return unit * std::round(q / unit);
 }
 
-Scene Plane::with_scatterer(Scene scene, const Scatterer& scatterer) {
+Scene PlaneGeometry::with_scatterer(Scene scene, const Scatterer& scatterer) {
   scene.scatterer = scatterer;
   scene.medium = bulk_medium(scatterer, scene.k, scene.medium.density);
   return scene;
@@ -156,7 +156,7 @@ std::vector<Focus> light_foci(const Pair& lights, double width) {
   return found;
 }
 
-Plane::Foci::Foci(const std::vector<Pair>& lights, double optical_depth, double width)
+PlaneGeometry::Foci::Foci(const std::vector<Pair>& lights, double optical_depth, double width)
     : optical_depth_(optical_depth), width_(width) {
   std::vector<double> all;
   for (const Pair& pair : lights)
@@ -166,7 +166,7 @@ Plane::Foci::Foci(const std::vector<Pair>& lights, double optical_depth, double 
     if (centres_.empty() || angle - centres_.back() > width / 2) centres_.push_back(angle);
 }
 
-std::vector<Focus> Plane::Foci::of(const Pair& lights, Momentum q) const {
+std::vector<Focus> PlaneGeometry::Foci::of(const Pair& lights, Momentum q) const {
   std::vector<Focus> found;
   for (const double angle : {folded(lights.first), folded(lights.second)})
     add(found, *std::prev(std::upper_bound(centres_.begin(), centres_.end(), angle)), width_);
@@ -180,7 +180,7 @@ std::vector<Focus> Plane::Foci::of(const Pair& lights, Momentum q) const {
   return found;
 }
 
-Matrix Plane::functions(const Eigen::VectorXd& angle, int m, int last) {
+Matrix PlaneGeometry::functions(const Eigen::VectorXd& angle, int m, int last) {
   const Eigen::ArrayXd c = angle.array().cos(), s = angle.array().sin();
   Eigen::ArrayXd cosine = Eigen::ArrayXd::Ones(angle.size()),
                  sine = Eigen::ArrayXd::Zero(angle.size());
@@ -194,13 +194,13 @@ Matrix Plane::functions(const Eigen::VectorXd& angle, int m, int last) {
   return values;
 }
 
-double Plane::weight(int l) {
+double PlaneGeometry::weight(int l) {
   return (l == 0 ? 2 : 4) / pi;
 }
 
 template <typename Number>
-PairWavesOf<Number> Plane::fed(const OrdinatesOf<Plane, RealOf<Number>>& ordinates, Momentum, int,
-                               const std::vector<Pair>& pairs) {
+PairWavesOf<Number> PlaneGeometry::fed(const OrdinatesOf<PlaneGeometry, RealOf<Number>>& ordinates,
+                                       Momentum, int, const std::vector<Pair>& pairs) {
   const AngularGrid& grid = ordinates.grid();
   const Eigen::Index n = grid.size();
   const Eigen::VectorXd scale = ordinates.root().cwiseInverse();
@@ -235,11 +235,11 @@ PairWavesOf<Number> Plane::fed(const OrdinatesOf<Plane, RealOf<Number>>& ordinat
 }
 
 template <typename Number>
-ComplexOf<Number> Plane::double_scattering(const DoubleScatteringOf<Number>& paths,
-                                           const AngularGrid& grid,
-                                           const std::vector<int>& functions,
-                                           const HomogeneousLayerOf<Number>& layer,
-                                           Eigen::Index light, Eigen::Index view) {
+ComplexOf<Number> PlaneGeometry::double_scattering(const DoubleScatteringOf<Number>& paths,
+                                                   const AngularGrid& grid,
+                                                   const std::vector<int>& functions,
+                                                   const HomogeneousLayerOf<Number>& layer,
+                                                   Eigen::Index light, Eigen::Index view) {
   using C = ComplexOf<Number>;
   const Eigen::Index n = grid.size();
   C sum{};
@@ -268,22 +268,23 @@ ComplexOf<Number> Plane::double_scattering(const DoubleScatteringOf<Number>& pat
   return sum;
 }
 
-template PairWavesOf<double> Plane::fed<double>(const OrdinatesOf<Plane, double>&, Momentum, int,
-                                                const std::vector<Pair>&);
-template PairWavesOf<Complex> Plane::fed<Complex>(const OrdinatesOf<Plane, double>&, Momentum, int,
-                                                  const std::vector<Pair>&);
-template PairWavesOf<Dual<double>> Plane::fed<Dual<double>>(const OrdinatesOf<Plane, Dual<double>>&,
-                                                            Momentum, int,
-                                                            const std::vector<Pair>&);
-template Complex Plane::double_scattering<double>(const DoubleScatteringOf<double>&,
-                                                  const AngularGrid&, const std::vector<int>&,
-                                                  const HomogeneousLayerOf<double>&, Eigen::Index,
-                                                  Eigen::Index);
-template Complex Plane::double_scattering<Complex>(const DoubleScatteringOf<Complex>&,
-                                                   const AngularGrid&, const std::vector<int>&,
-                                                   const HomogeneousLayerOf<Complex>&, Eigen::Index,
-                                                   Eigen::Index);
-template Dual<Complex> Plane::double_scattering<Dual<double>>(
+template PairWavesOf<double> PlaneGeometry::fed<double>(const OrdinatesOf<PlaneGeometry, double>&,
+                                                        Momentum, int, const std::vector<Pair>&);
+template PairWavesOf<Complex> PlaneGeometry::fed<Complex>(const OrdinatesOf<PlaneGeometry, double>&,
+                                                          Momentum, int, const std::vector<Pair>&);
+template PairWavesOf<Dual<double>> PlaneGeometry::fed<Dual<double>>(
+    const OrdinatesOf<PlaneGeometry, Dual<double>>&, Momentum, int, const std::vector<Pair>&);
+template Complex PlaneGeometry::double_scattering<double>(const DoubleScatteringOf<double>&,
+                                                          const AngularGrid&,
+                                                          const std::vector<int>&,
+                                                          const HomogeneousLayerOf<double>&,
+                                                          Eigen::Index, Eigen::Index);
+template Complex PlaneGeometry::double_scattering<Complex>(const DoubleScatteringOf<Complex>&,
+                                                           const AngularGrid&,
+                                                           const std::vector<int>&,
+                                                           const HomogeneousLayerOf<Complex>&,
+                                                           Eigen::Index, Eigen::Index);
+template Dual<Complex> PlaneGeometry::double_scattering<Dual<double>>(
     const DoubleScatteringOf<Dual<double>>&, const AngularGrid&, const std::vector<int>&,
     const HomogeneousLayerOf<Dual<double>>&, Eigen::Index, Eigen::Index);
 

@@ -91,7 +91,7 @@ class OrdinatesOf;
 
 /// What slabs in the plane have of their own (slab.h). Directions are angles; functions of
 /// direction are even or odd in them.
-struct Plane {
+struct PlaneGeometry {
   using Direction = double;
   using Law = ScatteringLaw;
   using Momentum = double;  ///< per mu_t
@@ -140,8 +140,8 @@ struct Plane {
   static Eigen::VectorXd weights(const AngularGrid& grid) { return grid.weight(); }
   /// What pairs scatter into directions down and up, a row each, function by function.
   template <typename Number>
-  static PairWavesOf<Number> fed(const OrdinatesOf<Plane, RealOf<Number>>& ordinates, Momentum,
-                                 int highest, const std::vector<Pair>& pairs);
+  static PairWavesOf<Number> fed(const OrdinatesOf<PlaneGeometry, RealOf<Number>>& ordinates,
+                                 Momentum, int highest, const std::vector<Pair>& pairs);
 
   /// Paths of two scatterings are integrals over one direction, exact where forward peaks, or the
   /// phase of a large transverse momentum, ask for many ordinates.

@@ -9,9 +9,9 @@
 
 namespace flatspeckle::mc {
 
-// Slabs in the plane and in space are one code. A Geometry, Plane (plane.h) or Space
-// (mc/slab/adding/space.h), has what differs: directions and their momenta, the phase function and its
-// moments, and the functions of direction in which radiance is expanded.
+// Slabs in the plane and in space are one code. A Geometry, PlaneGeometry (plane.h) or
+// SpaceGeometry (mc/slab/adding/space.h), has what differs: directions and their momenta, the phase
+// function and its moments, and the functions of direction in which radiance is expanded.
 
 /// Lengths in one unit; one of the slab's layers.
 template <typename Geometry, typename Real>

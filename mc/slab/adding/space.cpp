@@ -69,7 +69,7 @@ Matrix azimuthal_functions(int steps, int highest) {
 }
 
 /// Along the slab at equal steps of the azimuth from the momentum, [azimuth][x, y].
-Matrix azimuths(int steps, const Space::Momentum& momentum) {
+Matrix azimuths(int steps, const SpaceGeometry::Momentum& momentum) {
   const Eigen::Vector2d along(momentum[0], momentum[1]),
       x = along.norm() == 0 ? Eigen::Vector2d(1, 0) : Eigen::Vector2d(along.normalized());
   Matrix directions(steps, 2);
@@ -120,21 +120,23 @@ double SpaceLaw::amplitude(double cosine) const {
   return std::sqrt(density_(std::clamp(cosine, -1.0, 1.0)) / total_);
 }
 
-Eigen::Vector3d Space::matched(const SpacePair& lights, const SpacePair& views, double shift) {
+Eigen::Vector3d SpaceGeometry::matched(const SpacePair& lights, const SpacePair& views,
+                                       double shift) {
   const Eigen::Vector2d along =
       (lights.second - (lights.first - views.first) / (1 + shift)).head<2>();
   return {along.x(), along.y(),
           std::copysign(std::sqrt(1 - along.squaredNorm()), views.second.z())};
 }
 
-Space::Momentum Space::momentum(const SpacePair& lights, double, double, double shift) {
+SpaceGeometry::Momentum SpaceGeometry::momentum(const SpacePair& lights, double, double,
+                                                double shift) {
   constexpr double same_momentum = 1e-12;
   const Eigen::Vector3d difference = lights.first - (1 + shift) * lights.second;
   const auto rounded = [](double q) { return std::round(q / same_momentum) * same_momentum; };
   return {rounded(difference.x()), rounded(difference.y())};
 }
 
-std::vector<Focus> Space::Foci::of(const SpacePair& lights, const Momentum&) const {
+std::vector<Focus> SpaceGeometry::Foci::of(const SpacePair& lights, const Momentum&) const {
   constexpr double too_wide = 0.4;  // for any panel to be split
   std::vector<Focus> found;
   if (width_ >= too_wide) return found;
@@ -147,24 +149,24 @@ std::vector<Focus> Space::Foci::of(const SpacePair& lights, const Momentum&) con
   return found;
 }
 
-double Space::coupling(int m) {
+double SpaceGeometry::coupling(int m) {
   return m == 0 ? std::numbers::sqrt2 / 2 : 0.5;
 }
 
-Matrix Space::functions(const Eigen::VectorXd& angle, int m, int last) {
+Matrix SpaceGeometry::functions(const Eigen::VectorXd& angle, int m, int last) {
   const Eigen::VectorXd sine = angle.array().sin();
   return sine.asDiagonal() * associated_legendre(angle, m, last);
 }
 
-Eigen::VectorXd Space::weights(const AngularGrid& grid) {
+Eigen::VectorXd SpaceGeometry::weights(const AngularGrid& grid) {
   return grid.integrals_of(
       1, [](const Eigen::VectorXd& angle) -> Matrix { return angle.array().sin(); });
 }
 
 template <typename Number>
-PairWavesOf<Number> Space::fed(const OrdinatesOf<Space, RealOf<Number>>& ordinates,
-                               const Momentum& momentum, int highest,
-                               const std::vector<SpacePair>& pairs) {
+PairWavesOf<Number> SpaceGeometry::fed(const OrdinatesOf<SpaceGeometry, RealOf<Number>>& ordinates,
+                                       const Momentum& momentum, int highest,
+                                       const std::vector<SpacePair>& pairs) {
   double most_sine = 0;
   for (const SpacePair& pair : pairs)
     for (const Eigen::Vector3d& direction : {pair.first, pair.second})
@@ -206,13 +208,14 @@ PairWavesOf<Number> Space::fed(const OrdinatesOf<Space, RealOf<Number>>& ordinat
   return {{}, {}, ordinates.albedo() * into(1), ordinates.albedo() * into(-1)};
 }
 
-template PairWavesOf<double> Space::fed<double>(const OrdinatesOf<Space, double>&, const Momentum&,
-                                                int, const std::vector<SpacePair>&);
-template PairWavesOf<Complex> Space::fed<Complex>(const OrdinatesOf<Space, double>&,
-                                                  const Momentum&, int,
-                                                  const std::vector<SpacePair>&);
-template PairWavesOf<Dual<double>> Space::fed<Dual<double>>(const OrdinatesOf<Space, Dual<double>>&,
-                                                            const Momentum&, int,
-                                                            const std::vector<SpacePair>&);
+template PairWavesOf<double> SpaceGeometry::fed<double>(const OrdinatesOf<SpaceGeometry, double>&,
+                                                        const Momentum&, int,
+                                                        const std::vector<SpacePair>&);
+template PairWavesOf<Complex> SpaceGeometry::fed<Complex>(const OrdinatesOf<SpaceGeometry, double>&,
+                                                          const Momentum&, int,
+                                                          const std::vector<SpacePair>&);
+template PairWavesOf<Dual<double>> SpaceGeometry::fed<Dual<double>>(
+    const OrdinatesOf<SpaceGeometry, Dual<double>>&, const Momentum&, int,
+    const std::vector<SpacePair>&);
 
 }  // namespace flatspeckle::mc

@@ -49,7 +49,7 @@ class OrdinatesOf;
 /// What slabs in space have of their own (slab.h), of scalar waves (C41). Directions are unit
 /// vectors, z into the slab; functions of direction are Fourier modes of the azimuth about z,
 /// cos(m phi) and sin(m phi), phi from the momentum.
-struct Space {
+struct SpaceGeometry {
   using Direction = Eigen::Vector3d;
   using Law = SpaceLaw;
   using Momentum = std::array<double, 2>;  ///< in units of k
@@ -102,7 +102,7 @@ struct Space {
   static Eigen::VectorXd weights(const AngularGrid& grid);
   /// What pairs scatter into directions down and up, a row each, function by function.
   template <typename Number>
-  static PairWavesOf<Number> fed(const OrdinatesOf<Space, RealOf<Number>>& ordinates,
+  static PairWavesOf<Number> fed(const OrdinatesOf<SpaceGeometry, RealOf<Number>>& ordinates,
                                  const Momentum& momentum, int highest,
                                  const std::vector<SpacePair>& pairs);
 

@@ -65,7 +65,7 @@ Scene in_space(Scene slab, const ScattererValues& values) {
   return slab;
 }
 
-Scene Space::with_scatterer(Scene scene, const Scatterer& scatterer) {
+Scene SpaceGeometry::with_scatterer(Scene scene, const Scatterer& scatterer) {
   set_spheres(scene.medium, scatterer, scene.k);
   return scene;
 }

@@ -72,7 +72,7 @@ DesignValues fibre(const char* modes, int coefficients) {
   return values;
 }
 
-void write(const Picture& picture, const std::filesystem::path& path) {
+void write(const ScreenPicture& picture, const std::filesystem::path& path) {
   std::ofstream file(path);
   for (std::size_t i = 0; i < picture.values.size(); ++i)
     file << picture.values[i] << ((i + 1) % picture.pixels == 0 ? '\n' : ',');
@@ -141,8 +141,8 @@ TEST_CASE("A beam is made into a picture") {
   values.form.most_index = 2;
   values.aim.goal = ScreenValues::word;
   values.roughness = 1e-5;
-  const Picture picture = [] {
-    Picture made{1.2, 16, {}};
+  const ScreenPicture picture = [] {
+    ScreenPicture made{1.2, 16, {}};
     for (int j = 0; j < 16; ++j)
       for (int i = 0; i < 16; ++i)
         made.values.push_back(0.3 + std::exp(-((i - 5) * (i - 5) + (j - 9) * (j - 9)) / 25.0));

@@ -112,7 +112,7 @@ LossCase box(std::unique_ptr<Goal> goal, bool reads_directions) {
 }
 
 Beam beam(int rays) {
-  Picture picture{1.2, 8, {}};
+  ScreenPicture picture{1.2, 8, {}};
   for (int p = 0; p < 64; ++p) picture.values.push_back(1 + std::sin(p));
   return {shown(picture), Numbers(rays, 1.0 / rays)};
 }

@@ -9,7 +9,7 @@
 
 namespace flatspeckle::mc::tests {
 
-using SpaceSlab = SlabOf<Space, double>;
+using SpaceSlab = SlabOf<SpaceGeometry, double>;
 using SpaceRequest = RequestOf<Eigen::Vector3d>;
 
 /// Henyey-Greenstein, wavelength 1.

@@ -52,7 +52,8 @@ Complex covariance(const SpaceSlab& slab, const Channels& ends, bool reversed, d
 
 Complex at_two_frequencies(const SpaceSlab& slab, const Channels& ends, double shift, bool reversed,
                            double tolerance) {
-  const SlabOf<Space, Complex> shifted{slab.k, slab.mu_t, slab.depth, slab.layers, {1, shift}};
+  const SlabOf<SpaceGeometry, Complex> shifted{
+      slab.k, slab.mu_t, slab.depth, slab.layers, {1, shift}};
   return slab_covariance(shifted, request_of(ends), reversed, {tolerance}).value[0];
 }
 

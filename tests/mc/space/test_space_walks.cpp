@@ -70,7 +70,7 @@ TEST_CASE("Rayleigh's phase function, in the plane and in space") {
   CHECK(plane(pi / 2) == doctest::Approx(plane(0) / 2).epsilon(1e-12));
   const Scene scene = tests::in_space(spec, tilted_pairs(0.2, 0, momenta));
   check_agreement(scene, false, 40000, 0.05);
-  const auto moments = Space::law(scene).moments();  // 3/4 (1 + c^2) = 1 + P_2 / 2
+  const auto moments = SpaceGeometry::law(scene).moments();  // 3/4 (1 + c^2) = 1 + P_2 / 2
   REQUIRE(moments.size() == 3);
   CHECK(moments[1] == doctest::Approx(0).epsilon(1e-12));
   CHECK(moments[2] == doctest::Approx(0.1).epsilon(1e-12));
@@ -94,7 +94,7 @@ TEST_CASE("slabs in space: spheres") {
     CHECK(scene.medium.albedo ==
           doctest::Approx(sphere.scattering() / sphere.extinction()).epsilon(1e-12));
     CHECK(scene.medium.mu_s == scene.medium.albedo * scene.medium.mu_t);
-    const SpaceLaw law = Space::law(scene);
+    const SpaceLaw law = SpaceGeometry::law(scene);
     CHECK(law.moments()[1] == doctest::Approx(sphere.mean_cosine()).epsilon(1e-12));
     CHECK(static_cast<int>(law.moments().size()) <= 2 * sphere.order() + 1);
     check_agreement(scene, false, 60000, 0.05);

@@ -1,4 +1,4 @@
-#include "core/algebra/symmetric.h"
+#include "core/numbers/symmetric.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
