@@ -1,7 +1,7 @@
 #include "bench/scenes/blinking_frames.h"
 #include "bench/scenes/imaged_points.h"
 #include "bench/stability/extreme_rows.h"
-#include "mc/imaging/success_prediction.h"
+#include "mc/imaging/media_statistics.h"
 
 namespace flatspeckle::bench {
 

@@ -5,8 +5,8 @@
 
 #include "bench/stability/extreme_rows.h"
 #include "bench/stability/mc_extremes.h"
-#include "flatland/media/density_map.h"
 #include "flatland/media/layers.h"
+#include "flatland/scene/density_maps.h"
 #include "mc/paths/bent/graded_ends.h"
 #include "mc/paths/bent/linear_medium.h"
 #include "mc/paths/dynamics/brownian.h"

@@ -2,8 +2,8 @@
 
 #include <doctest/doctest.h>
 
-#include "core/numbers/control_variate.h"
 #include "core/numbers/random.h"
+#include "core/numbers/statistics.h"
 
 namespace flatspeckle::test_control_variate {
 

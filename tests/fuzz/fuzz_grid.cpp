@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/result/hdf5_handle.h"
-#include "grin/media/scattering/density_grid.h"
+#include "grin/media/scattering/scattering_medium.h"
 #include "grin/render/flights/space.h"
 #include "grin/render/pictures/render_job.h"
 #include "grin/trace/ray_tracing.h"

@@ -6,9 +6,9 @@
 #include "core/result/result_reader.h"
 #include "core/result/run_state_file.h"
 #include "core/run/run_merger.h"
-#include "flatland/media/structure_table.h"
+#include "flatland/media/medium.h"
 #include "grin/media/fields/spline_field.h"
-#include "grin/media/scattering/density_grid.h"
+#include "grin/media/scattering/scattering_medium.h"
 #include "tests/fuzz/input.h"
 
 namespace flatspeckle::fuzz {

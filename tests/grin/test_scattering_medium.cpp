@@ -12,7 +12,7 @@
 #include "core/error.h"
 #include "core/result/result_file.h"
 #include "grin/media/fields/spline_field.h"
-#include "grin/media/scattering/density_grid.h"
+#include "grin/media/scattering/scattering_medium.h"
 #include "grin/rays/connections/geometric_spreading.h"
 #include "grin/render/stage/part_medium.h"
 #include "grin/render/stage/stage.h"

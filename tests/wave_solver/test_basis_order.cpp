@@ -8,8 +8,8 @@
 #include "core/error.h"
 #include "core/numbers/random.h"
 #include "reference.h"
-#include "wave_solver/equations/basis_order.h"
 #include "wave_solver/equations/neighbours.h"
+#include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::wave::test_basis_order {

@@ -7,8 +7,8 @@
 #include "reference.h"
 #include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/solutions/wave_solution.h"
+#include "wave_solver/sums/block_krylov.h"
 #include "wave_solver/sums/fast_product.h"
-#include "wave_solver/sums/gmres.h"
 
 namespace flatspeckle::wave::test_gmres {
 

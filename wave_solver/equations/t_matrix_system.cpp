@@ -1,10 +1,392 @@
 #include "wave_solver/equations/t_matrix_system.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
-#include "wave_solver/equations/basis_order.h"
+#include "core/error.h"
+#include "core/numbers/bessel.h"
+#include "core/numbers/complex.h"
+#include "core/numbers/scaled.h"
+#include "wave_solver/dense/symmetric_factor.h"
+#include "wave_solver/equations/cylinder_waves.h"
+#include "wave_solver/equations/neighbours.h"
+#include "wave_solver/equations/rim_waves.h"
 
 namespace flatspeckle::wave {
+
+namespace {
+
+// Waves of one parity about a scatterer; with both centres on the z axis the parities do not mix.
+struct Side {
+  std::vector<Mode> modes;
+  std::vector<Complex> diagonal;
+  Vec2 centre;
+
+  Side(const std::vector<ScaledComplex>& t, bool odd, Vec2 at) : centre(at) {
+    for (int n = odd ? 1 : 0; n < static_cast<int>(t.size()); ++n) {
+      const ScaledReal size = abs(t[n]), sigma = sqrt(size);
+      modes.push_back({n, odd, n == 0 ? root_half * sigma : sigma});
+      diagonal.push_back(size.value() > 0 ? -static_cast<Complex>(size / t[n]) : Complex(1));
+    }
+  }
+  ModeSet set() const { return {centre, modes, modes.empty() ? 0 : modes.back().order}; }
+  // -sigma a of the plane wave from an angle
+  void light(double angle, double k, Complex* column) const {
+    const Vec2 w = direction(angle);
+    const Complex there = std::numbers::sqrt2 * std::polar(1.0, k * dot(w, centre));
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      const int n = modes[i].order;
+      const double turned = modes[i].odd ? std::sin(n * angle) : std::cos(n * angle);
+      constexpr Complex power[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+      column[i] = -there * static_cast<double>(modes[i].weight) * turned * power[n % 4];
+    }
+  }
+};
+
+// beta of the first scatterer for some lights: [light][mode]; empty where no solution is found.
+std::vector<Complex> solved(const Side& first, const Side& second, double k) {
+  const std::size_t rows = first.modes.size(), n = rows + second.modes.size();
+  std::vector<Complex> matrix(n * n);
+  for (std::size_t i = 0; i < n; ++i)
+    matrix[i * (n + 1)] = i < rows ? first.diagonal[i] : second.diagonal[i - rows];
+  const ModeSet receiver = second.set();
+  if (rows > 0 && n > rows) translate(k, {&receiver, 1}, first.set(), {&matrix[rows], n});
+  if (!factor_symmetric(matrix.data(), n, n)) return {};
+  constexpr int lights = 5;
+  std::vector<Complex> x(lights * n);
+  for (int i = 0; i < lights; ++i) {
+    const double angle = i * std::numbers::pi / (lights - 1);
+    first.light(angle, k, &x[i * n]);
+    second.light(angle, k, &x[i * n] + rows);
+  }
+  solve_forward(matrix.data(), n, n, x.data(), lights, n);
+  solve_backward(matrix.data(), n, n, x.data(), lights, n);
+  std::vector<Complex> beta;
+  for (int i = 0; i < lights; ++i) beta.insert(beta.end(), &x[i * n], &x[i * n] + rows);
+  return beta;
+}
+
+/// What two scatterers by themselves make of plane waves: for the first one and n = 0 .. order, the
+/// largest |beta_n|, the coefficient of sigma psi_n (TMatrixSystem), over directions of the light.
+/// By reciprocity, leaving out order n changes far fields by about |beta_n|^2. t_first, t_second:
+/// T_n up to the orders to be solved for. Empty where no solution is found.
+std::vector<double> pair_response(const std::vector<ScaledComplex>& t_first,
+                                  const std::vector<ScaledComplex>& t_second, double k,
+                                  double distance) {
+  std::vector<double> strength(t_first.size());
+  for (const bool odd : {false, true}) {
+    const Side first(t_first, odd, {0, 0}), second(t_second, odd, {0, distance});
+    const auto beta = solved(first, second, k);
+    const std::size_t count = first.modes.size();
+    if (beta.empty() && count > 0) return {};
+    for (std::size_t i = 0; i < beta.size(); ++i) {
+      double& largest = strength[first.modes[i % count].order];
+      largest = std::max(largest, std::abs(beta[i]));
+      if (!std::isfinite(std::abs(beta[i]))) return {};
+    }
+  }
+  return strength;
+}
+
+constexpr double nowhere = std::numeric_limits<double>::infinity();
+
+// Orders beyond the oscillating ones of the first try.
+constexpr int first_orders = 16;
+
+// And up to which pairs are solved: the images in hard disks add up, so that their bound is sharp.
+int most_paired(const Scatterer& disk) {
+  return disk.kind == Scatterer::Kind::hard ? 64 : 512;
+}
+
+// For what pairs do not tell, all the others: measured on pairs and clusters.
+// Modes of large or dense disks resonate among many.
+double safety(const Scatterer& disk, double k) {
+  const double x = k * disk.radius;
+  if (!disk.is_penetrable()) return 20 + 2 * x;
+  const double contrast = std::max(1.0, (disk.index * disk.index).real() - 1);
+  return (8 + 2 * x) * contrast * contrast;
+}
+constexpr double lone_safety = 3;
+constexpr double near_safety = 5;
+
+// For what the bound leaves out: many orders adding up; between hard disks the error grows with k
+// a.
+double bound_safety(const Scatterer& disk, double k) {
+  const double x = disk.kind == Scatterer::Kind::hard ? k * disk.radius : 0;
+  return 200 * (1 + x * x);
+}
+
+bool is_on_rim(const Scatterer& disk, double distance) {
+  return distance <= disk.radius * (1 + 1e-9);
+}
+
+// log2 |H_n(k distance)|, n = 0 .. order; -infinity for nowhere.
+std::vector<double> log_hankel(int order, double k, double distance) {
+  std::vector<double> logs(order + 1, -nowhere);
+  if (distance == nowhere) return logs;
+  const auto h = scaled_hankel(order, k * distance);
+  std::transform(h.begin(), h.end(), logs.begin(), [](const auto& h_n) { return log2(abs(h_n)); });
+  return logs;
+}
+
+// A distinct scatterer of a placement, with T_n as far as asked for up to now.
+struct Species {
+  Scatterer scatterer;
+  double k = 0;
+  int oscillating = 0;
+  double field = 0;  // root of sum (2 - [n=0]) |T_n|^2
+  std::vector<ScaledComplex> t;
+  std::vector<double> log_t;
+
+  void extend(int order) {
+    if (static_cast<int>(t.size()) > order) return;
+    t = scaled_t_matrix(scatterer, k, order);
+    log_t.clear();
+    long double sum = 0;
+    for (const ScaledComplex& t_n : t) {
+      log_t.push_back(log2(abs(t_n)));
+      sum += (log_t.size() == 1 ? 1 : 2) * std::norm(static_cast<ExtendedComplex>(t_n));
+    }
+    field = static_cast<double>(std::sqrt(sum));
+  }
+
+  // log2 of the field inside, on the rim, of each order.
+  std::vector<double> log_rim(int order) const {
+    std::vector<double> logs;
+    for (const RimWave& wave : rim_waves(scatterer, k, order))
+      logs.push_back(static_cast<double>(std::log2(std::abs(wave.field))));
+    return logs;
+  }
+
+  std::vector<ScaledComplex> up_to(int order) {
+    extend(order);
+    return {t.begin(), t.begin() + order + 1};
+  }
+};
+
+// Two species at a gap of 2^(step/8) times the smaller radius: gaps are rounded down, so that equal
+// disks share what is found out.
+struct Contact {
+  std::size_t first = 0, second = 0;
+  int step = 0;
+
+  auto operator<=>(const Contact&) const = default;
+};
+constexpr double steps = 8;
+constexpr int last_step = 24;  // farther neighbours count as being there
+
+// xi of the bipolar coordinates
+double xi(double radius, double other_radius, double distance) {
+  return std::log(nearest_image(radius, other_radius, distance) / radius);
+}
+
+class BasisOrders {
+ public:
+  BasisOrders(const Placement& placement, double k, double tolerance, std::span<const Vec2> sensors)
+      : placement_(placement), k_(k), tolerance_(tolerance), sensors_(sensors) {
+    for (const auto& placed : placement) species_of_.push_back(species_of(placed.scatterer));
+  }
+
+  std::vector<ScaledComplex> basis(std::size_t j, const std::vector<Neighbour>& around) {
+    const bool disk = placement_[j].scatterer.is_disk();
+    return species_[species_of_[j]].up_to(disk ? order_of(j, around) : 0);
+  }
+
+ private:
+  std::size_t species_of(const Scatterer& scatterer) {
+    if (scatterer.is_bulk())
+      throw InputError("scatterer", "hg", "the wave solver needs point, soft, hard, tm or te");
+    const auto known = std::find_if(species_.begin(), species_.end(), [&](const Species& species) {
+      return species.scatterer == scatterer;
+    });
+    const auto index = static_cast<std::size_t>(known - species_.begin());
+    if (known == species_.end())
+      species_.push_back({scatterer, k_, oscillating_order(scatterer, k_), 0, {}, {}});
+    return index;
+  }
+
+  double nearest_sensor(std::size_t j) const {
+    double nearest = nowhere;
+    for (const Vec2& sensor : sensors_)
+      nearest = std::min(nearest, length(sensor - placement_[j].position));
+    return nearest;
+  }
+
+  Contact contact_of(std::size_t j, const Neighbour& neighbour) const {
+    const double a = placement_[j].scatterer.radius,
+                 b = placement_[neighbour.scatterer].scatterer.disk_radius();
+    const double relative = (neighbour.distance - a - b) / (b > 0 ? std::min(a, b) : a);
+    const double step = std::floor(steps * std::log2(relative));
+    return {species_of_[j], species_of_[neighbour.scatterer],
+            static_cast<int>(std::min<double>(last_step, step))};
+  }
+
+  double distance_of(const Contact& contact) const {
+    const double a = species_[contact.first].scatterer.radius,
+                 b = species_[contact.second].scatterer.disk_radius();
+    return a + b + (b > 0 ? std::min(a, b) : a) * std::exp2(contact.step / steps);
+  }
+
+  int order_of(std::size_t j, const std::vector<Neighbour>& around) {
+    const double sensor = nearest_sensor(j);
+    if (around.empty()) return lone_order(species_[species_of_[j]], sensor);
+    int order = 0;
+    for (const Neighbour& neighbour : around)
+      if (may_matter(j, neighbour, order))
+        order = std::max(order, pair_order(j, neighbour, sensor));
+    return order;
+  }
+
+  // Images of the order fade as (radius / image)^(2 order).
+  bool may_matter(std::size_t j, const Neighbour& neighbour, int order) const {
+    return order * std::log(neighbour.image / placement_[j].scatterer.radius) <
+           -2 * std::log(tolerance_);
+  }
+
+  int lone_order(Species& own, double sensor) {
+    for (int more = first_orders;; more *= 2)
+      if (const auto order =
+              order_within(own, lone_strength(own, own.oscillating + more), sensor, lone_safety))
+        return *order;
+  }
+
+  int pair_order(std::size_t j, const Neighbour& neighbour, double sensor) {
+    Species& own = species_[species_of_[j]];
+    const Contact contact = contact_of(j, neighbour);
+    const double factor = safety(own.scatterer, k_);
+    for (int more = first_orders; more <= most_paired(own.scatterer); more *= 2)
+      if (const auto order =
+              order_within(own, pair_strength(contact, own.oscillating + more), sensor, factor))
+        return *order;
+    return bounded_order(j, contact, sensor);
+  }
+
+  // Strengths are log2 of what bounds |beta_n|.
+  const std::vector<double>& lone_strength(Species& own, int size) {
+    own.extend(size);
+    lone_.resize(size + 1);
+    for (int n = 0; n <= size; ++n) lone_[n] = own.log_t[n] / 2;
+    return lone_;
+  }
+
+  const std::vector<double>& pair_strength(const Contact& contact, int size) {
+    auto& strength = paired_[{contact, size}];
+    if (!strength.empty()) return strength;
+    Species &own = species_[contact.first], &other = species_[contact.second];
+    const double distance = distance_of(contact), a = own.scatterer.radius,
+                 b = other.scatterer.disk_radius();
+    int other_size = 0;
+    if (b > 0) {  // as far along the series of images
+      const double ratio = xi(a, b, distance) / xi(b, a, distance);
+      const auto more = static_cast<int>(ratio * (size - own.oscillating));
+      other_size = other.oscillating + std::clamp(more, first_orders, highest_order);
+    }
+    strength = pair_response(own.up_to(size), other.up_to(other_size), k_, distance);
+    for (double& s : strength) s = std::log2(s);
+    return strength;
+  }
+
+  // (F |T_n|)^1/2 w_n of the header: images are as strong as the field that causes them.
+  const std::vector<double>& bound(const Contact& contact, int size) {
+    auto& strength = bounds_[{contact, size}];
+    if (!strength.empty()) return strength;
+    Species &own = species_[contact.first], &other = species_[contact.second];
+    const double distance = distance_of(contact), a = own.scatterer.radius,
+                 b = other.scatterer.disk_radius();
+    strength = log_hankel(size, k_, nearest_image(a, b, distance));
+    if (b > 0) {
+      other.extend(size);
+      auto sent = log_hankel(size, k_, nearest_image(b, a, distance));
+      for (int m = 0; m <= size; ++m) sent[m] = other.log_t[m] + std::max(0.0, sent[m]);
+      const auto translation = log_hankel(2 * size, k_, distance);
+      for (int n = 0; n <= size; ++n)
+        for (int m = 0; m <= size; ++m)
+          strength[n] = std::max(strength[n], sent[m] + translation[n + m]);
+    }
+    own.extend(size);
+    for (int n = 0; n <= size; ++n)
+      strength[n] = std::max(0.0, strength[n]) + (own.log_t[n] + std::log2(own.field)) / 2;
+    return strength;
+  }
+
+  // The order beyond which little is left, if the strengths reach far enough to tell.
+  std::optional<int> order_within(Species& own, const std::vector<double>& strength, double sensor,
+                                  double safety_factor) const {
+    if (strength.empty()) return std::nullopt;
+    const int size = static_cast<int>(strength.size()) - 1;
+    own.extend(size);
+    if (own.field == 0) return 0;
+    const auto receiver = log_hankel(size, k_, sensor);
+    const bool inside = own.scatterer.is_penetrable() && is_on_rim(own.scatterer, sensor);
+    const auto rim = inside ? own.log_rim(size) : std::vector<double>(size + 1, -nowhere);
+    const double most = tolerance_ * own.field;
+    double rest = 0;
+    int order = size + 1;
+    while (order > 0 && rest <= most) {
+      --order;
+      const double near = strength[order] + own.log_t[order] / 2 + receiver[order];
+      rest += safety_factor * std::exp2(2 * strength[order]) + near_safety * std::exp2(near) +
+              near_safety * own.field * std::exp2(strength[order] + rim[order]);
+    }
+    if (order > own.oscillating + 3 * (size - own.oscillating) / 4) return std::nullopt;
+    return order;
+  }
+
+  int bounded_order(std::size_t j, const Contact& contact, double sensor) {
+    Species& own = species_[contact.first];
+    const double radius = own.scatterer.radius,
+                 other_radius = species_[contact.second].scatterer.disk_radius();
+    const double statics =
+        -std::log(tolerance_) / (2 * xi(radius, other_radius, distance_of(contact)));
+    if (statics > highest_order) refuse(j, statics);
+    for (int size = 128 + own.oscillating + static_cast<int>(1.4 * statics);; size *= 2) {
+      const auto order =
+          order_within(own, bound(contact, size), sensor, bound_safety(own.scatterer, k_));
+      if (order && *order > highest_order) refuse(j, *order);
+      if (order) return *order;
+    }
+  }
+
+  [[noreturn]] void refuse(std::size_t j, double order) const {
+    const auto& [position, scatterer] = placement_[j];
+    throw InputError("radius", scatterer.radius,
+                     "the disk at (" + std::to_string(position.x) + ", " +
+                         std::to_string(position.z) +
+                         ") is so close to a neighbour that it needs basis order " +
+                         std::to_string(static_cast<long long>(std::ceil(order))) + ", more than " +
+                         std::to_string(highest_order) +
+                         "; widen the gap (min_gap) or allow a larger tolerance");
+  }
+
+  const Placement& placement_;
+  double k_, tolerance_;
+  std::span<const Vec2> sensors_;
+  std::vector<std::size_t> species_of_;
+  std::vector<Species> species_;
+  std::map<std::pair<Contact, int>, std::vector<double>> paired_, bounds_;  // by orders solved for
+  std::vector<double> lone_;
+};
+
+}  // namespace
+
+std::vector<std::vector<ScaledComplex>> basis(const Placement& placement, double k,
+                                              double tolerance, std::span<const Vec2> sensors) {
+  BasisOrders orders(placement, k, tolerance, sensors);
+  const bool disks = std::any_of(placement.begin(), placement.end(),
+                                 [](const auto& placed) { return placed.scatterer.is_disk(); });
+  const auto around =
+      disks ? neighbours(placement) : std::vector<std::vector<Neighbour>>(placement.size());
+  std::vector<std::vector<ScaledComplex>> basis;
+  for (std::size_t j = 0; j < placement.size(); ++j) basis.push_back(orders.basis(j, around[j]));
+  return basis;
+}
 
 TMatrixSystem::TMatrixSystem(Placement placement, double k, double tolerance,
                              std::span<const Vec2> sensors)

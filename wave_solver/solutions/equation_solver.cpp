@@ -11,7 +11,6 @@
 #include "wave_solver/skeletons/fast_direct.h"
 #include "wave_solver/sums/block_krylov.h"
 #include "wave_solver/sums/fast_product.h"
-#include "wave_solver/sums/gmres.h"
 
 namespace flatspeckle::wave {
 

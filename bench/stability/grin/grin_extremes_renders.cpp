@@ -11,7 +11,7 @@
 #include "bench/scenes/furnaces.h"
 #include "bench/stability/extreme_rows.h"
 #include "grin/render/pictures/map_datasets.h"
-#include "grin/render/pictures/power_gradients.h"
+#include "grin/render/pictures/render_datasets.h"
 #include "grin/render/transport/path_score.h"
 
 namespace flatspeckle::bench {

@@ -8,7 +8,6 @@
 #include <sstream>
 #include <string>
 
-#include "core/numbers/control_variate.h"
 #include "core/numbers/random.h"
 #include "core/numbers/statistics.h"
 #include "grin/media/index/lanes.h"

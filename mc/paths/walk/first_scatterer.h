@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/numbers/random.h"
@@ -9,6 +11,7 @@
 #include "flatland/request/light.h"
 #include "flatland/scene/scene.h"
 #include "grin/media/scattering/free_flight.h"
+#include "mc/paths/bent/graded_scattering.h"
 #include "mc/paths/endpoint_factors/end_factors.h"
 #include "mc/paths/endpoint_factors/gaussian_beam.h"
 #include "mc/paths/endpoint_factors/profile_flight.h"
@@ -201,6 +204,39 @@ class FirstScatterer {
   std::vector<PointRays> point_;
   std::vector<BeamRays> beam_;
   double count_ = 0;  ///< of all
+};
+
+/// First scatterers of a path where light is bent (as first_scatterer.h): a ray of one of the
+/// representative lights, uniform over those that meet the domain, attenuated along it in sigma.
+class GradedFirst {
+ public:
+  GradedFirst(const Scene& scene, const GradedScattering& scattering);
+
+  struct Sample {
+    Vec2 x, arrival;
+    bool hit = true;  ///< else the ray misses the domain, and the path has no scatterer
+  };
+  Sample sample(RandomStream& random) const;
+
+  double density(Vec2 x) const;
+  double density(Vec2 x, Vec2 start, const GradedScattering& scattering) const;
+
+ private:
+  struct Rays {
+    std::shared_ptr<const Wavefront> wave;
+    Light light;
+    double low, high;   ///< of the launch of rays that meet the domain
+    double per_launch;  ///< of a unit wave, power per launch: |cos| of a plane wave, else 1
+  };
+  Rays rays_of(const Light& light) const;
+  RayPlace launched(const Rays& rays, double launch) const;
+  double density(const Rays& rays, const Arrival& arrival, Vec2 x) const;
+
+  Domain domain_;
+  double mu_t_;
+  const GradedMedium& medium_;
+  std::vector<Rays> lights_;
+  std::optional<FirstScatterer> straight_;  ///< where refraction is in the end factors alone
 };
 
 }  // namespace flatspeckle::mc

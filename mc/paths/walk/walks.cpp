@@ -15,7 +15,6 @@
 #include "mc/paths/endpoint_factors/space_scattering.h"
 #include "mc/paths/endpoint_factors/varying_scattering.h"
 #include "mc/paths/walk/first_scatterer.h"
-#include "mc/paths/walk/graded_first.h"
 #include "mc/paths/walk/importance.h"
 #include "mc/paths/walk/path_scorer.h"
 #include "mc/paths/walk/plan.h"

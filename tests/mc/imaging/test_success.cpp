@@ -5,9 +5,9 @@
 
 #include <doctest/doctest.h>
 
+#include "mc/imaging/media_statistics.h"
 #include "mc/imaging/recovery/image_score.h"
 #include "mc/imaging/recovery/sparse_search.h"
-#include "mc/imaging/success_prediction.h"
 
 namespace flatspeckle::mc::test_success {
 

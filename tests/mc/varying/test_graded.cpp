@@ -7,7 +7,7 @@
 #include "core/error.h"
 #include "mc/paths/bent/graded_ends.h"
 #include "mc/paths/bent/linear_medium.h"
-#include "mc/paths/walk/graded_first.h"
+#include "mc/paths/walk/first_scatterer.h"
 #include "mc/paths/walk/scene_scattering.h"
 #include "tests/mc/estimates.h"
 #include "tests/statistics.h"

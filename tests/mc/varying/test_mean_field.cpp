@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include "mc/paths/bent/graded_medium.h"
-#include "mc/paths/bent/homogenised_box.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc::test_mean_field {
