@@ -19,7 +19,6 @@
 #include "core/session/journal.h"
 #include "core/session/session.h"
 #include "mc/fit/fit_datasets.h"
-#include "mc/fit/fit_report.h"
 #include "mc/fit/medium_fit.h"
 #include "mc/fit/plan/fit_plan.h"
 #include "mc/fit/task/fit_data.h"

@@ -11,8 +11,8 @@
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
 #include "core/result/run_state_file.h"
-#include "mc/fit/task/correlated_errors.h"
 #include "mc/fit/task/curve_values.h"
+#include "mc/fit/task/measurement.h"
 #include "mc/jobs/flux_job.h"
 #include "wave_solver/solutions/ensemble.h"
 

@@ -20,7 +20,7 @@
 #include "core/run/interrupt.h"
 #include "core/run/progress.h"
 #include "core/run/stopwatch.h"
-#include "flatland/scene/index_fields.h"
+#include "flatland/scene/scene.h"
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/clusters/cluster_solution.h"
 #include "wave_solver/graded/graded_fields.h"

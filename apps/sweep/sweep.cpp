@@ -14,9 +14,9 @@
 #include "core/error.h"
 #include "core/keys/number_text.h"
 #include "core/result/provenance.h"
+#include "core/run/batch_pool.h"
 #include "core/run/interrupt.h"
 #include "core/run/ranks.h"
-#include "core/run/remote_batches.h"
 #include "core/run/runner.h"
 #include "core/run/stopwatch.h"
 

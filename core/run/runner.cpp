@@ -13,7 +13,6 @@
 #include "core/run/batch_pool.h"
 #include "core/run/interrupt.h"
 #include "core/run/ranks.h"
-#include "core/run/remote_batches.h"
 #include "core/run/stopwatch.h"
 
 namespace flatspeckle {

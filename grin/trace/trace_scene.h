@@ -8,7 +8,6 @@
 #include "grin/media/fields/scene_field.h"
 #include "grin/rays/connections/connection.h"
 #include "grin/rays/marching/ray_stops.h"
-#include "grin/trace/ray_bodies.h"
 #include "grin/trace/ray_tracing.h"
 
 namespace flatspeckle::grin {

@@ -11,7 +11,6 @@
 #include "core/numbers/symmetric.h"
 #include "core/run/interrupt.h"
 #include "core/run/stopwatch.h"
-#include "mc/fit/fit_report.h"
 #include "mc/fit/medium_fit.h"
 #include "mc/fit/model/path_model.h"
 #include "mc/fit/task/curve_values.h"

@@ -7,7 +7,7 @@
 
 #include "core/run/interrupt.h"
 #include "mc/imaging/camera_frame.h"
-#include "mc/imaging/recovery/speckle_band.h"
+#include "mc/imaging/recovery/pair_peaks.h"
 #include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/speckle/field_plan.h"
 

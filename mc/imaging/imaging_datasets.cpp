@@ -15,8 +15,8 @@
 #include "mc/imaging/recovery/camera_noise.h"
 #include "mc/imaging/recovery/deconvolution.h"
 #include "mc/imaging/recovery/line_spectrum.h"
+#include "mc/imaging/recovery/pair_peaks.h"
 #include "mc/imaging/recovery/recovery_datasets.h"
-#include "mc/imaging/recovery/speckle_band.h"
 
 namespace flatspeckle::mc {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "core/numbers/blas.h"
 #include "core/run/interrupt.h"
 #include "core/run/parallel.h"
+#include "flatland/media/layers.h"
 #include "mc/slab/adding/angular_grid.h"
 #include "mc/slab/adding/direction_modes.h"
 #include "mc/slab/adding/plane.h"
@@ -21,6 +23,33 @@
 namespace flatspeckle::mc {
 
 namespace {
+
+Scene slab_of_layer(Scene scene, const Material& material) {
+  scene.profile.reset();
+  scene.scatterer = material.scatterer;
+  scene.medium = material.medium;
+  return scene;
+}
+
+/// Layers that do not scatter have the law of one that does.
+template <typename Geometry>
+std::vector<SlabLayerOf<Geometry, double>> layers_of(const Scene& scene, const Layers& layers,
+                                                     double delay) {
+  const auto& materials = layers.materials();
+  std::vector<std::optional<typename Geometry::Law>> laws;
+  std::optional<typename Geometry::Law> any;
+  for (const Material& material : materials) {
+    laws.emplace_back();
+    if (material.medium.mu_s > 0)
+      any = laws.back() =
+          Geometry::law(slab_of_layer(scene, material), delay * material.motion.diffusion);
+  }
+  std::vector<SlabLayerOf<Geometry, double>> list;
+  for (std::size_t l = 0; l < laws.size(); ++l)
+    list.push_back({materials[l].medium.mu_t, layers.thickness(l), materials[l].medium.albedo,
+                    laws[l] ? *laws[l] : *any});
+  return list;
+}
 
 /// Paths that add to an entry: a pair of lights, what it scatters into, and a pair of views that
 /// collects it.
@@ -377,6 +406,21 @@ Refined changing_covariance(const Scene& scene, bool reversed, const Refinement&
 }
 
 }  // namespace
+
+template <typename Geometry>
+SlabOf<Geometry, double> slab_of(const Scene& scene, double delay) {
+  const BulkMedium& medium = scene.medium;
+  const double depth = scene.domain.depth;
+  if (const auto* layers = dynamic_cast<const Layers*>(scene.profile.get()))
+    return {scene.k, medium.mu_t, depth, layers_of<Geometry>(scene, *layers, delay)};
+  return {scene.k,
+          medium.mu_t,
+          depth,
+          {{medium.mu_t, depth, medium.albedo, Geometry::law(scene, delay)}}};
+}
+
+template SlabOf<PlaneGeometry, double> slab_of<PlaneGeometry>(const Scene&, double);
+template SlabOf<SpaceGeometry, double> slab_of<SpaceGeometry>(const Scene&, double);
 
 template <typename Geometry, typename Number>
 Refined slab_covariance(const SlabOf<Geometry, Number>& slab,

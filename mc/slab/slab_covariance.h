@@ -3,10 +3,15 @@
 #include "flatland/scene/scene.h"
 #include "mc/jobs/bulk_parameter.h"
 #include "mc/jobs/changed_fields.h"
+#include "mc/slab/adding/slab.h"
 #include "mc/slab/refinement.h"
-#include "mc/slab/slab_scene.h"
 
 namespace flatspeckle::mc {
+
+/// A scene's slab; of Layers, of which one at the least scatters, a layer each. delay: of
+/// scatterers that diffuse as the scene states, of which each layer has its share.
+template <typename Geometry>
+SlabOf<Geometry, double> slab_of(const Scene& scene, double delay = 0);
 
 /// The covariance of C14 and C18 on a slab in the plane or, as the scene says, of scalar waves in
 /// space (C41), per entry of the request, as linear transport of pairs at one transverse frequency

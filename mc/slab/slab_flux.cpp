@@ -13,7 +13,7 @@
 #include "mc/slab/adding/direction_modes.h"
 #include "mc/slab/adding/plane.h"
 #include "mc/slab/adding/space.h"
-#include "mc/slab/slab_scene.h"
+#include "mc/slab/slab_covariance.h"
 
 namespace flatspeckle::mc {
 

@@ -5,9 +5,7 @@
 
 #include "core/numbers/random.h"
 #include "reference.h"
-#include "wave_solver/dense/columns.h"
 #include "wave_solver/dense/dense_factor.h"
-#include "wave_solver/dense/symmetric_factor.h"
 #include "wave_solver/equations/t_matrix_system.h"
 
 namespace flatspeckle::wave::test_dense_factor {

@@ -15,7 +15,7 @@
 #include "core/result/result_reader.h"
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/dense/blas.h"
-#include "wave_solver/dense/columns.h"
+#include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/solutions/light_solution.h"
 
 namespace flatspeckle::wave {

@@ -2,12 +2,47 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "core/numbers/complex.h"
 
 namespace flatspeckle::wave {
+
+/// A = L L^T of a complex symmetric (not Hermitian) matrix without pivoting: half the work of LU,
+/// nearly all of it in rank-k updates. Meant for matrices whose real part is positive semidefinite,
+/// as those of passive scatterers are (TMatrixSystem): every Schur complement is of that kind
+/// again, so that no pivot vanishes. Element growth is bounded only where the real part is well
+/// conditioned (Golub and Van Loan 1979); callers check a residual.
+///
+/// a: column-major with leading dimension ld; its lower triangle becomes L, the strict upper one is
+/// left alone. False if a pivot is 0 or not finite.
+bool factor_symmetric(Complex* a, std::size_t n, std::size_t ld);
+
+/// X <- L^-1 X, X column-major of n rows.
+void solve_forward(const Complex* l, std::size_t n, std::size_t ld, Complex* x, std::size_t columns,
+                   std::size_t ldx);
+/// X <- L^-T X
+void solve_backward(const Complex* l, std::size_t n, std::size_t ld, Complex* x,
+                    std::size_t columns, std::size_t ldx);
+
+/// Sums of all columns, of length n, with random phases, four of them, or the columns themselves
+/// where they are fewer: the mean square of what is wrong in the sums is what is wrong in all
+/// columns, in sum.
+std::vector<Complex> combinations(const std::vector<Complex>& columns, std::size_t n);
+
+/// sqrt(sum w |r|^2 / sum w |b|^2) over all columns b, what is left of them, r, being told by
+/// combinations(). weights: [row]
+double relative_size(const std::vector<Complex>& combined_r, const std::vector<Complex>& b,
+                     const std::vector<double>& weights);
+
+/// a^T b of matrices with n rows, columns by columns: [column of b][column of a].
+std::vector<Complex> transposed_product(const std::vector<Complex>& a, const Complex* b,
+                                        std::size_t columns_b, std::size_t n);
+
+/// Throws std::runtime_error where a value is infinite or not a number.
+void require_finite(std::span<const Complex> values);
 
 /// Allocator of a vector whose elements are written before they are read: they are not set to 0
 /// when it is made with a size.
@@ -31,10 +66,10 @@ struct Unset : std::allocator<Number> {
 /// Of a matrix that is filled by whoever makes it, column by column.
 using Entries = std::vector<Complex, Unset<Complex>>;
 
-/// A complex symmetric system M x = b: L L^T without pivoting (symmetric_factor.h), or LU with row
+/// A complex symmetric system M x = b: L L^T without pivoting, or LU with row
 /// exchanges where that leaves a backward error |b - M x| / (|M| |x| + |b|) above 1e-14 after
 /// refinement. It is measured in the 2- and Frobenius norms on combinations of all columns
-/// (columns.h), or on each where they are refined.
+/// (in columns), or on each where they are refined.
 ///
 /// Cost: n^3/6 complex multiplications and as many additions, half of LU's. For the points and
 /// disks of this room that is 0.51 of LAPACK's zgetrf (zsytrf: 0.59). Single precision with
@@ -51,7 +86,7 @@ class DenseFactor {
 
   /// Whether rows had to be exchanged.
   bool is_pivoted() const { return pivoted_; }
-  /// B - M X of combinations (columns.h) of the last columns B and their solution X.
+  /// B - M X of combinations of the last columns B and their solution X.
   const std::vector<Complex>& remainder() const { return remainder_; }
   /// Condition number of M in the Frobenius norm, about: at least that in the 2-norm. Four random
   /// vectors tell it within a factor of two or so (Kenney and Laub 1994). Of the last solve that

@@ -14,7 +14,7 @@
 #include "core/numbers/bessel.h"
 #include "core/numbers/complex.h"
 #include "core/numbers/scaled.h"
-#include "wave_solver/dense/symmetric_factor.h"
+#include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/equations/cylinder_waves.h"
 #include "wave_solver/equations/neighbours.h"
 #include "wave_solver/equations/rim_waves.h"

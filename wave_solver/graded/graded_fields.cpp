@@ -7,7 +7,6 @@
 
 #include "core/error.h"
 #include "core/keys/number_text.h"
-#include "wave_solver/dense/columns.h"
 #include "wave_solver/dense/dense_factor.h"
 
 namespace flatspeckle::wave {

@@ -13,7 +13,7 @@
 #include "core/run/parallel.h"
 #include "core/run/stopwatch.h"
 #include "wave_solver/dense/blas.h"
-#include "wave_solver/dense/symmetric_factor.h"
+#include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/equations/tiles.h"
 #include "wave_solver/skeletons/box_tree.h"
 #include "wave_solver/skeletons/skeletonization.h"

@@ -6,7 +6,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include "wave_solver/dense/columns.h"
 #include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/skeletons/fast_direct.h"
 #include "wave_solver/sums/block_krylov.h"

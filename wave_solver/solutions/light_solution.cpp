@@ -9,7 +9,7 @@
 #include "core/error.h"
 #include "core/numbers/bessel.h"
 #include "wave_solver/dense/blas.h"
-#include "wave_solver/dense/columns.h"
+#include "wave_solver/dense/dense_factor.h"
 
 namespace flatspeckle::wave {
 

@@ -55,7 +55,7 @@ struct SolveOptions {
 
 /// How far a solution can be trusted; NaN-free, -1 where it was not asked for.
 struct Diagnosis {
-  /// ||b - T(a + S b)|| / ||T a||, over all lights (C10); of many an estimate (columns.h)
+  /// ||b - T(a + S b)|| / ||T a||, over all lights (C10); of many an estimate
   double residual = -1;
   double condition = -1;          ///< of the scaled matrix, in the Frobenius norm (an estimate)
   double boundary_residual = -1;  ///< of the fields at the rims (wave_solution.cpp)

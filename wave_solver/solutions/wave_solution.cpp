@@ -12,7 +12,7 @@
 #include "core/result/result_group.h"
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/dense/blas.h"
-#include "wave_solver/dense/columns.h"
+#include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/equations/neighbours.h"
 #include "wave_solver/equations/rim_waves.h"
 

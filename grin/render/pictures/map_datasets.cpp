@@ -1,7 +1,6 @@
 #include "grin/render/pictures/map_datasets.h"
 
 #include "core/result/result_group.h"
-#include "grin/render/methods/map_kernel.h"
 #include "grin/render/methods/tracer.h"
 #include "grin/render/pictures/picture_errors.h"
 

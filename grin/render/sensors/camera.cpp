@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "grin/render/sensors/sensor_table.h"
+#include "grin/render/sensors/sensor_kind.h"
 
 namespace flatspeckle::grin {
 

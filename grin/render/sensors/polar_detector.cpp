@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "grin/media/scattering/start_directions.h"
-#include "grin/render/sensors/sensor_table.h"
+#include "grin/render/sensors/sensor_kind.h"
 
 namespace flatspeckle::grin {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "core/keys/number_text.h"
-#include "grin/render/sensors/sensor_table.h"
+#include "grin/render/sensors/sensor_kind.h"
 
 namespace flatspeckle::grin {
 

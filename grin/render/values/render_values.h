@@ -9,7 +9,6 @@
 #include "grin/render/pictures/render_job.h"
 #include "grin/render/stage/stage.h"
 #include "grin/render/values/field_body.h"
-#include "grin/render/values/plain_bodies.h"
 
 namespace flatspeckle::grin {
 

@@ -6,9 +6,9 @@
 
 #include "core/error.h"
 #include "core/search/levenberg_marquardt.h"
-#include "mc/fit/task/correlated_errors.h"
 #include "mc/fit/task/curve_values.h"
 #include "mc/fit/task/fit_data.h"
+#include "mc/fit/task/measurement.h"
 #include "mc/jobs/gradient_job.h"
 #include "mc/paths/estimators/gradient.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/error.h"
 #include "mc/imaging/recovery/line_spectrum.h"
-#include "mc/imaging/recovery/speckle_band.h"
+#include "mc/imaging/recovery/pair_peaks.h"
 #include "mc/paths/speckle/field_statistics.h"
 
 namespace flatspeckle::mc {

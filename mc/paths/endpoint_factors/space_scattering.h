@@ -5,9 +5,32 @@
 
 #include "flatland/media/medium.h"
 #include "grin/media/scattering/start_directions.h"
-#include "mc/paths/endpoint_factors/space_direction.h"
+#include "mc/paths/endpoint_factors/scattering.h"
 
 namespace flatspeckle::mc {
+
+/// A unit vector of space, y across the plane of incidence; of light in the plane y = 0. Lights and
+/// views lie in that plane, so that of a place in a slab x and z are all that matters, and of a
+/// flight its part in the plane.
+struct SpaceDirection {
+  double x = 0, y = 0, z = 1;
+
+  SpaceDirection() = default;
+  SpaceDirection(double along, double across, double deep) : x(along), y(across), z(deep) {}
+  SpaceDirection(Vec2 in_plane) : x(in_plane.x), z(in_plane.z) {}
+  operator Vec2() const { return {x, z}; }
+};
+
+inline SpaceDirection operator-(const SpaceDirection& a) {
+  return {-a.x, -a.y, -a.z};
+}
+inline double dot(const SpaceDirection& a, const SpaceDirection& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline double one_minus_cosine(const SpaceDirection& from, const SpaceDirection& to) {
+  const SpaceDirection step(to.x - from.x, to.y - from.y, to.z - from.z);
+  return step.y == 0 ? one_minus_cosine(Vec2(from), Vec2(to)) : dot(step, step) / 2;
+}
 
 /// Scattering (scattering.h) of scalar waves in space (conventions, C41).
 class SpaceScattering {

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "flatland/scene/index_fields.h"
+#include "flatland/scene/scene.h"
 #include "mc/paths/endpoint_factors/coherent_field.h"
 
 namespace flatspeckle::mc {

@@ -11,11 +11,11 @@
 #include "flatland/request/light.h"
 #include "flatland/scene/scene.h"
 #include "grin/media/scattering/free_flight.h"
-#include "mc/paths/bent/graded_scattering.h"
 #include "mc/paths/endpoint_factors/end_factors.h"
 #include "mc/paths/endpoint_factors/gaussian_beam.h"
 #include "mc/paths/endpoint_factors/profile_flight.h"
 #include "mc/paths/endpoint_factors/varying_scattering.h"
+#include "mc/paths/walk/scene_scattering.h"
 
 namespace flatspeckle::mc {
 

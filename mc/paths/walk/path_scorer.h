@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mc/paths/endpoint_factors/space_direction.h"
+#include "mc/paths/endpoint_factors/space_scattering.h"
 
 namespace flatspeckle::mc {
 

@@ -5,7 +5,7 @@
 
 #include "core/numbers/random.h"
 #include "grin/design/adjoint/reading.h"
-#include "grin/design/goals/picture_goal.h"
+#include "grin/design/goals/screen_aim.h"
 #include "grin/design/problem/design_scene.h"
 
 namespace flatspeckle::grin::design::test_goals {

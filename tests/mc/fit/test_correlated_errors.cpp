@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/fit/task/correlated_errors.h"
+#include "mc/fit/task/measurement.h"
 
 namespace flatspeckle::mc::test_correlated_errors {
 

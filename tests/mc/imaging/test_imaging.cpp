@@ -11,7 +11,7 @@
 #include "mc/imaging/camera_frame.h"
 #include "mc/imaging/imaging.h"
 #include "mc/imaging/media_statistics.h"
-#include "mc/imaging/recovery/speckle_band.h"
+#include "mc/imaging/recovery/pair_peaks.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc::test_imaging {

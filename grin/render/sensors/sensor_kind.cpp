@@ -1,4 +1,4 @@
-#include "grin/render/sensors/sensor_table.h"
+#include "grin/render/sensors/sensor_kind.h"
 
 namespace flatspeckle::grin {
 
