@@ -12,7 +12,6 @@
 #include "core/numbers/address_space.h"
 #include "core/run/interrupt.h"
 #include "flatland/scene/scene_datasets.h"
-#include "mc/imaging/blinking_datasets.h"
 #include "mc/imaging/imaging_datasets.h"
 #include "mc/imaging/media_statistics.h"
 #include "mc/imaging/recovery/recovery.h"

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "mc/imaging/camera_frame.h"
+#include "mc/imaging/imaging.h"
 #include "mc/imaging/unmixing/unmixing.h"
 
 namespace flatspeckle::bench {

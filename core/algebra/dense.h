@@ -10,6 +10,12 @@
 
 namespace flatspeckle {
 
+/// As datasets have it: last axis fastest.
+inline std::vector<double> row_major(const Eigen::MatrixXd& values) {
+  const Eigen::MatrixXd columns = values.transpose();
+  return {columns.data(), columns.data() + columns.size()};
+}
+
 using Matrix = Eigen::MatrixXd;
 /// Complex rows, one for each channel: in memory a real matrix of twice as many rows, so that
 /// products with real matrices are real ones.

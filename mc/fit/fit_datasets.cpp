@@ -5,7 +5,7 @@
 #include <set>
 #include <sstream>
 
-#include "core/algebra/row_major.h"
+#include "core/algebra/dense.h"
 #include "core/result/result_group.h"
 
 namespace flatspeckle::mc {

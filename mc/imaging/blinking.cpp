@@ -8,7 +8,7 @@
 
 #include "core/run/interrupt.h"
 #include "flatland/request/request.h"
-#include "mc/imaging/camera_frame.h"
+#include "mc/imaging/imaging.h"
 #include "mc/imaging/recovery/frame_statistics.h"
 #include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/speckle/speckle_field.h"

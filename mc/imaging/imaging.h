@@ -2,8 +2,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "core/numbers/complex.h"
+#include "core/numbers/random.h"
 #include "core/numbers/statistics.h"
 #include "mc/imaging/blinking.h"
 #include "mc/imaging/line_camera.h"
@@ -15,6 +18,17 @@
 #include "mc/paths/speckle/speckle_field.h"
 
 namespace flatspeckle::mc {
+
+/// sum over the points n of brightness_n |u_n|^2. field: [point][pixel].
+std::vector<double> sum_of_intensities(std::span<const Complex> field,
+                                       std::span<const double> brightness);
+
+/// The same over its mean.
+std::vector<double> incoherent_sum(std::span<const Complex> field,
+                                   std::span<const double> brightness);
+
+/// The frame as the camera has it.
+void expose(std::vector<double>& frame, const CameraNoise& noise, RandomStream& random);
 
 /// What a frame is measured by.
 struct FrameGrains {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/algebra/divided_difference.h"
+#include "core/algebra/dual.h"
 #include "core/numbers/blas.h"
 #include "core/run/interrupt.h"
 #include "core/run/parallel.h"

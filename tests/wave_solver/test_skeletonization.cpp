@@ -6,7 +6,7 @@
 #include "core/numbers/random.h"
 #include "reference.h"
 #include "wave_solver/equations/t_matrix_system.h"
-#include "wave_solver/skeletons/skeletonization.h"
+#include "wave_solver/skeletons/interpolative.h"
 
 namespace flatspeckle::wave::test_skeletonization {
 

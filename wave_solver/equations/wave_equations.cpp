@@ -14,7 +14,6 @@
 #include "core/numbers/hankel_array.h"
 #include "core/run/parallel.h"
 #include "wave_solver/dense/blas.h"
-#include "wave_solver/equations/tiles.h"
 
 namespace flatspeckle::wave {
 

@@ -19,9 +19,9 @@
 #include "core/run/progress.h"
 #include "core/run/stopwatch.h"
 #include "wave_solver/dense/blas.h"
-#include "wave_solver/equations/multipole_ring.h"
 #include "wave_solver/equations/rim_waves.h"
 #include "wave_solver/solutions/wave_solution.h"
+#include "wave_solver/sums/fast_product.h"
 #include "wave_solver/sums/helmholtz_sum.h"
 
 namespace flatspeckle::wave {
@@ -164,7 +164,7 @@ std::vector<Vec2> positions(const MapGrid& grid, const MapTile& tile, const Pixe
 
 }  // namespace
 
-/// The scattered field of a solution at many points: rings of point sources (multipole_ring.h)
+/// The scattered field of a solution at many points: rings of point sources
 /// stand for the scatterers wherever a point is beyond a clearance from their centres, so that a
 /// HelmholtzSum serves; nearer points are corrected one by one.
 class RingField {

@@ -14,9 +14,9 @@
 #include "core/run/stopwatch.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/dense_factor.h"
-#include "wave_solver/equations/tiles.h"
+#include "wave_solver/equations/wave_equations.h"
 #include "wave_solver/skeletons/box_tree.h"
-#include "wave_solver/skeletons/skeletonization.h"
+#include "wave_solver/skeletons/interpolative.h"
 
 namespace flatspeckle::wave {
 

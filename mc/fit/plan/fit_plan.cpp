@@ -5,7 +5,7 @@
 
 #include <Eigen/LU>
 
-#include "core/algebra/row_major.h"
+#include "core/algebra/dense.h"
 #include "core/error.h"
 #include "core/numbers/symmetric.h"
 #include "core/result/result_group.h"

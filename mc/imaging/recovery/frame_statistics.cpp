@@ -2,14 +2,164 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "core/error.h"
 #include "mc/imaging/recovery/line_spectrum.h"
-#include "mc/imaging/recovery/pair_peaks.h"
 #include "mc/paths/speckle/field_statistics.h"
 
 namespace flatspeckle::mc {
+
+double speckle_peak(double lag, double band) {
+  const double turns = std::numbers::pi * band * lag;
+  if (std::abs(turns) < 1e-6) return 1;
+  const double sinc = std::sin(turns) / turns;
+  return sinc * sinc;
+}
+
+double speckle_power(double frequency, double band) {
+  double power = 0;
+  for (int fold = -2; fold <= 2; ++fold)
+    power += std::max(1 - std::abs(frequency + fold) / band, 0.0) / band;
+  return power;
+}
+
+double grain_of(double band) {
+  double sum = 0;
+  for (int lag = 1; lag < 3 / band; ++lag) sum += std::pow(speckle_peak(lag, band), 2);
+  return 1 + 2 * sum;
+}
+
+namespace {
+
+/// An autocorrelation along a peak, of which what stands beside the main lobe is taken off.
+struct PeakFit {
+  double height = 0;
+  double part = 0;  ///< over its standard deviation where all lags have one of 1
+};
+
+PeakFit fitted_peak(std::span<const double> autocorrelation, double band, double white) {
+  constexpr std::size_t least = 64;
+  const double at_zero = 1 / (1 + white / 2);
+  double product = at_zero * autocorrelation[0] / 2, square = at_zero / 2, sum = at_zero / 2;
+  double beside = 0, count = 0;
+  for (std::size_t lag = 1; lag < autocorrelation.size(); ++lag) {
+    const double lobes = static_cast<double>(lag) * band;
+    if (lobes < 1) {
+      const double peak = speckle_peak(static_cast<double>(lag), band);
+      product += autocorrelation[lag] * peak;
+      square += peak * peak;
+      sum += peak;
+    } else if (lobes < 6 || lag < least) {
+      beside += autocorrelation[lag];
+      ++count;
+    }
+  }
+  const double own = product - sum * beside / count, norm = square + sum * sum / count;
+  return {own / norm, own / std::sqrt(norm)};
+}
+
+}  // namespace
+
+double fitted_band(std::span<const double> autocorrelation, double noise, double white) {
+  constexpr double finer = 1.02;
+  const double height = (autocorrelation[0] - 4 * noise * std::sqrt(2 + white)) / 2;
+  double found = 0, most = 0;
+  for (double band = 1; band * static_cast<double>(autocorrelation.size()) > 4; band /= finer)
+    if (const PeakFit fit = fitted_peak(autocorrelation, band, white);
+        fit.part > most && fit.height > height) {
+      most = fit.part;
+      found = band;
+    }
+  return found;
+}
+
+namespace {
+
+/// An even line of `size` values and its mirror image.
+std::vector<double> both_sides(std::span<const double> line) {
+  std::vector<double> both(line.begin(), line.end());
+  both.insert(both.end(), line.rbegin() + 1, line.rend() - 1);
+  return both;
+}
+
+/// By frequency. The peak of a pair keeps its height.
+struct Filter {
+  std::vector<double> spectrum;
+  double width = 0;  ///< of what it makes of a peak
+};
+
+Filter filter_of(const LineSpectrum& spectra, const AutocorrelationTerms& terms) {
+  std::vector<double> filter(spectra.size());
+  double kept = 0, squares = 0;
+  for (std::size_t m = 0; m < filter.size(); ++m) {
+    const double speckle = speckle_power(spectra.frequency(m), terms.band),
+                 power = terms.alone * speckle + terms.white;
+    filter[m] = power > 0 ? speckle / power : 0;
+    kept += filter[m] * speckle / static_cast<double>(filter.size());
+    squares += std::pow(filter[m] * speckle, 2) / static_cast<double>(filter.size());
+  }
+  for (double& value : filter) value /= kept;
+  return {std::move(filter), squares / (kept * kept)};
+}
+
+/// A line of another number of values, as many frequencies as either has.
+std::vector<double> resampled(std::span<const Complex> spectrum, std::size_t size) {
+  std::vector<Complex> part(size);
+  const std::size_t half = (std::min(size, spectrum.size()) - 1) / 2;
+  part[0] = spectrum[0];
+  for (std::size_t m = 1; m <= half; ++m) {
+    part[m] = spectrum[m];
+    part[size - m] = spectrum[spectrum.size() - m];
+  }
+  auto line = LineSpectrum(size).line(std::move(part));
+  const double scale = static_cast<double>(size) / static_cast<double>(spectrum.size());
+  for (double& value : line) value *= scale;
+  return line;
+}
+
+double rms(std::span<const double> values) {
+  double squares = 0;
+  for (const double value : values) squares += value * value;
+  return std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+}  // namespace
+
+PairPeaks pair_peaks(std::span<const double> autocorrelation, std::size_t lags,
+                     const AutocorrelationTerms& terms) {
+  const std::size_t known = std::min(2 * lags, autocorrelation.size());
+  std::vector<double> pairs(autocorrelation.begin(),
+                            autocorrelation.begin() + static_cast<long>(known));
+  for (std::size_t lag = 0; lag < known; ++lag)
+    pairs[lag] -= terms.alone * speckle_peak(static_cast<double>(lag), terms.band);
+  const auto line = both_sides(pairs);
+  const LineSpectrum spectra(line.size());
+  auto spectrum = spectra.of(line);
+  const auto filter = filter_of(spectra, terms);
+  for (std::size_t m = 0; m < spectrum.size(); ++m) spectrum[m] *= filter.spectrum[m];
+
+  const double finest = 0.5, asked = std::max(grain_of(terms.band) / 3, finest),
+               length = static_cast<double>(line.size());
+  const std::size_t size = transform_size(length / asked);
+  PairPeaks peaks;
+  peaks.step = length / static_cast<double>(size);
+  peaks.alone = terms.alone;
+  peaks.width = filter.width;
+  peaks.height = resampled(spectrum, size);
+  const auto in_steps = [&](std::size_t pixels) {
+    return static_cast<std::size_t>(static_cast<double>(pixels) / peaks.step);
+  };
+  const std::size_t inside = in_steps(lags), beyond = std::min(in_steps(known), size / 2);
+  const auto nothing = std::span(peaks.height).subspan(inside, beyond - inside);
+  const double mean =
+      std::reduce(nothing.begin(), nothing.end()) / static_cast<double>(nothing.size());
+  for (double& height : peaks.height) height -= mean;  // the envelope has taken it
+  peaks.noise = rms(nothing);
+  peaks.height.resize(inside);
+  return peaks;
+}
 
 namespace {
 

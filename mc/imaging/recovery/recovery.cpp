@@ -1,6 +1,328 @@
 #include "mc/imaging/recovery/recovery.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <vector>
+
 namespace flatspeckle::mc {
+
+namespace {
+
+/// Points at these lags with the brightness that is most likely.
+struct RulerFit {
+  std::vector<double> marks, brightness;  ///< marks in steps
+  double explained = 0;
+  double gain = 0;  ///< twice the logarithm of the likelihood, over that of nothing
+};
+
+/// What is expected of a pair of points of mean brightness at each lag of the peaks.
+std::vector<double> expected_heights(const PairPeaks& peaks, const SparseTask& task) {
+  const double equal = peaks.alone / static_cast<double>(task.points);
+  std::vector<double> expected(peaks.height.size());
+  for (std::size_t lag = 0; lag < expected.size(); ++lag)
+    expected[lag] =
+        equal * memory_correlation(static_cast<double>(lag) * peaks.step, task.memory_range);
+  return expected;
+}
+
+constexpr double spread = 1.0 / 3;  ///< of the brightness, over its mean
+
+/// By cubic interpolation (Catmull and Rom).
+double value_at(const std::vector<double>& line, double place) {
+  const auto last = static_cast<long>(line.size()) - 1;
+  const double lag = std::abs(place), below = std::floor(lag), t = lag - below;
+  const auto at = [&](long offset) {
+    return line[static_cast<std::size_t>(
+        std::clamp(std::abs(static_cast<long>(below) + offset), 0L, last))];
+  };
+  const double a = at(-1), b = at(0), c = at(1), d = at(2);
+  return b + t / 2 * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
+}
+
+/// Height of each pair and what points of mean brightness would have.
+struct Pairs {
+  std::size_t points;
+  std::vector<double> height, expected;  ///< [i][j]
+
+  Pairs(const PairPeaks& peaks, const std::vector<double>& means, const std::vector<double>& marks)
+      : points(marks.size()), height(points * points), expected(points * points) {
+    for (std::size_t i = 0; i < points; ++i)
+      for (std::size_t j = 0; j < points; ++j)
+        if (i != j) {
+          height[i * points + j] = value_at(peaks.height, marks[i] - marks[j]);
+          expected[i * points + j] = value_at(means, marks[i] - marks[j]);
+        }
+  }
+};
+
+/// The most likely brightness, one point after the other.
+void improve_brightness(const Pairs& pairs, double variance, std::vector<double>& b) {
+  constexpr int sweeps = 30;
+  const double of_prior = variance / (spread * spread);
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (std::size_t i = 0; i < b.size(); ++i) {
+      double product = of_prior, square = of_prior;
+      for (std::size_t j = 0; j < b.size(); ++j) {
+        const double alone = pairs.expected[i * b.size() + j] * b[j];
+        product += pairs.height[i * b.size() + j] * alone;
+        square += alone * alone;
+      }
+      if (square > 0) b[i] = std::max(product / square, 0.0);
+    }
+}
+
+/// (2 h a - a^2) / s^2 over the pairs of point i.
+double gain_of(const Pairs& pairs, const std::vector<double>& b, std::size_t i, double variance) {
+  double gain = 0;
+  for (std::size_t j = 0; j < b.size(); ++j) {
+    const double a = pairs.expected[i * b.size() + j] * b[i] * b[j];
+    gain += (2 * pairs.height[i * b.size() + j] - a) * a / variance;
+  }
+  return gain;
+}
+
+/// Whether marks, and all distances of two, are so far from each other.
+bool are_distinct(const std::vector<double>& marks, double apart) {
+  std::vector<double> distances{0};
+  for (std::size_t i = 0; i < marks.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) distances.push_back(std::abs(marks[i] - marks[j]));
+  std::sort(distances.begin(), distances.end());
+  const auto nearer = [apart](double a, double b) { return b - a < apart; };
+  return std::adjacent_find(distances.begin(), distances.end(), nearer) == distances.end();
+}
+
+/// Each mark by quarters of a step, one at most, while that makes the object likelier, and leaves
+/// it distinct: else two pairs would have the same peak.
+void improve_marks(const PairPeaks& peaks, const std::vector<double>& expected, double apart,
+                   double variance, const std::vector<double>& b, std::vector<double>& marks) {
+  constexpr int sweeps = 4;
+  constexpr double shift = 0.25;
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (std::size_t i = 0; i < marks.size(); ++i) {
+      const double from = marks[i];
+      double best = from, most = -1e300;
+      for (const double mark : {from, from - shift, from + shift}) {
+        marks[i] = mark;
+        if (mark != from && !are_distinct(marks, apart)) continue;
+        const double gain = gain_of(Pairs(peaks, expected, marks), b, i, variance);
+        if (gain > most) {
+          most = gain;
+          best = mark;
+        }
+      }
+      marks[i] = best;
+    }
+}
+
+/// apart: with places about them that are most likely too, of which points and distances keep so
+/// many steps from each other.
+RulerFit fitted_ruler(const PairPeaks& peaks, const std::vector<double>& expected,
+                      std::vector<double> marks, std::optional<double> apart = std::nullopt) {
+  const double variance = std::max(peaks.noise * peaks.noise, 1e-12 * peaks.alone * peaks.alone);
+  RulerFit fit;
+  fit.brightness.assign(marks.size(), 1);
+  improve_brightness(Pairs(peaks, expected, marks), variance, fit.brightness);
+  if (apart) improve_marks(peaks, expected, *apart, variance, fit.brightness, marks);
+  const Pairs pairs(peaks, expected, marks);
+  if (apart) improve_brightness(pairs, variance, fit.brightness);
+  double product = 0, squares = 0, heights = 0;
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    fit.gain += gain_of(pairs, fit.brightness, i, variance) / 2 -
+                std::pow((fit.brightness[i] - 1) / spread, 2);
+    for (std::size_t j = 0; j < marks.size(); ++j) {
+      const std::size_t at = i * marks.size() + j;
+      const double a = pairs.expected[at] * fit.brightness[i] * fit.brightness[j];
+      product += pairs.height[at] * a;
+      squares += a * a;
+      heights += pairs.height[at] * pairs.height[at];
+    }
+  }
+  if (squares > 0 && heights > 0) fit.explained = product / std::sqrt(squares * heights);
+  fit.marks = std::move(marks);
+  return fit;
+}
+
+/// Sorted positions in steps, the first at 0, and what their pairs sum up to.
+struct Ruler {
+  std::vector<int> marks;
+  double sum = 0;
+};
+
+/// A ruler and a further mark.
+struct Longer {
+  double sum;
+  std::uint32_t parent;
+  int mark;
+};
+
+class SparseSearch {
+ public:
+  /// scores: of a pair by its lag.
+  SparseSearch(std::vector<double> scores, std::size_t points, int apart, std::size_t beam)
+      : scores_(std::move(scores)),
+        points_(points),
+        apart_(apart),
+        longest_(static_cast<int>(scores_.size()) - 1),
+        beam_(beam) {}
+
+  std::vector<Ruler> grown() {
+    std::vector<Ruler> rulers{{{0}, 0}};
+    while (rulers.front().marks.size() < points_) {
+      longer_.clear();
+      // an object of n points comes from n shorter ones
+      const std::size_t kept = beam_ * (rulers.front().marks.size() + 1);
+      for (std::uint32_t parent = 0; parent < rulers.size(); ++parent) {
+        grow(rulers[parent], parent);
+        if (longer_.size() > 4 * kept) keep(kept);
+      }
+      keep(kept);
+      if (longer_.empty()) return {};
+      rulers = best_of(rulers);
+    }
+    return rulers;
+  }
+
+ private:
+  /// By each mark that keeps all distances distinct.
+  void grow(const Ruler& ruler, std::uint32_t parent) {
+    const int last = ruler.marks.back(), count = 2 * longest_ - last + 1;
+    if (count <= 0) return;
+    block(ruler);
+    gains_.assign(static_cast<std::size_t>(count), ruler.sum);
+    for (const int other : ruler.marks)  // of marks from last - longest_ on
+      for (int k = 0; k < count; ++k)
+        gains_[static_cast<std::size_t>(k)] +=
+            scores_[static_cast<std::size_t>(std::abs(last - longest_ + k - other))];
+    for (int k = 0; k < count; ++k)
+      if (!blocked_[static_cast<std::size_t>(k)])
+        longer_.push_back({gains_[static_cast<std::size_t>(k)], parent, last - longest_ + k});
+  }
+
+  /// Marks whose distances would not be distinct.
+  void block(const Ruler& ruler) {
+    const int first = ruler.marks.back() - longest_, count = longest_ - first + 1;
+    blocked_.assign(static_cast<std::size_t>(count), 0);
+    const auto from_to = [&](int from, int to) {
+      for (int k = std::max(0, from - first); k <= std::min(count - 1, to - first); ++k)
+        blocked_[static_cast<std::size_t>(k)] = 1;
+    };
+    const auto around = [&](int mark) { from_to(mark - apart_ + 1, mark + apart_ - 1); };
+    for (const int mark : ruler.marks) {
+      around(mark);
+      for (const int a : ruler.marks)
+        for (const int b : ruler.marks) {
+          if (a >= b) continue;
+          around(mark - (b - a));
+          around(mark + (b - a));
+        }
+    }
+    for (const int a : ruler.marks)
+      for (const int b : ruler.marks)
+        if (a < b) from_to((a + b - apart_ + 2) / 2, (a + b + apart_ - 1) / 2);
+  }
+
+  void keep(std::size_t count) {
+    if (longer_.size() <= count) return;
+    const auto before = [](const Longer& a, const Longer& b) {
+      if (a.sum != b.sum) return a.sum > b.sum;
+      return a.parent != b.parent ? a.parent < b.parent : a.mark < b.mark;
+    };
+    std::nth_element(longer_.begin(), longer_.begin() + static_cast<long>(count), longer_.end(),
+                     before);
+    longer_.resize(count);
+  }
+
+  static Ruler with(const Ruler& ruler, const Longer& by) {
+    Ruler longer{ruler.marks, by.sum};
+    longer.marks.insert(std::upper_bound(longer.marks.begin(), longer.marks.end(), by.mark),
+                        by.mark);
+    const int first = longer.marks.front();
+    std::vector<int> mirrored;
+    for (auto mark = longer.marks.rbegin(); mark != longer.marks.rend(); ++mark)
+      mirrored.push_back(longer.marks.back() - *mark);
+    for (int& each : longer.marks) each -= first;
+    longer.marks = std::min(longer.marks, mirrored);
+    return longer;
+  }
+
+  /// The largest sums, an object and its mirror image once.
+  std::vector<Ruler> best_of(const std::vector<Ruler>& shorter) const {
+    std::vector<Ruler> rulers;
+    for (const Longer& each : longer_) rulers.push_back(with(shorter[each.parent], each));
+    // the same object grown in another order differs by rounding
+    std::sort(rulers.begin(), rulers.end(), [](const Ruler& a, const Ruler& b) {
+      return a.marks != b.marks ? a.marks < b.marks : a.sum > b.sum;
+    });
+    const auto last = std::unique(rulers.begin(), rulers.end(), [](const Ruler& a, const Ruler& b) {
+      return a.marks == b.marks;
+    });
+    rulers.erase(last, rulers.end());
+    std::sort(rulers.begin(), rulers.end(), [](const Ruler& a, const Ruler& b) {
+      return a.sum != b.sum ? a.sum > b.sum : a.marks < b.marks;
+    });
+    if (rulers.size() > beam_) rulers.resize(beam_);
+    return rulers;
+  }
+
+  std::vector<double> scores_;
+  std::size_t points_;
+  int apart_, longest_;
+  std::size_t beam_;
+  std::vector<Longer> longer_;
+  std::vector<double> gains_;  ///< by mark, from the last - longest_ on
+  std::vector<char> blocked_;  ///< likewise
+};
+
+/// What a pair of mean brightness adds to the likelihood, but for a factor.
+std::vector<double> scores_of(const PairPeaks& peaks, const std::vector<double>& expected) {
+  std::vector<double> scores(peaks.height.size());
+  const double full = expected.empty() || !(expected[0] > 0) ? 1 : expected[0];
+  for (std::size_t lag = 0; lag < scores.size(); ++lag)
+    scores[lag] = expected[0] > 0 ? expected[lag] / full * (peaks.height[lag] - expected[lag] / 2)
+                                  : peaks.height[lag];
+  return scores;
+}
+
+LineObject object_of(const RulerFit& fit, double step) {
+  LineObject object{fit.marks, fit.brightness};
+  const double first = *std::min_element(object.x.begin(), object.x.end()),
+               mean = std::reduce(object.brightness.begin(), object.brightness.end()) /
+                      static_cast<double>(object.x.size());
+  for (double& x : object.x) x = (x - first) * step;
+  if (mean > 0)
+    for (double& b : object.brightness) b /= mean;
+  return object;
+}
+
+}  // namespace
+
+double memory_correlation(double distance, double memory_range) {
+  constexpr double at_half = 1.49143;  // (x / sinh x)^2 = 1/2
+  const double x = memory_range > 0 ? at_half * distance / memory_range : 0;
+  return x < 1e-4 ? 1 : std::pow(x / std::sinh(x), 2);
+}
+
+SparseFit sparse_search(const PairPeaks& peaks, const SparseTask& task) {
+  const auto expected = expected_heights(peaks, task);
+  const double resolution = task.resolution / peaks.step;
+  const int apart = std::max(1, static_cast<int>(std::ceil(resolution)));
+  std::vector<RulerFit> fits;
+  for (const Ruler& ruler :
+       SparseSearch(scores_of(peaks, expected), task.points, apart, task.beam).grown())
+    fits.push_back(fitted_ruler(peaks, expected, {ruler.marks.begin(), ruler.marks.end()}));
+  const auto likelier = [](const RulerFit& a, const RulerFit& b) { return a.gain > b.gain; };
+  std::stable_sort(fits.begin(), fits.end(), likelier);
+  constexpr std::size_t finalists = 20;
+  if (fits.size() > finalists) fits.resize(finalists);
+  for (RulerFit& fit : fits) fit = fitted_ruler(peaks, expected, std::move(fit.marks), resolution);
+  std::stable_sort(fits.begin(), fits.end(), likelier);
+  if (fits.empty()) return {};
+  return {object_of(fits.front(), peaks.step), fits.front().explained};
+}
 
 void add_keys(Keys& keys, DeconvolutionKeys& values) {
   keys.add("deconvolution", values.method, "How frames are divided by the reference")

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "core/algebra/divided_difference.h"
+#include "core/algebra/dual.h"
 #include "core/numbers/gauss.h"
 #include "core/run/interrupt.h"
 #include "flatland/scene/frequency_shift.h"

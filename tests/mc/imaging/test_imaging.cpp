@@ -8,10 +8,9 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/imaging/camera_frame.h"
 #include "mc/imaging/imaging.h"
 #include "mc/imaging/media_statistics.h"
-#include "mc/imaging/recovery/pair_peaks.h"
+#include "mc/imaging/recovery/frame_statistics.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc::test_imaging {

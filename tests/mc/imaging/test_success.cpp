@@ -7,7 +7,7 @@
 
 #include "mc/imaging/media_statistics.h"
 #include "mc/imaging/recovery/image_score.h"
-#include "mc/imaging/recovery/sparse_search.h"
+#include "mc/imaging/recovery/recovery.h"
 
 namespace flatspeckle::mc::test_success {
 

@@ -6,7 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "mc/imaging/camera_frame.h"
+#include "mc/imaging/imaging.h"
 #include "mc/imaging/recovery/image_score.h"
 #include "mc/imaging/unmixing/unmixing.h"
 
