@@ -13,7 +13,7 @@
 #include "mc/imaging/recovery/phase_retrieval.h"
 #include "mc/imaging/recovery/recovery.h"
 #include "mc/imaging/recovery/recovery_datasets.h"
-#include "mc/imaging/unmixing/unmixing_datasets.h"
+#include "mc/imaging/unmixing/unmixing.h"
 
 namespace flatspeckle::apps {
 

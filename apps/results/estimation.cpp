@@ -8,7 +8,7 @@
 #include "core/error.h"
 #include "core/numbers/blas.h"
 #include "mc/paths/estimators/covariance_estimator.h"
-#include "mc/slab/adding/space_scene.h"
+#include "mc/slab/adding/space.h"
 #include "mc/slab/slab_jobs.h"
 #include "wave_solver/solutions/ensemble.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "grin/design/descent/objective.h"
+#include "grin/design/descent/least_squares.h"
 
 namespace flatspeckle::bench {
 

@@ -13,7 +13,7 @@
 #include "mc/paths/dynamics/brownian.h"
 #include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/speckle/speckle_field.h"
-#include "mc/slab/adding/space_scene.h"
+#include "mc/slab/adding/space.h"
 #include "mc/slab/slab_covariance.h"
 #include "wave_solver/solutions/ensemble.h"
 

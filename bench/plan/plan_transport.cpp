@@ -2,7 +2,7 @@
 
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
-#include "mc/slab/adding/space_scene.h"
+#include "mc/slab/adding/space.h"
 #include "mc/slab/slab_covariance.h"
 
 namespace flatspeckle::bench {

@@ -7,7 +7,7 @@
 #include "bench/stability/extreme_rows.h"
 #include "bench/stability/mc_extremes.h"
 #include "mc/jobs/flux_job.h"
-#include "mc/slab/adding/space_scene.h"
+#include "mc/slab/adding/space.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_flux.h"
 

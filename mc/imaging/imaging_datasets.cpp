@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/algebra/dense.h"
 #include "core/result/result_group.h"
 #include "mc/imaging/line_camera.h"
 #include "mc/imaging/media_statistics.h"
@@ -16,7 +17,7 @@
 #include "mc/imaging/recovery/frame_statistics.h"
 #include "mc/imaging/recovery/line_spectrum.h"
 #include "mc/imaging/recovery/recovery_datasets.h"
-#include "mc/imaging/unmixing/unmixing_datasets.h"
+#include "mc/imaging/unmixing/unmixing.h"
 
 namespace flatspeckle::mc {
 
@@ -108,7 +109,7 @@ void write_sources(const ResultGroup& root, const LineScene& line,
   if (most == 0) return;
   root.number("source", most);
   write_places(root, media, most, 1 / magnification(line));
-  auto pattern = row_by_row(media.front().blinked.found.factors.pattern.transpose());
+  auto pattern = row_major(media.front().blinked.found.factors.pattern.transpose());
   pattern.resize(most * line.camera.pixels);
   root.put("source_pattern", pattern);
 }

@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/numbers/statistics.h"
-#include "grin/render/pictures/picture_errors.h"
+#include "grin/render/pictures/render_job.h"
 
 namespace flatspeckle::grin::tests::test_picture_errors {
 

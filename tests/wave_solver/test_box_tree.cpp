@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/numbers/random.h"
-#include "wave_solver/skeletons/box_tree.h"
+#include "wave_solver/skeletons/interpolative.h"
 
 namespace flatspeckle::wave::test_box_tree {
 

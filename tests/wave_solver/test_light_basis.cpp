@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "reference.h"
-#include "wave_solver/solutions/light_solution.h"
+#include "wave_solver/solutions/equation_solver.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::wave::test_light_basis {

@@ -16,7 +16,7 @@
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/dense_factor.h"
-#include "wave_solver/solutions/light_solution.h"
+#include "wave_solver/solutions/equation_solver.h"
 
 namespace flatspeckle::wave {
 

@@ -6,7 +6,7 @@
 #include "core/result/dataset_row.h"
 #include "flatland/request/request.h"
 #include "wave_solver/clusters/cluster_equations.h"
-#include "wave_solver/solutions/light_solution.h"
+#include "wave_solver/solutions/equation_solver.h"
 
 namespace flatspeckle::wave {
 

@@ -15,7 +15,6 @@
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/equations/wave_equations.h"
-#include "wave_solver/skeletons/box_tree.h"
 #include "wave_solver/skeletons/interpolative.h"
 
 namespace flatspeckle::wave {

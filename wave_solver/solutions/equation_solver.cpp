@@ -4,8 +4,13 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
+#include <utility>
 
+#include "core/error.h"
+#include "core/numbers/bessel.h"
+#include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/skeletons/fast_direct.h"
 #include "wave_solver/sums/block_krylov.h"
@@ -14,6 +19,79 @@
 namespace flatspeckle::wave {
 
 namespace {
+
+constexpr std::size_t few = 8;  // fewer lights are not worth the trouble
+
+// The largest |J_n| within the circle, n = 0, 1, .. until it is negligible.
+std::vector<double> wave_sizes(double x, double tolerance) {
+  std::vector<double> sizes;
+  const int start = static_cast<int>(std::ceil(x));
+  const int reach = start + 40 + static_cast<int>(10 * std::cbrt(x));
+  const auto j = bessel_j(reach, x);
+  for (int n = 0; n <= reach; ++n) {
+    sizes.push_back(n <= start ? 1 : static_cast<double>(std::abs(j[n])));
+    if (n > start && sizes.back() < tolerance / 100) break;
+  }
+  return sizes;
+}
+
+// Column-major: rows n = -M .. M of size_n i^n e^{-i n angle}, columns lights.
+std::vector<Complex> coefficients(std::span<const double> angles,
+                                  const std::vector<double>& sizes) {
+  const int most = static_cast<int>(sizes.size()) - 1;
+  std::vector<Complex> matrix;
+  for (double angle : angles)
+    for (int n = -most; n <= most; ++n)
+      matrix.push_back(std::polar(sizes[std::abs(n)], n * (std::acos(0.0) - angle)));
+  return matrix;
+}
+
+bool is_source(const Light& light) {
+  return light.kind == Light::Kind::point;
+}
+
+LightBasis source_basis(const Lights& lights) {
+  LightBasis basis;
+  for (const Light& light : lights) {
+    if (!is_source(light))
+      throw InputError("near sources and plane waves or beams: solve for one kind at a time");
+    basis.sources.push_back(light.point);
+  }
+  return basis;
+}
+
+// A plane wave of a light.
+struct Wave {
+  double angle;
+  Complex weight;
+};
+struct Part {
+  std::size_t light;
+  Complex weight;
+};
+
+// With the transverse wavenumber q, a beam of waist w has the spectrum
+//   w / (2 sqrt(pi)) exp(-q^2 w^2 / 4)
+// at its focus. Equal steps of q repeat the beam sideways, beyond the circle.
+std::vector<Wave> waves_of(const Light& light, double k, const Circle& circle, double tolerance) {
+  if (light.kind == Light::Kind::plane) return {{light.angle, 1}};
+  const Vec2 way = circle.centre - light.point, axis = direction(light.angle);
+  const double waist = light.waist, reach = length(way) + circle.radius;
+  const double width = waist * std::hypot(1, 2 * reach / (k * waist * waist));
+  constexpr double negligible = 6;  // widths
+  const double aside = std::abs(way.x * axis.z - way.z * axis.x) + circle.radius;
+  const double step = 2 * std::numbers::pi / (aside + negligible * width);
+  const double highest = std::min(0.999 * k, 2 / waist * std::sqrt(std::log(1e3 / tolerance)));
+  const int count = static_cast<int>(highest / step);
+  std::vector<Wave> waves;
+  for (int n = -count; n <= count; ++n) {
+    const double q = n * step, angle = light.angle + std::asin(q / k);
+    const double size =
+        step * waist / (2 * std::sqrt(std::numbers::pi)) * std::exp(-q * q * waist * waist / 4);
+    waves.push_back({angle, std::polar(size, -k * dot(direction(angle), light.point))});
+  }
+  return waves;
+}
 
 constexpr double best_product = 1e-12;  // the least tolerance of FastProduct
 constexpr double rough_factor = 1e-6;   // finer ones cost more than the refinement that they save
@@ -31,6 +109,108 @@ std::string scientific(double value) {
 }
 
 }  // namespace
+
+Circle enclosing_circle(const Placement& placement) {
+  if (placement.empty()) return {};
+  const Rectangle box = bounds_of(placement, &PlacedScatterer::position);
+  Circle circle{0.5 * (box.low + box.high), 0};
+  for (const auto& [r, scatterer] : placement)
+    circle.radius = std::max(circle.radius, length(r - circle.centre) + scatterer.disk_radius());
+  return circle;
+}
+
+LightBasis light_basis(std::span<const double> angles, double k, const Circle& circle,
+                       double tolerance) {
+  const LightBasis all{{angles.begin(), angles.end()}, {}, {}};
+  const std::size_t lights = angles.size();
+  if (lights <= few) return all;
+  const auto sizes = wave_sizes(std::max(k * circle.radius, 1e-6), tolerance);
+  auto matrix = coefficients(angles, sizes);
+  const auto rows = static_cast<lapack_int>(matrix.size() / lights),
+             columns = static_cast<lapack_int>(lights);
+  std::vector<lapack_int> pivots(lights);
+  std::vector<Complex> reflectors(lights);
+  LAPACKE_zgeqp3(LAPACK_COL_MAJOR, rows, columns, matrix.data(), rows, pivots.data(),
+                 reflectors.data());
+  const auto diagonal = [&](lapack_int i) { return std::abs(matrix[i * (rows + 1)]); };
+  lapack_int rank = 0;
+  while (rank < std::min(rows, columns) && diagonal(rank) > tolerance) ++rank;
+  if (10 * rank > 9 * columns) return all;
+  // The columns left out are R11^-1 R12 of those kept.
+  triangular_solve(CblasLeft, CblasUpper, CblasNoTrans, rank, columns - rank, matrix.data(), rows,
+                   &matrix[rank * rows], rows);
+  LightBasis basis;
+  basis.weights.resize(lights * rank);
+  const auto phase = [&](std::size_t light) {
+    return std::polar(1.0, k * dot(direction(angles[light]), circle.centre));
+  };
+  for (lapack_int i = 0; i < columns; ++i) {
+    const std::size_t light = pivots[i] - 1;
+    if (i < rank) basis.angles.push_back(angles[light]);
+    for (lapack_int j = 0; j < rank; ++j) {
+      const Complex weight = i < rank ? Complex(i == j) : matrix[i * rows + j];
+      basis.weights[light * rank + j] = weight * phase(light) * std::conj(phase(pivots[j] - 1));
+    }
+  }
+  return basis;
+}
+
+LightBasis basis_of(const Lights& lights, double k, const Circle& circle, double tolerance) {
+  if (std::any_of(lights.begin(), lights.end(), is_source)) return source_basis(lights);
+  std::vector<double> angles;
+  std::vector<Part> parts;
+  for (std::size_t light = 0; light < lights.size(); ++light) {
+    for (const auto& [angle, weight] : waves_of(lights[light], k, circle, tolerance)) {
+      parts.push_back({light, weight});
+      angles.push_back(angle);
+    }
+  }
+  LightBasis basis = light_basis(angles, k, circle, tolerance);
+  if (lights.all(Light::Kind::plane)) return basis;
+  const std::size_t rank = basis.angles.size();
+  std::vector<Complex> weights(lights.size() * rank);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    Complex* const row = &weights[parts[p].light * rank];
+    if (basis.weights.empty()) row[p] = parts[p].weight;
+    for (std::size_t j = 0; j < rank && !basis.weights.empty(); ++j)
+      row[j] += parts[p].weight * basis.weights[p * rank + j];
+  }
+  basis.weights = std::move(weights);
+  return basis;
+}
+
+std::vector<Complex> expanded(const LightBasis& basis, std::vector<Complex> columns,
+                              std::size_t n) {
+  if (basis.weights.empty() || n == 0) return columns;
+  std::vector<Complex> all(n * basis.count());
+  multiply(CblasNoTrans, CblasNoTrans, n, basis.count(), basis.size(), 1, columns.data(), n,
+           basis.weights.data(), basis.size(), 0, all.data(), n);
+  return all;
+}
+
+// Fields at the rims and inside of disks amplify what is left of the equations.
+EquationSolver solver_of(const WaveEquations& equations, const SolveOptions& options) {
+  const Method method = options.method == Method::automatic
+                            ? method_for(equations.unknowns(), options.tolerance)
+                            : options.method;
+  return {equations, method, options.sensors.empty() ? options.tolerance : options.tolerance / 10};
+}
+
+LightSolution solve_lights(const WaveEquations& equations, const std::vector<double>& light_angles,
+                           const Circle& circle, const SolveOptions& options) {
+  const auto basis = light_basis(light_angles, equations.k(), circle, options.tolerance);
+  EquationSolver solver = solver_of(equations, options);
+  const auto sides = equations.right_sides(basis.angles);
+  LightSolution found{solver.solve(sides, options.diagnose), {}, {}};
+  if (options.diagnose) {
+    std::vector<double> weights;  // those times their roots are rows of the unscaled equations
+    for (std::size_t i = 0; i < equations.unknowns(); ++i) weights.push_back(equations.strength(i));
+    found.diagnosis = {relative_size(solver.remainder(), sides, weights), solver.condition(), -1};
+  }
+  found.coefficients = expanded(basis, std::move(found.coefficients), equations.unknowns());
+  found.method = solver.description();
+  return found;
+}
 
 Method method_for(std::size_t unknowns, double tolerance) {
   const std::size_t dense_limit = tolerance < 1e-9 ? 5000 : 1500;

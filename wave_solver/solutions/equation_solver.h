@@ -1,11 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/numbers/complex.h"
+#include "flatland/media/domain.h"
+#include "flatland/placement/placement.h"
+#include "flatland/request/light.h"
 #include "wave_solver/equations/wave_equations.h"
 
 namespace flatspeckle::wave {
@@ -58,5 +63,68 @@ class EquationSolver {
   std::vector<Complex> remainder_;
   std::string description_;
 };
+
+/// A few of many plane waves, of which the others are combinations within a circle: never more than
+/// about 2 k R + 50, however many lights there are, and fewer where they come from a narrow range.
+struct LightBasis {
+  std::vector<double> angles;
+  std::vector<Complex> weights;  ///< [light][basis]; empty where every light stands for itself
+  std::vector<Vec2> sources;     ///< point sources, which have no plane waves beside them
+
+  std::size_t size() const { return angles.size() + sources.size(); }
+  /// Of the lights that it stands for.
+  std::size_t count() const { return weights.empty() ? size() : weights.size() / size(); }
+};
+
+struct Circle {
+  Vec2 centre;
+  double radius = 0;
+};
+
+/// Around the rims of all disks.
+Circle enclosing_circle(const Placement& placement);
+
+/// Column-pivoted QR of the waves' Bessel coefficients on the circle (J_n decays beyond k R); what
+/// it leaves out is below tolerance of a unit wave. Falls back to all lights where that saves
+/// little.
+LightBasis light_basis(std::span<const double> angles, double k, const Circle& circle,
+                       double tolerance);
+/// Of any lights: a Gaussian beam is the superposition of plane waves that has the beam's field
+/// across its focus, but for what does not propagate. Throws InputError for point sources mixed
+/// with others.
+LightBasis basis_of(const Lights& lights, double k, const Circle& circle, double tolerance);
+
+struct SolveOptions {
+  /// Relative accuracy asked of far fields, and of near fields at `sensors`; sets the basis orders.
+  double tolerance = 1e-12;
+  std::vector<Vec2> sensors;
+  /// Also estimate residual, condition and boundary residual.
+  bool diagnose = true;
+  Method method = Method::automatic;
+};
+
+/// How far a solution can be trusted; NaN-free, -1 where it was not asked for.
+struct Diagnosis {
+  /// ||b - T(a + S b)|| / ||T a||, over all lights (C10); of many an estimate
+  double residual = -1;
+  double condition = -1;          ///< of the scaled matrix, in the Frobenius norm (an estimate)
+  double boundary_residual = -1;  ///< of the fields at the rims (wave_solution.cpp)
+};
+
+/// beta under unit plane waves.
+struct LightSolution {
+  std::vector<Complex> coefficients;  ///< [light][unknown]
+  Diagnosis diagnosis;                ///< without the boundary residual
+  std::string method;                 ///< in words
+};
+
+/// circle: that holds all bodies. Throws as EquationSolver does.
+LightSolution solve_lights(const WaveEquations& equations, const std::vector<double>& light_angles,
+                           const Circle& circle, const SolveOptions& options);
+
+EquationSolver solver_of(const WaveEquations& equations, const SolveOptions& options);
+
+/// Columns of the basis, n long, to those of all lights.
+std::vector<Complex> expanded(const LightBasis& basis, std::vector<Complex> columns, std::size_t n);
 
 }  // namespace flatspeckle::wave

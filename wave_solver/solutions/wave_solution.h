@@ -8,7 +8,7 @@
 #include "core/result/dataset_row.h"
 #include "flatland/request/request.h"
 #include "wave_solver/equations/t_matrix_system.h"
-#include "wave_solver/solutions/light_solution.h"
+#include "wave_solver/solutions/equation_solver.h"
 
 namespace flatspeckle::wave {
 
@@ -62,7 +62,7 @@ void write_solution(ResultFile& file, const WaveSolution& solution,
 void write_placement(ResultFile& file, const Placement& placement);
 
 /// What lights and views need of a placement within a circle, found once for a whole ensemble: the
-/// few of many lights, or of many far views, that stand for all (light_solution.h).
+/// few of many lights, or of many far views, that stand for all (LightBasis).
 struct FieldPlan {
   LightBasis lights, far_views;
   std::vector<View> views;

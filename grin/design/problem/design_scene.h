@@ -3,7 +3,7 @@
 #include <tuple>
 
 #include "core/keys/keys.h"
-#include "grin/design/descent/objective.h"
+#include "grin/design/descent/least_squares.h"
 #include "grin/design/forms/field_form.h"
 #include "grin/design/goals/deflection_aim.h"
 #include "grin/design/goals/fibre_aim.h"

@@ -188,17 +188,6 @@ class CurvedLeg {
   double step_, tolerance_;
 };
 
-}  // namespace
-
-std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field,
-                                               std::span<const Surface> room, bool leapfrogs) {
-  constexpr decltype(&make_ray_field) in_file[ray_field_files] = {ray_field_in<0>, ray_field_in<1>,
-                                                                  ray_field_in<2>};
-  return in_file[field.index() % ray_field_files](field, room, leapfrogs);
-}
-
-namespace {
-
 /// Integrators of a RayField for ConnectionTrial.
 struct Leap {
   static void step(const RayField& field, RayState& ray, double h) { field.leap(ray, h); }

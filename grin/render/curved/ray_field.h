@@ -126,17 +126,4 @@ std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field,
                                                std::span<const Surface> room = {},
                                                bool leapfrogs = false);
 
-/// Fields are compiled in so many files: ray_field_N.cpp has those whose number in the list has the
-/// remainder N, and makes nothing of others.
-inline constexpr std::size_t ray_field_files = 3;
-template <std::size_t file>
-std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field,
-                                             std::span<const Surface> room, bool leapfrogs);
-extern template std::unique_ptr<const RayField> ray_field_in<0>(const AnyIndexField&,
-                                                                std::span<const Surface>, bool);
-extern template std::unique_ptr<const RayField> ray_field_in<1>(const AnyIndexField&,
-                                                                std::span<const Surface>, bool);
-extern template std::unique_ptr<const RayField> ray_field_in<2>(const AnyIndexField&,
-                                                                std::span<const Surface>, bool);
-
 }  // namespace flatspeckle::grin

@@ -235,7 +235,7 @@ void try_all(const Tracers& tracers, double effort, std::vector<Candidate>& all)
 
 /// What else speaks for or against a method, as a factor of its work. Bidirectional tracing misses
 /// least where the trial is too short. Of light that is joined to nothing few paths hit a pixel:
-/// it stays marked for long (picture_errors.h), with bounds in place of errors.
+/// it stays marked for long (PictureErrors), with bounds in place of errors.
 double preference(const Tracer& tracer) {
   if (tracer.method == RenderMethod::bidirectional) return 0.9;
   const bool are_pixels =

@@ -2,7 +2,7 @@
 
 #include "core/result/result_group.h"
 #include "grin/render/methods/tracer.h"
-#include "grin/render/pictures/picture_errors.h"
+#include "grin/render/pictures/render_job.h"
 
 namespace flatspeckle::grin {
 

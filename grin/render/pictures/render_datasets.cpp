@@ -8,7 +8,7 @@
 
 #include "core/result/result_group.h"
 #include "grin/rays/marching/ray.h"
-#include "grin/render/pictures/picture_errors.h"
+#include "grin/render/pictures/render_job.h"
 #include "grin/render/sensors/sensor_edges.h"
 #include "grin/render/transport/path_score.h"
 

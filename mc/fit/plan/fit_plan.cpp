@@ -7,7 +7,6 @@
 
 #include "core/algebra/dense.h"
 #include "core/error.h"
-#include "core/numbers/symmetric.h"
 #include "core/result/result_group.h"
 #include "core/search/levenberg_marquardt.h"
 #include "mc/fit/task/fit_data.h"
@@ -165,12 +164,6 @@ MatrixXd total_information(const PlannedFields& fields, Index parameters, Index 
   return total;
 }
 
-/// A matrix J with J^T J the information.
-MatrixXd root_of(const MatrixXd& information) {
-  const auto [values, vectors] = symmetric_eigen(information);
-  return values.cwiseMax(0).cwiseSqrt().asDiagonal() * vectors.transpose();
-}
-
 /// What is known with some of it left out.
 class Planned {
  public:
@@ -189,7 +182,7 @@ class Planned {
 
   Information known(Index view, Index field) const {
     const MatrixXd one = total_information(fields_, at_.size(), view, field);
-    return information(bounds_, root_of(task_.patterns * one));
+    return information_of(bounds_, task_.patterns * one);
   }
 
   /// Errors over those of all, with one of so many left out in turn.

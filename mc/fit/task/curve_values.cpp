@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "mc/jobs/contrast.h"
-#include "mc/slab/adding/space_scene.h"
+#include "mc/slab/adding/space.h"
 #include "mc/theory/memory_effect.h"
 
 namespace flatspeckle::mc {

@@ -2,10 +2,13 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "core/result/dataset_row.h"
+#include "core/result/result_file.h"
 #include "mc/imaging/recovery/camera_noise.h"
 #include "mc/imaging/recovery/line_object.h"
 
@@ -98,5 +101,10 @@ struct Unmixed {
 /// Throws InputError for frames without light, as without_envelope(), and for fewer frames than
 /// sources.
 Unmixed unmixed(std::span<const std::vector<double>> frames, const UnmixingTask& task);
+
+extern const DatasetTable unmixing_table;
+
+/// Of frames of these names.
+void write_unmixed(ResultFile& file, const std::vector<std::string>& names, const Unmixed& found);
 
 }  // namespace flatspeckle::mc

@@ -9,8 +9,8 @@
 #include "core/error.h"
 #include "core/numbers/phasor.h"
 #include "core/result/result_group.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/estimators/path_ends.h"
-#include "mc/paths/estimators/scored_paths.h"
 #include "mc/paths/estimators/single_scattering.h"
 #include "mc/theory/diffusion.h"
 

@@ -6,8 +6,8 @@
 
 #include "core/result/result_group.h"
 #include "flatland/scene/frequency_shift.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/estimators/path_fields.h"
-#include "mc/paths/estimators/scored_paths.h"
 #include "mc/paths/estimators/single_scattering.h"
 #include "mc/theory/diffusion.h"
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "mc/paths/dynamics/brownian.h"
-#include "mc/paths/estimators/scored_paths.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/estimators/slope_sums.h"
 #include "mc/paths/estimators/sloped_ends.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "mc/paths/estimators/scored_paths.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/estimators/single_scattering.h"
 #include "mc/paths/estimators/slope_sums.h"
 #include "mc/paths/estimators/sloped_ends.h"

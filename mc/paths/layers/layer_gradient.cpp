@@ -8,7 +8,7 @@
 #include "flatland/media/layers.h"
 #include "flatland/scene/scene.h"
 #include "mc/jobs/bulk_parameter.h"
-#include "mc/paths/estimators/scored_paths.h"
+#include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/estimators/slope_sums.h"
 
 namespace flatspeckle::mc {

@@ -13,6 +13,12 @@
 
 namespace flatspeckle::mc {
 
+/// A slab that has the same keys in space: lights and views lie in the plane of incidence, the
+/// medium has a phase function per steradian, and its `dimension` says so. Throws InputError for
+/// boxes, and for scatterers of the plane: what may be in space is hg, two_term_hg, phase_table,
+/// rayleigh and mie, whose albedo is that of its spheres.
+Scene in_space(Scene slab, const ScattererValues& values);
+
 /// A phase function in space, without chance: scalar amplitudes sqrt(p), and its Legendre moments,
 ///   p = sum_l (2 l + 1) / (4 pi) moments[l] P_l(cos).
 /// Of fields at two times, between which the scatterers diffuse, the later one is the second of a
@@ -66,7 +72,7 @@ struct SpaceGeometry {
   static Law law(const Scene& scene, double delay = 0) {
     return SpaceLaw(scene.medium.space_phase.density, delay);
   }
-  /// The scene with other spheres at the same extinction (space_scene.cpp).
+  /// The scene with other spheres at the same extinction.
   static Scene with_scatterer(Scene scene, const Scatterer& scatterer);
   /// One scattering from lights to views.
   template <typename L>

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "mc/slab/adding/space_scene.h"
+#include "mc/slab/adding/space.h"
 #include "mc/slab/slab_covariance.h"
 #include "tests/mc/estimates.h"
 

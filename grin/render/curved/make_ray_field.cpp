@@ -1,4 +1,4 @@
-#pragma once
+#include <variant>
 
 #include "grin/rays/connections/connection_solver.h"
 #include "grin/render/curved/fisheye_rays.h"
@@ -6,6 +6,8 @@
 #include "grin/render/curved/parabolic_rays.h"
 
 namespace flatspeckle::grin {
+
+namespace {
 
 /// Rays of the same index everywhere, without steps.
 class StraightRays final : public RayFieldOf<Homogeneous> {
@@ -51,19 +53,12 @@ std::unique_ptr<const RayField> ray_field_within(const F& field, std::span<const
   return std::make_unique<RayFieldOf<F>>(field);
 }
 
-template <std::size_t file, std::size_t number>
-std::unique_ptr<const RayField> ray_field_from(const AnyIndexField& field,
+}  // namespace
+
+std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field,
                                                std::span<const Surface> room, bool leapfrogs) {
-  if constexpr (number < std::variant_size_v<AnyIndexField>) {
-    if (const auto* of = std::get_if<number>(&field)) return ray_field_within(*of, room, leapfrogs);
-    return ray_field_from<file, number + ray_field_files>(field, room, leapfrogs);
-  }
-  return nullptr;
-}
-template <std::size_t file>
-std::unique_ptr<const RayField> ray_field_in(const AnyIndexField& field,
-                                             std::span<const Surface> room, bool leapfrogs) {
-  return ray_field_from<file, file>(field, room, leapfrogs);
+  const auto within = [&](const auto& of) { return ray_field_within(of, room, leapfrogs); };
+  return std::visit(within, field);
 }
 
 }  // namespace flatspeckle::grin

@@ -1,8 +1,0 @@
-#include "grin/render/curved/ray_field_in.h"
-
-namespace flatspeckle::grin {
-
-template std::unique_ptr<const RayField> ray_field_in<1>(const AnyIndexField&,
-                                                         std::span<const Surface>, bool);
-
-}  // namespace flatspeckle::grin
