@@ -13,7 +13,6 @@
 #include "flatland/request/request.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/theory/allowance.h"
-#include "mc/theory/forward_lobe.h"
 #include "mc/theory/moments_datasets.h"
 #include "wave_solver/solutions/wave_solution.h"
 

@@ -23,7 +23,6 @@
 #include "mc/paths/estimators/reflection_theory.h"
 #include "mc/slab/refinement.h"
 #include "mc/theory/allowance.h"
-#include "mc/theory/forward_lobe.h"
 #include "mc/theory/moments_datasets.h"
 
 namespace flatspeckle::apps {

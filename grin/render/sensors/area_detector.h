@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "grin/render/endpoints/boundary_patch.h"
-#include "grin/render/sensors/acceptance.h"
 #include "grin/render/sensors/sensor_kind.h"
 
 namespace flatspeckle::grin {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "grin/render/endpoints/boundary_patch.h"
-#include "grin/render/sensors/acceptance.h"
 #include "grin/render/sensors/pixel_rings.h"
 #include "grin/render/sensors/sensor_kind.h"
 
