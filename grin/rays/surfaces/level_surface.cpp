@@ -16,8 +16,6 @@
 
 namespace flatspeckle::grin {
 
-namespace {
-
 /// A sum of cubic B-splines on a grid of cubes, and in which of its cells it may be 0.
 class LevelGrid {
  public:
@@ -156,6 +154,8 @@ void LevelGrid::spread_along(int axis) {
     }
   }
 }
+
+namespace {
 
 /// A line through the cells of a grid where f may be 0, and from one of these to the next.
 class LevelLine {

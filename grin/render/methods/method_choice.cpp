@@ -20,7 +20,7 @@ struct PictureMoments {
   double lit = 0;                  ///< how many groups have the light, at equal shares
   double doubt = 1;  ///< relative standard error of the variance; too small where it is near 1
 };
-struct Trial {
+struct MethodTrial {
   std::vector<PictureMoments> pictures;  ///< by sensor
   double work = 0;
 };
@@ -83,8 +83,8 @@ class PictureSums {
 };
 
 /// Nothing where the work is beyond all measure.
-std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, int pairs_per_group,
-                           double most_work) {
+std::optional<MethodTrial> tried(const Tracers& tracers, const Tracer& tracer, int pairs_per_group,
+                                 double most_work) {
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max() - 1;
   const TimeBins& bins = tracers.scene().bins;
   const auto pixels = static_cast<std::size_t>(tracer.transport->pixels());
@@ -108,13 +108,13 @@ std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, int pai
       first += picture.pixels();
     }
   }
-  Trial trial{{}, work(counts, tracers, tracer)};
+  MethodTrial trial{{}, work(counts, tracers, tracer)};
   for (const PictureSums& picture : pictures) trial.pictures.push_back(picture.moments());
   return trial;
 }
 
 /// A few pairs of paths, then as many as the work allows, `effort` times the usual.
-std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, double effort) {
+std::optional<MethodTrial> tried(const Tracers& tracers, const Tracer& tracer, double effort) {
   const double usual = tracers.plan().curved ? 1 << 16 : 1 << 18;
   const double most = 2 * usual;
   if (!(tracer.flights_per_pair * tracers.cost_of_flight() * groups < most)) return std::nullopt;
@@ -126,7 +126,7 @@ std::optional<Trial> tried(const Tracers& tracers, const Tracer& tracer, double 
 
 struct Candidate {
   Tracer tracer;
-  Trial trial = {};
+  MethodTrial trial = {};
 };
 
 /// That of each picture, as the trial has it whose paths share it most evenly.
@@ -151,7 +151,7 @@ struct Needed {
   double doubt = 0;  ///< largest of all sensors, relative: a standard error
   bool is_known = true;
 };
-Needed needed(const Trial& trial, const std::vector<double>& light) {
+Needed needed(const MethodTrial& trial, const std::vector<double>& light) {
   Needed most;
   for (std::size_t i = 0; i < light.size(); ++i) {
     const PictureMoments& picture = trial.pictures[i];
