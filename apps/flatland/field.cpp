@@ -26,7 +26,7 @@ struct FieldKeys {
   MethodSettings estimation;
 };
 
-void add_keys(Keys& keys, FieldKeys& values) {
+void add_field_keys(Keys& keys, FieldKeys& values) {
   add_scatterer_keys(keys, values.spec);
   add_bulk_keys(keys, values.spec);
   add_medium_keys(keys, values.spec);
@@ -132,7 +132,7 @@ void print_summary(const mc::DrawnFields& drawn, const mc::FieldSummary& summary
 class FieldExperiment : public OneShot {
  public:
   void add_keys(Keys& keys) override {
-    apps::add_keys(keys, values_);
+    add_field_keys(keys, values_);
     add_seed_key(keys, run_, "Seed; field n of a seed is always the same");
     add_thread_key(keys, run_);
     add_output_key(keys, run_);

@@ -96,7 +96,7 @@ void add_blinking_keys(Keys& keys, ImageKeys& values) {
       .from(1, 64);
 }
 
-void add_keys(Keys& keys, ImageKeys& values) {
+void add_image_keys(Keys& keys, ImageKeys& values) {
   add_scatterer_keys(keys, values.spec);
   add_bulk_keys(keys, values.spec);
   add_medium_keys(keys, values.spec);
@@ -379,7 +379,7 @@ void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
 class ImageExperiment : public OneShot {
  public:
   void add_keys(Keys& keys) override {
-    apps::add_keys(keys, values_);
+    add_image_keys(keys, values_);
     add_seed_key(keys, run_, "Seed; medium n of a seed is always the same");
     add_thread_key(keys, run_);
     add_output_key(keys, run_);

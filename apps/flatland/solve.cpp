@@ -89,7 +89,7 @@ const std::map<std::string, wave::Method> solvers = {{"auto", wave::Method::auto
                                                      {"fast", wave::Method::fast},
                                                      {"krylov", wave::Method::krylov}};
 
-void add_keys(Keys& keys, SolveKeys& values) {
+void add_solve_keys(Keys& keys, SolveKeys& values) {
   add_scatterer_keys(keys, values.spec);
   add_bulk_keys(keys, values.spec);
   add_medium_keys(keys, values.spec);
@@ -249,7 +249,7 @@ struct GradedWork {
 class SolveExperiment : public OneShot {
  public:
   void add_keys(Keys& keys) override {
-    apps::add_keys(keys, values_);
+    add_solve_keys(keys, values_);
     add_thread_key(keys, run_);
     add_seed_key(keys, run_, "Seed of a drawn placement");
     add_output_key(keys, run_);

@@ -44,11 +44,12 @@ double value_at(const std::vector<double>& line, double place) {
 }
 
 /// Height of each pair and what points of mean brightness would have.
-struct Pairs {
+struct PeakPairs {
   std::size_t points;
   std::vector<double> height, expected;  ///< [i][j]
 
-  Pairs(const PairPeaks& peaks, const std::vector<double>& means, const std::vector<double>& marks)
+  PeakPairs(const PairPeaks& peaks, const std::vector<double>& means,
+            const std::vector<double>& marks)
       : points(marks.size()), height(points * points), expected(points * points) {
     for (std::size_t i = 0; i < points; ++i)
       for (std::size_t j = 0; j < points; ++j)
@@ -60,7 +61,7 @@ struct Pairs {
 };
 
 /// The most likely brightness, one point after the other.
-void improve_brightness(const Pairs& pairs, double variance, std::vector<double>& b) {
+void improve_brightness(const PeakPairs& pairs, double variance, std::vector<double>& b) {
   constexpr int sweeps = 30;
   const double of_prior = variance / (spread * spread);
   for (int sweep = 0; sweep < sweeps; ++sweep)
@@ -76,7 +77,8 @@ void improve_brightness(const Pairs& pairs, double variance, std::vector<double>
 }
 
 /// (2 h a - a^2) / s^2 over the pairs of point i.
-double gain_of(const Pairs& pairs, const std::vector<double>& b, std::size_t i, double variance) {
+double gain_of(const PeakPairs& pairs, const std::vector<double>& b, std::size_t i,
+               double variance) {
   double gain = 0;
   for (std::size_t j = 0; j < b.size(); ++j) {
     const double a = pairs.expected[i * b.size() + j] * b[i] * b[j];
@@ -108,7 +110,7 @@ void improve_marks(const PairPeaks& peaks, const std::vector<double>& expected, 
       for (const double mark : {from, from - shift, from + shift}) {
         marks[i] = mark;
         if (mark != from && !are_distinct(marks, apart)) continue;
-        const double gain = gain_of(Pairs(peaks, expected, marks), b, i, variance);
+        const double gain = gain_of(PeakPairs(peaks, expected, marks), b, i, variance);
         if (gain > most) {
           most = gain;
           best = mark;
@@ -125,9 +127,9 @@ RulerFit fitted_ruler(const PairPeaks& peaks, const std::vector<double>& expecte
   const double variance = std::max(peaks.noise * peaks.noise, 1e-12 * peaks.alone * peaks.alone);
   RulerFit fit;
   fit.brightness.assign(marks.size(), 1);
-  improve_brightness(Pairs(peaks, expected, marks), variance, fit.brightness);
+  improve_brightness(PeakPairs(peaks, expected, marks), variance, fit.brightness);
   if (apart) improve_marks(peaks, expected, *apart, variance, fit.brightness, marks);
-  const Pairs pairs(peaks, expected, marks);
+  const PeakPairs pairs(peaks, expected, marks);
   if (apart) improve_brightness(pairs, variance, fit.brightness);
   double product = 0, squares = 0, heights = 0;
   for (std::size_t i = 0; i < marks.size(); ++i) {
