@@ -3,7 +3,7 @@
 namespace flatspeckle::wave {
 
 std::string reference_path(const std::string& name) {
-  return std::string(FLATSPECKLE_DATA) + "/reference/" + name;
+  return FLATSPECKLE_DATA "/reference/" + name;
 }
 
 Scatterer reference_scatterer(const std::string& kind) {

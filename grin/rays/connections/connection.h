@@ -29,8 +29,9 @@ struct Inside {
 
 /// A ray that joins P and Q.
 struct Connection {
-  Vec3 start_direction, end_direction;  ///< unit tangents, both along the way from P to Q
-  double sigma;                         ///< ray parameter at Q (conventions, C23)
+  /// Unit tangents, both along the way from P to Q.
+  Vec3 start_direction = Vec3::Zero(), end_direction = Vec3::Zero();
+  double sigma;  ///< ray parameter at Q (conventions, C23)
   double arc_length, optical_path;
   double spreading;   ///< |J_PQ|, area per solid angle (C25)
   int orientation;    ///< sign of the determinant in J
