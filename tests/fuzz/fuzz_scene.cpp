@@ -104,7 +104,7 @@ int render_scene(const Arguments& arguments) {
   fuzz::require_finite(scene.step + scene.max_length + scene.stage.medium.mu_t());
   check(scene.stage);
   grin::sensor_ends(scene.sensors, scene.stage);
-  const grin::Lights lights(scene.lights, scene.stage, [](const auto&) { return 1.0; });
+  const grin::StageLights lights(scene.lights, scene.stage, [](const auto&) { return 1.0; });
   fuzz::require_finite(lights.power());
   for (const grin::Sensor& sensor : scene.sensors) {
     for (const auto& [name, middles] : grin::pixels_of(sensor).axes)
