@@ -46,8 +46,6 @@ SearchState begin_search(const Objective& objective, const Search& search,
   return state;
 }
 
-namespace {
-
 /// The sum of the squares of the third differences of coefficients along each axis, with the
 /// matrix D^T D of which that is the square form.
 class Roughness {
@@ -67,6 +65,8 @@ class Roughness {
   CoefficientShape shape_;
 };
 
+namespace {
+
 /// Third differences: they are small where a field is smooth over some cells, also where it bends.
 constexpr std::array<double, 4> stencil{-1, 3, -3, 1};
 constexpr int reach = stencil.size() - 1;
@@ -76,6 +76,8 @@ double difference(std::span<const double> values, std::size_t first, std::size_t
   for (std::size_t i = 0; i < stencil.size(); ++i) sum += stencil[i] * values[first + i * apart];
   return sum;
 }
+
+}  // namespace
 
 /// use(first of those in a line, how far apart they are)
 template <class Use>
@@ -119,8 +121,6 @@ double Roughness::square(std::span<const double> values) const {
 
 constexpr double least_curvature = 1e-9, least_damping = 1e-9;
 constexpr int most_trials = 12;
-
-}  // namespace
 
 /// Residuals as linear functions of the coefficients, about where the search is.
 struct LeastSquares::Model {
