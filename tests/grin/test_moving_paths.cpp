@@ -36,7 +36,7 @@ Powers powers(const RenderValues& values, double samples) {
 template <class Member>
 void check_differences(const RenderValues& values, const std::string& name, const Member& member,
                        std::size_t pixel, double pixel_area, double apart = 0.03) {
-  const auto [share, looser] = tests::effort();
+  const auto [share, looser] = flatspeckle::tests::effort();
   const double samples = share * 120000;
   CAPTURE(name);
   CAPTURE(pixel);
