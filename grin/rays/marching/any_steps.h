@@ -93,27 +93,42 @@ class RayLog {
   RayPath path_;
 };
 
-/// A step, equal or controlled as the log says; returns its length in sigma.
-template <IndexField F>
-double advance(const F& field, RayLog& log, RayState& ray) {
-  const auto by = [&]<class Integrator>(const Integrator&) {
-    const auto& [integrator, longest, tolerance] = log.steps();
-    if (!tolerance) return FixedSteps<Integrator>{longest}.advance(field, ray);
-    ControlledSteps<Integrator> steps{*tolerance, log.next_step(), longest};
-    const double h = steps.advance(field, ray);
-    log.next_step() = steps.h;
+/// Steps that trace() takes, equal or controlled as the log says, and that the log is told of.
+template <class Integrator>
+class LoggedSteps {
+ public:
+  explicit LoggedSteps(RayLog& log)
+      : log_(log),
+        is_controlled_(log.steps().tolerance),
+        fixed_{log.steps().longest},
+        controlled_{log.steps().tolerance.value_or(0), log.next_step(), log.steps().longest} {}
+  ~LoggedSteps() { log_.next_step() = controlled_.h; }
+
+  template <IndexField F>
+  [[gnu::noinline]] void step(const F& field, double h, RayState& ray) const {
+    is_controlled_ ? controlled_.step(field, h, ray) : fixed_.step(field, h, ray);
+  }
+  template <IndexField F>
+  double advance(const F& field, RayState& ray) {
+    const double h = is_controlled_ ? controlled(field, ray) : equal(field, ray);
+    log_.pass(field, ray);
     return h;
-  };
-  return std::visit(by, log.steps().integrator);
-}
-/// The same step again, or a part of it.
-template <IndexField F>
-void step(const F& field, const RayLog& log, double h, RayState& ray) {
-  const auto by = [&]<class Integrator>(const Integrator&) {
-    log.steps().tolerance ? ControlledSteps<Integrator>::step(field, h, ray)
-                          : FixedSteps<Integrator>::step(field, h, ray);
-  };
-  std::visit(by, log.steps().integrator);
-}
+  }
+
+ private:
+  template <IndexField F>
+  [[gnu::flatten]] double controlled(const F& field, RayState& ray) {
+    return controlled_.advance(field, ray);
+  }
+  template <IndexField F>
+  [[gnu::flatten]] double equal(const F& field, RayState& ray) {
+    return fixed_.advance(field, ray);
+  }
+
+  RayLog& log_;
+  bool is_controlled_;
+  FixedSteps<Integrator> fixed_;
+  ControlledSteps<Integrator> controlled_;
+};
 
 }  // namespace flatspeckle::grin

@@ -1,7 +1,6 @@
 #include <variant>
 
 #include "grin/rays/connections/connection_solver.h"
-#include "grin/rays/marching/trace.h"
 #include "grin/render/curved/fisheye_rays.h"
 #include "grin/render/curved/luneburg_rays.h"
 #include "grin/render/curved/parabolic_rays.h"
@@ -15,12 +14,6 @@ class StraightRays final : public RayFieldOf<Homogeneous> {
  public:
   explicit StraightRays(const Homogeneous& field) : RayFieldOf(field), field_(field) {}
 
-  TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
-                  RayState& ray) const override {
-    const TraceEnd end = trace_straight(field_, surfaces, limits, ray);
-    log.end(field_, ray);
-    return end;
-  }
   ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
                              RandomStream& random,
                              ConnectionStatistics& statistics) const override {

@@ -5,7 +5,6 @@
 
 #include "grin/rays/connections/connection_solver.h"
 #include "grin/rays/marching/step_curve.h"
-#include "grin/rays/marching/trace.h"
 #include "grin/rays/surfaces/first_crossing.h"
 
 namespace flatspeckle::grin {
@@ -207,27 +206,7 @@ struct OwnStep {
 
 using Trial = ConnectionTrial<RayField, Sides, OwnStep>;
 
-/// Steps of trace() as a log asks for, of which it is told.
-struct LoggedSteps {
-  RayLog& log;
-
-  void step(const RayField& field, double h, RayState& ray) const { field.step(log, h, ray); }
-  double advance(const RayField& field, RayState& ray) const {
-    const double h = field.advance(log, ray);
-    log.pass(field, ray);
-    return h;
-  }
-};
-
 }  // namespace
-
-TraceEnd RayField::follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
-                          RayState& ray) const {
-  const LoggedSteps steps{log};
-  const TraceEnd end = trace(*this, surfaces, limits, steps, ray);
-  log.end(*this, ray);
-  return end;
-}
 
 LegStop RayField::fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
                       RayState& ray, RayTangent* tangent) const {

@@ -68,12 +68,9 @@ class RayField {
   /// Whether Leapfrog is the one that suits.
   virtual bool leapfrogs() const = 0;
 
-  /// A step as the log asks for, and the same again or a part of it (any_steps.h).
-  virtual double advance(RayLog& log, RayState& ray) const = 0;
-  virtual void step(const RayLog& log, double h, RayState& ray) const = 0;
-  /// trace() by such steps.
+  /// trace(): one call for all steps of a ray.
   virtual TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
-                          RayState& ray) const;
+                          RayState& ray) const = 0;
 
   /// Whether rays may go side by side, at less cost than one by one.
   virtual bool has_lanes() const = 0;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/error.h"
-#include "grin/rays/marching/any_steps.h"
+#include "grin/rays/marching/trace.h"
 #include "grin/render/curved/ray_field.h"
 
 namespace flatspeckle::grin {
@@ -34,11 +34,15 @@ class RayFieldOf : public RayField {
     }
   }
 
-  double advance(RayLog& log, RayState& ray) const override {
-    return grin::advance(field_, log, ray);
-  }
-  void step(const RayLog& log, double h, RayState& ray) const override {
-    grin::step(field_, log, h, ray);
+  TraceEnd follow(std::span<const Surface> surfaces, const TraceLimits& limits, RayLog& log,
+                  RayState& ray) const override {
+    const auto by = [&]<class Integrator>(const Integrator&) {
+      LoggedSteps<Integrator> steps(log);
+      return trace(field_, surfaces, limits, steps, ray);
+    };
+    const TraceEnd end = std::visit(by, log.steps().integrator);
+    log.end(field_, ray);
+    return end;
   }
 
   bool has_lanes() const override { return LaneField<F>; }
