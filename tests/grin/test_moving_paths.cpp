@@ -7,7 +7,6 @@
 #include "bench/oracles/quadrature.h"
 #include "grin/render/sensors/sensor_edges.h"
 #include "tests/grin/analog_powers.h"
-#include "tests/statistics.h"
 
 // Derivatives of powers by numbers of the index field: against closed forms, and against
 // differences of powers that the same random numbers make.
@@ -36,8 +35,7 @@ Powers powers(const RenderValues& values, double samples) {
 template <class Member>
 void check_differences(const RenderValues& values, const std::string& name, const Member& member,
                        std::size_t pixel, double pixel_area, double apart = 0.03) {
-  const auto [share, looser] = flatspeckle::tests::effort();
-  const double samples = share * 120000;
+  constexpr double samples = 120000;
   CAPTURE(name);
   CAPTURE(pixel);
   const Powers all = powers(with(values, {name}), samples);
@@ -56,7 +54,7 @@ void check_differences(const RenderValues& values, const std::string& name, cons
   CAPTURE(other.value);
   CAPTURE(other.error);
   CHECK(std::abs(one.value - other.value) < 4 * std::hypot(one.error, other.error));
-  CHECK(std::hypot(one.error, other.error) < 0.1 * looser * std::abs(one.value));
+  CHECK(std::hypot(one.error, other.error) < 0.1 * std::abs(one.value));
 }
 
 }  // namespace
