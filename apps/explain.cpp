@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
-#include <regex>
 #include <set>
 
 #include "apps/command/subcommands.h"
@@ -98,13 +97,13 @@ void print_row(const ResultReader& file, const std::string& path, const DatasetR
 /// sensor_at_2.
 void print_swept(const ResultReader& file) {
   if (!file.has_attribute("/", "of")) return;
-  static const std::regex varied(R"re("(\w+)\.?(\w*)=)re");
   const auto config = file.attribute<std::string>("/", "config");
-  for (std::sregex_iterator found(config.begin(), config.end(), varied), end; found != end;
-       ++found) {
-    const std::string component = (*found)[2],
-                      name = (*found)[1].str() + (component.empty() ? "" : "_") + component;
-    if (file.has_attribute(name, "long_name"))
+  for (std::size_t at = 0; (at = config.find('"', at)) != std::string::npos; ++at) {
+    const std::size_t equals = config.find_first_of("=\"/", at + 1);
+    std::string name = config.substr(at + 1, equals - at - 1);
+    std::replace(name.begin(), name.end(), '.', '_');
+    if (equals != std::string::npos && config[equals] == '=' &&
+        file.has_attribute(name, "long_name"))
       std::cout << "  " << name << " (" << shape_text(file.shape(name))
                 << "): " << file.attribute<std::string>(name, "long_name") << "; swept\n";
   }

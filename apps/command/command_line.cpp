@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <iterator>
 #include <map>
 #include <optional>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -110,17 +110,35 @@ class SceneFile : public CLI::ConfigTOML {
 const std::map<std::string, double> sizes = {{"nm", 1e-9}, {"um", 1e-6}, {"mm", 1e-3},
                                              {"cm", 1e-2}, {"m", 1},     {"km", 1e3}};
 
-/// A number, perhaps a slash, a unit, perhaps ^2; no letter behind it.
-const std::regex& length_form() {
-  static const std::regex form(
-      R"(((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)\s*(/?)\s*(nm|um|mm|cm|km|m)(\^2)?(?![A-Za-z0-9^]))");
-  return form;
-}
+/// A length, an inverse or an inverse square in a text: power 1, -1, -2 of a unit.
+struct LengthText {
+  std::size_t begin, end;
+  double number, unit;  ///< the unit in metres
+  int power;
+};
 
-/// Lengths, inverses and inverse squares: 1, -1, -2.
-int power_of(const std::smatch& found) {
-  const bool inverse = found.length(2) > 0, square = found.length(4) > 0;
-  return (inverse ? -1 : 1) * (square ? 2 : 1);
+/// The first that begins at `from` or later: a number, perhaps a slash, a unit, perhaps ^2, with no
+/// letter behind it.
+std::optional<LengthText> next_length(const std::string& text, std::size_t from) {
+  const auto is_space = [](unsigned char c) { return std::isspace(c) != 0; };
+  const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0; };
+  for (; (from = text.find_first_of(".0123456789", from)) != std::string::npos; ++from) {
+    double number;
+    const char* const end = text.data() + text.size();
+    const auto [behind, error] = std::from_chars(text.data() + from, end, number);
+    const char* at = std::find_if_not(behind, end, is_space);
+    const bool inverse = at != end && *at == '/';
+    if (inverse) at = std::find_if_not(at + 1, end, is_space);
+    const char* const letters = std::exchange(at, std::find_if_not(at, end, is_letter));
+    const auto unit = sizes.find(std::string(letters, at));
+    const bool square = std::string_view(at, end).starts_with("^2");
+    if (square) at += 2;
+    const bool goes_on = at != end && (*at == '^' || std::isalnum(static_cast<unsigned char>(*at)));
+    if (error == std::errc() && unit != sizes.end() && !goes_on)
+      return LengthText{from, std::size_t(at - text.data()), number, unit->second,
+                        (inverse ? -1 : 1) * (square ? 2 : 1)};
+  }
+  return std::nullopt;
 }
 
 /// Places and what stands with them in a row, "x y z power", may have either.
@@ -145,9 +163,10 @@ std::string to_15_digits(double value) {
 std::optional<double> metres_of(const std::string& text) {
   if (const auto number = read_number(text)) return number;
   if (const auto size = sizes.find(text); size != sizes.end()) return size->second;
-  std::smatch found;
-  if (!std::regex_match(text, found, length_form()) || power_of(found) != 1) return std::nullopt;
-  return *read_number(found[1]) * sizes.at(found[3]);
+  const auto found = next_length(text, 0);
+  if (!found || found->begin > 0 || found->end < text.size() || found->power != 1)
+    return std::nullopt;
+  return found->number * found->unit;
 }
 
 /// What is given of a key with "532nm" as numbers of the scene's unit of length, which has so many
@@ -155,17 +174,17 @@ std::optional<double> metres_of(const std::string& text) {
 /// square. Other texts as they are. Throws InputError where the unit of length is not given.
 std::string in_unit_of_length(const Key& key, const std::string& text,
                               const std::optional<double>& metres) {
-  std::string numbers, rest = text;
-  for (std::smatch found; std::regex_search(rest, found, length_form()); rest = found.suffix()) {
-    const int power = power_of(found);
-    if (!may_have(key, power)) return text;
+  std::string numbers;
+  std::size_t done = 0;
+  for (; const auto found = next_length(text, done); done = found->end) {
+    if (!may_have(key, found->power)) return text;
     if (!metres)
       throw InputError(key.name(), text,
                        "has a unit; say too what lengths without one are in: length_unit = um");
-    const double size = std::pow(sizes.at(found[3]) / *metres, power);
-    numbers += found.prefix().str() + to_15_digits(*read_number(found[1]) * size);
+    numbers += text.substr(done, found->begin - done) +
+               to_15_digits(found->number * std::pow(found->unit / *metres, found->power));
   }
-  return numbers + rest;
+  return numbers + text.substr(done);
 }
 
 constexpr const char* length_unit_key = "length_unit";

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
-
 #include "core/keys/number_text.h"
 #include "core/numbers/address_space.h"
+#include "core/numbers/symmetric.h"
 #include "grin/media/geometry/vector_values.h"
 #include "grin/render/curved/ray_field.h"
 
@@ -108,12 +107,11 @@ Vec3 least_shift(const std::vector<PathDifference>& differences) {
     square += one.direction * one.direction.transpose();
     along -= one.path * one.direction;
   }
-  const Eigen::SelfAdjointEigenSolver<Mat3> axes(square);
+  const auto [squares, axes] = symmetric_eigen(square);
   Vec3 shift = Vec3::Zero();
   for (int i = 0; i < 3; ++i) {
-    const Vec3 axis = axes.eigenvectors().col(i);
-    if (axes.eigenvalues()[i] > 1e-13 * axes.eigenvalues()[2])
-      shift += axis * (axis.dot(along) / axes.eigenvalues()[i]);
+    const Vec3 axis = axes.col(i);
+    if (squares[i] > 1e-13 * squares[2]) shift += axis * (axis.dot(along) / squares[i]);
   }
   return shift;
 }
