@@ -114,22 +114,6 @@ void write_sources(const ResultGroup& root, const LineScene& line,
   root.put("source_pattern", pattern);
 }
 
-}  // namespace
-
-void write_blinking(ResultFile& file, const LineScene& line, const ImagingTask& task,
-                    const std::vector<ImagedMedium>& media) {
-  const ResultGroup root(file, blinking_table);
-  root.number("blinking_frame", task.blinking.frames);
-  write_first(root, media.front().blinked, line.object.x.size());
-  const FrameContrast contrast = frame_contrast(media);
-  root.put("frame_contrast", contrast.found.value, contrast.found.error);
-  root.put("expected_frame_contrast", contrast.expected);
-  if (!task.blinking.correlation.empty()) root.put("pair_excitation", task.blinking.correlation);
-  if (task.blinking.unmixes) write_sources(root, line, media);
-}
-
-namespace {
-
 /// Means over a power x of mean 1 that is distributed exponentially, of x / (x + e), its square,
 /// and x / (x + e)^2.
 struct FilterMeans {
@@ -194,7 +178,95 @@ Expected expected(const Shares& of, const LineSpectrum& spectra, double regulari
   return result;
 }
 
+void write_residuals(const ResultGroup& root, const std::vector<ImagedMedium>& media) {
+  const std::size_t steps = media.front().deconvolved.residual.size();
+  root.number("iteration", steps);
+  root.put("residual",
+           of_each(media, steps, [](const ImagedMedium& m) { return m.deconvolved.residual; }));
+}
+
+Estimate mean_autocorrelation(const std::vector<ImagedMedium>& media) {
+  const FrameStatistics& first = media.front().statistics;
+  Estimate mean;
+  for (std::size_t lag = 0; lag < first.autocorrelation.size(); ++lag) {
+    const auto [value, error] = mean_over(media, first.noise, [lag](const ImagedMedium& medium) {
+      return medium.statistics.autocorrelation[lag];
+    });
+    mean.value.emplace_back(value);
+    mean.error.push_back(error);
+  }
+  return mean;
+}
+
+void write_axes(ResultFile& file, const ResultGroup& root, const LineScene& line,
+                const ImagingTask& task, double length_of_pixel) {
+  file.bind("PLACE", {line.camera.depth ? "length" : "1"});
+  std::vector<double> places, distances;
+  for (std::size_t p = 0; p < line.camera.pixels; ++p)
+    places.push_back(line.camera.place(static_cast<double>(p)));
+  for (std::size_t lag = 0; lag < task.recovery.lags; ++lag)
+    distances.push_back(static_cast<double>(lag) * length_of_pixel);
+  root.put("camera_place", places);
+  root.put("distance", distances);
+}
+
+void write_moments(const ResultGroup& root, const LineScene& line, double background,
+                   const std::vector<ImagedMedium>& media) {
+  const MeanOverMedia contrast = mean_contrast(line.object, media),
+                      fourth = mean_fourth_moment(media);
+  root.put("mean_contrast", contrast.value, contrast.error);
+  root.put("gaussian_contrast", gaussian_contrast(line.object, background));
+  root.put("fourth_moment", fourth.value, fourth.error);
+}
+
+void write_fits(const ResultGroup& root, const ImagingTask& task,
+                const std::vector<ImagedMedium>& media, double length_of_pixel) {
+  write_points(root, media, task.recovery.points, length_of_pixel);
+  root.put("found_share", column(media, [](const ImagedMedium& m) { return m.score.found; }));
+  root.put("brightness_match",
+           column(media, [](const ImagedMedium& m) { return m.score.correlation; }));
+  const auto [rate, error] = success_rate(media);
+  root.put("success", rate, error);
+}
+
+void write_prediction(const ResultGroup& root, const LineScene& line, const ImagingTask& task,
+                      const ImagingPrediction& prediction) {
+  const ExpectedPeaks expected = expected_peaks(line, task, prediction);
+  root.number("pair", expected.signals.size());
+  root.put("pair_distance", prediction.distance);
+  root.put("pair_correlation", prediction.correlation);
+  root.put("pair_signal", expected.signals);
+  if (expected.success) root.put("predicted_success", *expected.success);
+}
+
+/// What was seen in the media.
+void write_frames(ResultFile& file, const ResultGroup& root, const LineScene& line,
+                  const ImagingTask& task, const std::vector<ImagedMedium>& media) {
+  const double moved = magnification(line), length_of_pixel = 1 / std::abs(moved);
+  write_axes(file, root, line, task, length_of_pixel);
+  root.number("repeat", media.size());
+  root.put("frame",
+           of_each(media, line.camera.pixels, [](const ImagedMedium& m) { return m.frame; }));
+  root.attribute("frame", "magnification", moved);
+  root.put("mean_autocorrelation", mean_autocorrelation(media));
+  write_statistics(root, media);
+  write_moments(root, line, task.recovery.noise.background, media);
+  if (task.recovery.points > 0) write_fits(root, task, media, length_of_pixel);
+}
+
 }  // namespace
+
+void write_blinking(ResultFile& file, const LineScene& line, const ImagingTask& task,
+                    const std::vector<ImagedMedium>& media) {
+  const ResultGroup root(file, blinking_table);
+  root.number("blinking_frame", task.blinking.frames);
+  write_first(root, media.front().blinked, line.object.x.size());
+  const FrameContrast contrast = frame_contrast(media);
+  root.put("frame_contrast", contrast.found.value, contrast.found.error);
+  root.put("expected_frame_contrast", contrast.expected);
+  if (!task.blinking.correlation.empty()) root.put("pair_excitation", task.blinking.correlation);
+  if (task.blinking.unmixes) write_sources(root, line, media);
+}
 
 const DatasetTable picture_table{
     .name = "picture",
@@ -246,17 +318,6 @@ double expected_psnr(const LineScene& line, const ImagingTask& task,
   const auto seen = about_zero(made.picture, lags);
   return psnr(point_picture(of.at, lags, grain), seen, made.noise);
 }
-
-namespace {
-
-void write_residuals(const ResultGroup& root, const std::vector<ImagedMedium>& media) {
-  const std::size_t steps = media.front().deconvolved.residual.size();
-  root.number("iteration", steps);
-  root.put("residual",
-           of_each(media, steps, [](const ImagedMedium& m) { return m.deconvolved.residual; }));
-}
-
-}  // namespace
 
 void write_pictures(ResultFile& file, const LineScene& line, const ImagingTask& task,
                     const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction) {
@@ -332,79 +393,6 @@ const DatasetTable imaging_table{
     .attributes = {{"frame", "magnification", "float64",
                     "pixels that the picture moves by for a length of the object"}},
     .roles = {{"PLACE", {"1", "length"}}}};
-
-namespace {
-
-Estimate mean_autocorrelation(const std::vector<ImagedMedium>& media) {
-  const FrameStatistics& first = media.front().statistics;
-  Estimate mean;
-  for (std::size_t lag = 0; lag < first.autocorrelation.size(); ++lag) {
-    const auto [value, error] = mean_over(media, first.noise, [lag](const ImagedMedium& medium) {
-      return medium.statistics.autocorrelation[lag];
-    });
-    mean.value.emplace_back(value);
-    mean.error.push_back(error);
-  }
-  return mean;
-}
-
-void write_axes(ResultFile& file, const ResultGroup& root, const LineScene& line,
-                const ImagingTask& task, double length_of_pixel) {
-  file.bind("PLACE", {line.camera.depth ? "length" : "1"});
-  std::vector<double> places, distances;
-  for (std::size_t p = 0; p < line.camera.pixels; ++p)
-    places.push_back(line.camera.place(static_cast<double>(p)));
-  for (std::size_t lag = 0; lag < task.recovery.lags; ++lag)
-    distances.push_back(static_cast<double>(lag) * length_of_pixel);
-  root.put("camera_place", places);
-  root.put("distance", distances);
-}
-
-void write_moments(const ResultGroup& root, const LineScene& line, double background,
-                   const std::vector<ImagedMedium>& media) {
-  const MeanOverMedia contrast = mean_contrast(line.object, media),
-                      fourth = mean_fourth_moment(media);
-  root.put("mean_contrast", contrast.value, contrast.error);
-  root.put("gaussian_contrast", gaussian_contrast(line.object, background));
-  root.put("fourth_moment", fourth.value, fourth.error);
-}
-
-void write_fits(const ResultGroup& root, const ImagingTask& task,
-                const std::vector<ImagedMedium>& media, double length_of_pixel) {
-  write_points(root, media, task.recovery.points, length_of_pixel);
-  root.put("found_share", column(media, [](const ImagedMedium& m) { return m.score.found; }));
-  root.put("brightness_match",
-           column(media, [](const ImagedMedium& m) { return m.score.correlation; }));
-  const auto [rate, error] = success_rate(media);
-  root.put("success", rate, error);
-}
-
-void write_prediction(const ResultGroup& root, const LineScene& line, const ImagingTask& task,
-                      const ImagingPrediction& prediction) {
-  const ExpectedPeaks expected = expected_peaks(line, task, prediction);
-  root.number("pair", expected.signals.size());
-  root.put("pair_distance", prediction.distance);
-  root.put("pair_correlation", prediction.correlation);
-  root.put("pair_signal", expected.signals);
-  if (expected.success) root.put("predicted_success", *expected.success);
-}
-
-/// What was seen in the media.
-void write_frames(ResultFile& file, const ResultGroup& root, const LineScene& line,
-                  const ImagingTask& task, const std::vector<ImagedMedium>& media) {
-  const double moved = magnification(line), length_of_pixel = 1 / std::abs(moved);
-  write_axes(file, root, line, task, length_of_pixel);
-  root.number("repeat", media.size());
-  root.put("frame",
-           of_each(media, line.camera.pixels, [](const ImagedMedium& m) { return m.frame; }));
-  root.attribute("frame", "magnification", moved);
-  root.put("mean_autocorrelation", mean_autocorrelation(media));
-  write_statistics(root, media);
-  write_moments(root, line, task.recovery.noise.background, media);
-  if (task.recovery.points > 0) write_fits(root, task, media, length_of_pixel);
-}
-
-}  // namespace
 
 void write_imaging(ResultFile& file, const LineScene& line, const ImagingTask& task,
                    const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction) {

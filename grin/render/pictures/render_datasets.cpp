@@ -108,7 +108,7 @@ Estimate by_field(const PixelSums& pixels, const GroupedSums& sums, const Of& of
   std::size_t columns = width_count;
   for_pairs([&](std::size_t, std::size_t) { ++columns; });
   const int parameters = pixels.bins.by_field / edge_widths;
-  const Estimate all = jackknife(sums, [&](double samples, std::span<const Complex> all) {
+  const Estimate every = jackknife(sums, [&](double samples, std::span<const Complex> all) {
     std::vector<Complex> made;
     for (int parameter = 0; parameter < parameters; ++parameter) {
       PowersByWidth widths;
@@ -122,108 +122,19 @@ Estimate by_field(const PixelSums& pixels, const GroupedSums& sums, const Of& of
     return made;
   });
   const std::size_t count =
-      parameters > 0 ? all.value.size() / (columns * static_cast<std::size_t>(parameters)) : 0;
+      parameters > 0 ? every.value.size() / (columns * static_cast<std::size_t>(parameters)) : 0;
   Estimate best;
   for (std::size_t parameter = 0; parameter < static_cast<std::size_t>(parameters); ++parameter)
     for (std::size_t i = 0; i < count; ++i)
-      append_best(all, parameter * columns * count + i, count, best);
+      append_best(every, parameter * columns * count + i, count, best);
   return best;
 }
-
-}  // namespace
-
-PowerGradients power_gradients(const Sensor& sensor, std::size_t first_pixel, const TimeBins& bins,
-                               const GroupedSums& sums) {
-  const SensorPixels pixels = pixels_of(sensor);
-  const auto count = static_cast<std::size_t>(pixels.grid.count());
-  const auto of_each = [&](const auto& of) {
-    const PixelSums own{bins, first_pixel, count};
-    Estimate all = by_medium(own, sums, of);
-    append(all, by_field(own, sums, of));
-    return all;
-  };
-  PowerGradients found{of_each([](std::vector<Complex>&) {}), of_each([&](std::vector<Complex>& v) {
-                         Complex mean = 0;
-                         for (std::size_t i = 0; i < count; ++i) mean += pixels.share(i) * v[i];
-                         v = {mean};
-                       })};
-  const auto* disks = std::get_if<RadialDetector>(&sensor);
-  if (!disks || disks->radii.empty()) return found;
-  found.within = of_each([&](std::vector<Complex>& v) {
-    for (std::size_t i = 0; i < count; ++i)
-      v[i] = pixels.area * pixels.share(i) * v[i] + (i > 0 ? v[i - 1] : 0);
-  });
-  return found;
-}
-
-std::vector<std::string> gradient_names(const RenderScene& scene) {
-  std::vector<std::string> names;
-  if (scene.bins.derivatives > 0)
-    for (const MediumParameter parameter : parameters_of(scene.stage.medium))
-      names.push_back(name_of(parameter));
-  for (const FieldParameter& of : scene.parameters) names.push_back(of.name);
-  return names;
-}
-
-const DatasetTable energy_table{
-    "energy",
-    {{"energy/emitted", Data::estimate, "", "1", "power of the lights, as light paths drew it"},
-     {"energy/absorbed_stage", Data::estimate, "", "1", "absorbed in the stage, but for bodies"},
-     {"energy/absorbed_body", Data::estimate, "", "1", "absorbed in bodies"},
-     {"energy/unscattered", Data::estimate, "", "1", "left the stage without a scattering"},
-     {"energy/specular", Data::estimate, "", "1",
-      "the same, reflected at the surface of a body without having entered"},
-     {"energy/scattered", Data::estimate, "", "1", "left the stage after a scattering or more"},
-     {"energy/lost", Data::estimate, "", "1", "in flights that were lost (transport/lost_flights)"},
-     {"energy/cut", Data::estimate, "", "1", "of paths that were cut by max_scatterings"}}};
-
-namespace {
 
 /// Fates in the order of their rows.
 bool can_be(Fate fate, const RenderScene& scene, const RenderRequest& request) {
   if (fate == Fate::absorbed_body || fate == Fate::specular) return !scene.stage.bodies.empty();
   return fate != Fate::cut || request.max_scatterings > 0;
 }
-
-}  // namespace
-
-std::optional<Estimate> energy_result(const RenderJob& job, const GroupedSums& sums) {
-  if (!job.has_energy) return std::nullopt;
-  return jackknife(sums, [first = job.pictures](double samples, std::span<const Complex> all) {
-    return sample_mean(samples, all.subspan(first, EnergyBalance::size));
-  });
-}
-
-void write_energy(ResultFile& file, const RenderScene& scene, const RenderRequest& request,
-                  const Estimate& energy) {
-  const ResultGroup root(file, energy_table);
-  for (std::size_t fate = 0; fate < EnergyBalance::size; ++fate)
-    if (can_be(static_cast<Fate>(fate), scene, request))
-      root.put(energy_table.rows[fate].path, part(energy, fate, 1));
-}
-
-const DatasetTable render_table{
-    .name = "render",
-    .rows = {{"optical_path", Data::scale, "", "length", "middle of the bin of optical path"},
-             {"time", Data::real, "optical_path", "s", "optical path over the speed of light"},
-             {"parameter", Data::numbers, "", "1",
-              "what derivatives are by: see the attribute names"},
-             {"transport/flights", Data::count, "", "1", "ways from one event to the next"},
-             {"transport/lost_flights", Data::count, "", "1",
-              "of these, too long, trapped or into an index that is not positive: they carry "
-              "nothing on"},
-             {"transport/joins", Data::count, "", "1",
-              "vertices of light and sensor that were joined"},
-             {"transport/lost_values", Data::count, "", "1",
-              "contributions that were not finite, left out"}},
-    .attributes = {{"", "length_unit", "float64", "metres in a unit of length, where given"},
-                   {"", "mesh_volume", "float64", "that body_mesh encloses"},
-                   {"", "body_volume", "float64", "of the smooth body in its place"},
-                   {"parameter", "names", "texts",
-                    "mu_s, mu_a, g, as far as the medium has them (gradient); keys of the field "
-                    "(gradient_by)"}}};
-
-namespace {
 
 /// The pixels of one sensor among all, and what is kept of each.
 struct Pixels {
@@ -298,12 +209,12 @@ void add_paths(SensorResult& result, const GroupedSums& sums, const Pixels& pixe
   };
   result.paths = jackknife(sums, of_all_pixels(pixels, means));
   result.pixel_paths = jackknife(sums, [&](double, std::span<const Complex> all) {
-    std::vector<Complex> means;
+    std::vector<Complex> of_pixels;
     for (std::size_t i = pixels.first; i < pixels.first + pixels.count(); ++i) {
       const auto own = path_means(pixels, all.subspan(i * pixels.sums(), pixels.sums()));
-      means.insert(means.end(), own.begin(), own.end());
+      of_pixels.insert(of_pixels.end(), own.begin(), own.end());
     }
-    return means;
+    return of_pixels;
   });
 }
 
@@ -393,6 +304,87 @@ void write_counts(ResultFile& file, const RenderJob& job) {
 }
 
 }  // namespace
+
+PowerGradients power_gradients(const Sensor& sensor, std::size_t first_pixel, const TimeBins& bins,
+                               const GroupedSums& sums) {
+  const SensorPixels pixels = pixels_of(sensor);
+  const auto count = static_cast<std::size_t>(pixels.grid.count());
+  const auto of_each = [&](const auto& of) {
+    const PixelSums own{bins, first_pixel, count};
+    Estimate all = by_medium(own, sums, of);
+    append(all, by_field(own, sums, of));
+    return all;
+  };
+  PowerGradients found{of_each([](std::vector<Complex>&) {}), of_each([&](std::vector<Complex>& v) {
+                         Complex mean = 0;
+                         for (std::size_t i = 0; i < count; ++i) mean += pixels.share(i) * v[i];
+                         v = {mean};
+                       })};
+  const auto* disks = std::get_if<RadialDetector>(&sensor);
+  if (!disks || disks->radii.empty()) return found;
+  found.within = of_each([&](std::vector<Complex>& v) {
+    for (std::size_t i = 0; i < count; ++i)
+      v[i] = pixels.area * pixels.share(i) * v[i] + (i > 0 ? v[i - 1] : 0);
+  });
+  return found;
+}
+
+std::vector<std::string> gradient_names(const RenderScene& scene) {
+  std::vector<std::string> names;
+  if (scene.bins.derivatives > 0)
+    for (const MediumParameter parameter : parameters_of(scene.stage.medium))
+      names.push_back(name_of(parameter));
+  for (const FieldParameter& of : scene.parameters) names.push_back(of.name);
+  return names;
+}
+
+const DatasetTable energy_table{
+    "energy",
+    {{"energy/emitted", Data::estimate, "", "1", "power of the lights, as light paths drew it"},
+     {"energy/absorbed_stage", Data::estimate, "", "1", "absorbed in the stage, but for bodies"},
+     {"energy/absorbed_body", Data::estimate, "", "1", "absorbed in bodies"},
+     {"energy/unscattered", Data::estimate, "", "1", "left the stage without a scattering"},
+     {"energy/specular", Data::estimate, "", "1",
+      "the same, reflected at the surface of a body without having entered"},
+     {"energy/scattered", Data::estimate, "", "1", "left the stage after a scattering or more"},
+     {"energy/lost", Data::estimate, "", "1", "in flights that were lost (transport/lost_flights)"},
+     {"energy/cut", Data::estimate, "", "1", "of paths that were cut by max_scatterings"}}};
+
+std::optional<Estimate> energy_result(const RenderJob& job, const GroupedSums& sums) {
+  if (!job.has_energy) return std::nullopt;
+  return jackknife(sums, [first = job.pictures](double samples, std::span<const Complex> all) {
+    return sample_mean(samples, all.subspan(first, EnergyBalance::size));
+  });
+}
+
+void write_energy(ResultFile& file, const RenderScene& scene, const RenderRequest& request,
+                  const Estimate& energy) {
+  const ResultGroup root(file, energy_table);
+  for (std::size_t fate = 0; fate < EnergyBalance::size; ++fate)
+    if (can_be(static_cast<Fate>(fate), scene, request))
+      root.put(energy_table.rows[fate].path, part(energy, fate, 1));
+}
+
+const DatasetTable render_table{
+    .name = "render",
+    .rows = {{"optical_path", Data::scale, "", "length", "middle of the bin of optical path"},
+             {"time", Data::real, "optical_path", "s", "optical path over the speed of light"},
+             {"parameter", Data::numbers, "", "1",
+              "what derivatives are by: see the attribute names"},
+             {"transport/flights", Data::count, "", "1", "ways from one event to the next"},
+             {"transport/lost_flights", Data::count, "", "1",
+              "of these, too long, trapped or into an index that is not positive: they carry "
+              "nothing on"},
+             {"transport/joins", Data::count, "", "1",
+              "vertices of light and sensor that were joined"},
+             {"transport/lost_values", Data::count, "", "1",
+              "contributions that were not finite, left out"}},
+    .attributes = {{"", "length_unit", "float64", "metres in a unit of length, where given"},
+                   {"", "mesh_volume", "float64", "that body_mesh encloses"},
+                   {"", "body_volume", "float64", "of the smooth body in its place"},
+                   {"parameter", "names", "texts",
+                    "mu_s, mu_a, g, as far as the medium has them (gradient); keys of the field "
+                    "(gradient_by)"}}};
 
 RenderResult render_result(const RenderScene& scene, const RenderJob& job,
                            const GroupedSums& sums) {

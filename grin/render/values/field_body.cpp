@@ -40,6 +40,42 @@ double volume(const Surface& surface) {
   return (high - low).prod();
 }
 
+IndexRange index_range(const SceneField& field, const Surface& region, const std::string& name) {
+  constexpr int nodes = 33;
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const Box box = bounds(region);
+  const bool is_same_along_z =  // where it is in the region at one z or at all
+      std::holds_alternative<Box>(region) && field.axis == Vec3::UnitZ() &&
+      (field.symmetry == Symmetry::guide || field.symmetry == Symmetry::round_guide);
+  IndexRange range{infinity, -infinity};
+  std::visit(
+      [&](const auto& medium) {
+        for (int node = 0; node < nodes * nodes * nodes; node += is_same_along_z ? nodes : 1) {
+          const Vec3 share = Vec3(node / nodes / nodes, node / nodes % nodes, node % nodes);
+          const Vec3 x = box.low + (box.high - box.low).cwiseProduct(share) / (nodes - 1);
+          if (distance(region, x) > 0) continue;
+          const double n = index(medium, x);
+          if (!(n > 0 && std::isfinite(n)))
+            throw InputError("index at " + listed(x), n, "must be positive in all of the " + name);
+          range = {std::min(range.lowest, n), std::max(range.highest, n)};
+        }
+      },
+      field.field);
+  return range;
+}
+
+LevelSurface mesh_body(const Keys& keys, const FieldBodyValues& values, const std::string& file,
+                       const Surface* room) {
+  const TriangleMesh mesh = read_stl(keys.name(values.body_mesh), file);
+  const Box box = bounds(mesh);
+  if (room && !lies_in(box, *room))
+    throw InputError(keys.name(values.body_mesh) + ": from " + listed(box.low) + " to " +
+                     listed(box.high) + ", must be inside of the stage");
+  const std::string name = keys.name(values.body_mesh_spacing);
+  const std::optional<double>& spacing = keys.read(values.body_mesh_spacing);
+  return spacing ? mesh_surface(mesh, *spacing, name) : mesh_surface(mesh, name);
+}
+
 }  // namespace
 
 void add_keys(Keys& keys, PlainBodyValues& values) {
@@ -99,34 +135,6 @@ Lens lens_of(const std::string& key, std::span<const double> numbers) {
                    "radii of curvature must not be below the radius, and faces not meet within it");
 }
 
-namespace {
-
-IndexRange index_range(const SceneField& field, const Surface& region, const std::string& name) {
-  constexpr int nodes = 33;
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  const Box box = bounds(region);
-  const bool is_same_along_z =  // where it is in the region at one z or at all
-      std::holds_alternative<Box>(region) && field.axis == Vec3::UnitZ() &&
-      (field.symmetry == Symmetry::guide || field.symmetry == Symmetry::round_guide);
-  IndexRange range{infinity, -infinity};
-  std::visit(
-      [&](const auto& medium) {
-        for (int node = 0; node < nodes * nodes * nodes; node += is_same_along_z ? nodes : 1) {
-          const Vec3 share = Vec3(node / nodes / nodes, node / nodes % nodes, node % nodes);
-          const Vec3 x = box.low + (box.high - box.low).cwiseProduct(share) / (nodes - 1);
-          if (distance(region, x) > 0) continue;
-          const double n = index(medium, x);
-          if (!(n > 0 && std::isfinite(n)))
-            throw InputError("index at " + listed(x), n, "must be positive in all of the " + name);
-          range = {std::min(range.lowest, n), std::max(range.highest, n)};
-        }
-      },
-      field.field);
-  return range;
-}
-
-}  // namespace
-
 void add_body_keys(Keys& keys, FieldBodyValues& values) {
   keys.add("body_box", values.body_box,
            "x y z x y z of two corners: the index field fills this body alone")
@@ -162,22 +170,6 @@ std::optional<Surface> one_surface(const std::string& name, const std::string& k
   if (given.empty()) return std::nullopt;
   return given.front();
 }
-
-namespace {
-
-LevelSurface mesh_body(const Keys& keys, const FieldBodyValues& values, const std::string& file,
-                       const Surface* room) {
-  const TriangleMesh mesh = read_stl(keys.name(values.body_mesh), file);
-  const Box box = bounds(mesh);
-  if (room && !lies_in(box, *room))
-    throw InputError(keys.name(values.body_mesh) + ": from " + listed(box.low) + " to " +
-                     listed(box.high) + ", must be inside of the stage");
-  const std::string name = keys.name(values.body_mesh_spacing);
-  const std::optional<double>& spacing = keys.read(values.body_mesh_spacing);
-  return spacing ? mesh_surface(mesh, *spacing, name) : mesh_surface(mesh, name);
-}
-
-}  // namespace
 
 std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& values,
                                   const Surface* room) {

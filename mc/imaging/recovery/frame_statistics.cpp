@@ -60,23 +60,6 @@ PeakFit fitted_peak(std::span<const double> autocorrelation, double band, double
   return {own / norm, own / std::sqrt(norm)};
 }
 
-}  // namespace
-
-double fitted_band(std::span<const double> autocorrelation, double noise, double white) {
-  constexpr double finer = 1.02;
-  const double height = (autocorrelation[0] - 4 * noise * std::sqrt(2 + white)) / 2;
-  double found = 0, most = 0;
-  for (double band = 1; band * static_cast<double>(autocorrelation.size()) > 4; band /= finer)
-    if (const PeakFit fit = fitted_peak(autocorrelation, band, white);
-        fit.part > most && fit.height > height) {
-      most = fit.part;
-      found = band;
-    }
-  return found;
-}
-
-namespace {
-
 /// An even line of `size` values and its mirror image.
 std::vector<double> both_sides(std::span<const double> line) {
   std::vector<double> both(line.begin(), line.end());
@@ -124,44 +107,6 @@ double rms(std::span<const double> values) {
   for (const double value : values) squares += value * value;
   return std::sqrt(squares / static_cast<double>(values.size()));
 }
-
-}  // namespace
-
-PairPeaks pair_peaks(std::span<const double> autocorrelation, std::size_t lags,
-                     const AutocorrelationTerms& terms) {
-  const std::size_t known = std::min(2 * lags, autocorrelation.size());
-  std::vector<double> pairs(autocorrelation.begin(),
-                            autocorrelation.begin() + static_cast<long>(known));
-  for (std::size_t lag = 0; lag < known; ++lag)
-    pairs[lag] -= terms.alone * speckle_peak(static_cast<double>(lag), terms.band);
-  const auto line = both_sides(pairs);
-  const LineSpectrum spectra(line.size());
-  auto spectrum = spectra.of(line);
-  const auto filter = filter_of(spectra, terms);
-  for (std::size_t m = 0; m < spectrum.size(); ++m) spectrum[m] *= filter.spectrum[m];
-
-  const double finest = 0.5, asked = std::max(grain_of(terms.band) / 3, finest),
-               length = static_cast<double>(line.size());
-  const std::size_t size = transform_size(length / asked);
-  PairPeaks peaks;
-  peaks.step = length / static_cast<double>(size);
-  peaks.alone = terms.alone;
-  peaks.width = filter.width;
-  peaks.height = resampled(spectrum, size);
-  const auto in_steps = [&](std::size_t pixels) {
-    return static_cast<std::size_t>(static_cast<double>(pixels) / peaks.step);
-  };
-  const std::size_t inside = in_steps(lags), beyond = std::min(in_steps(known), size / 2);
-  const auto nothing = std::span(peaks.height).subspan(inside, beyond - inside);
-  const double mean =
-      std::reduce(nothing.begin(), nothing.end()) / static_cast<double>(nothing.size());
-  for (double& height : peaks.height) height -= mean;  // the envelope has taken it
-  peaks.noise = rms(nothing);
-  peaks.height.resize(inside);
-  return peaks;
-}
-
-namespace {
 
 /// What is averaged by: a Gaussian, or what keeps cubics as they are, but follows speckle more and
 /// may even be negative.
@@ -225,6 +170,53 @@ double standard_deviation(std::span<const double> values) {
 }
 
 }  // namespace
+
+double fitted_band(std::span<const double> autocorrelation, double noise, double white) {
+  constexpr double finer = 1.02;
+  const double height = (autocorrelation[0] - 4 * noise * std::sqrt(2 + white)) / 2;
+  double found = 0, most = 0;
+  for (double band = 1; band * static_cast<double>(autocorrelation.size()) > 4; band /= finer)
+    if (const PeakFit fit = fitted_peak(autocorrelation, band, white);
+        fit.part > most && fit.height > height) {
+      most = fit.part;
+      found = band;
+    }
+  return found;
+}
+
+PairPeaks pair_peaks(std::span<const double> autocorrelation, std::size_t lags,
+                     const AutocorrelationTerms& terms) {
+  const std::size_t known = std::min(2 * lags, autocorrelation.size());
+  std::vector<double> pairs(autocorrelation.begin(),
+                            autocorrelation.begin() + static_cast<long>(known));
+  for (std::size_t lag = 0; lag < known; ++lag)
+    pairs[lag] -= terms.alone * speckle_peak(static_cast<double>(lag), terms.band);
+  const auto line = both_sides(pairs);
+  const LineSpectrum spectra(line.size());
+  auto spectrum = spectra.of(line);
+  const auto filter = filter_of(spectra, terms);
+  for (std::size_t m = 0; m < spectrum.size(); ++m) spectrum[m] *= filter.spectrum[m];
+
+  const double finest = 0.5, asked = std::max(grain_of(terms.band) / 3, finest),
+               length = static_cast<double>(line.size());
+  const std::size_t size = transform_size(length / asked);
+  PairPeaks peaks;
+  peaks.step = length / static_cast<double>(size);
+  peaks.alone = terms.alone;
+  peaks.width = filter.width;
+  peaks.height = resampled(spectrum, size);
+  const auto in_steps = [&](std::size_t pixels) {
+    return static_cast<std::size_t>(static_cast<double>(pixels) / peaks.step);
+  };
+  const std::size_t inside = in_steps(lags), beyond = std::min(in_steps(known), size / 2);
+  const auto nothing = std::span(peaks.height).subspan(inside, beyond - inside);
+  const double mean =
+      std::reduce(nothing.begin(), nothing.end()) / static_cast<double>(nothing.size());
+  for (double& height : peaks.height) height -= mean;  // the envelope has taken it
+  peaks.noise = rms(nothing);
+  peaks.height.resize(inside);
+  return peaks;
+}
 
 std::vector<double> without_envelope(std::span<const double> frame, double width) {
   return over(frame, positive_envelope(frame, width));
