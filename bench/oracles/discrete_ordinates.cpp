@@ -15,7 +15,7 @@ namespace {
 using std::numbers::pi;
 using Matrix = std::vector<double>;  ///< n x n, row-major
 
-Matrix product(const Matrix& a, const Matrix& b, std::size_t n) {
+Matrix matrix_product(const Matrix& a, const Matrix& b, std::size_t n) {
   Matrix c(n * n);
   const auto size = static_cast<blasint>(n);
   cblas_dgemm(CblasRowMajor, CblasNoTrans, CblasNoTrans, size, size, size, 1, a.data(), size,
@@ -167,12 +167,13 @@ SlabTransport::Layer SlabTransport::doubled(const Layer& half, double optical_de
   const auto direct = this->direct(optical_depth);
   const auto& [r, t] = half;
   const Matrix rw = columns_times(r, weight_), tw = columns_times(t, weight_);
-  const Matrix there_and_back = solve_one_minus(product(rw, rw, n), product(rw, r, n), n);
+  const Matrix there_and_back =
+      solve_one_minus(matrix_product(rw, rw, n), matrix_product(rw, r, n), n);
   const Matrix down = t + columns_times(there_and_back, direct) +
-                      product(columns_times(there_and_back, weight_), t, n);
-  const Matrix up = columns_times(r, direct) + product(rw, down, n);
-  return {r + rows_times(direct, up) + product(tw, up, n),
-          rows_times(direct, down) + columns_times(t, direct) + product(tw, down, n)};
+                      matrix_product(columns_times(there_and_back, weight_), t, n);
+  const Matrix up = columns_times(r, direct) + matrix_product(rw, down, n);
+  return {r + rows_times(direct, up) + matrix_product(tw, up, n),
+          rows_times(direct, down) + columns_times(t, direct) + matrix_product(tw, down, n)};
 }
 
 std::vector<double> SlabTransport::direct(double optical_depth) const {
@@ -191,13 +192,15 @@ SlabTransport::Stack SlabTransport::added(const Stack& upper, const Stack& lower
     const Matrix back = columns_times(first_behind.reflected, weight_),
                  forth = columns_times(second.reflected, weight_);
     const Matrix on = solve_one_minus(
-        product(back, forth, n),
-        first.transmitted + product(back, columns_times(second.reflected, through_first), n), n);
-    const Matrix returned = columns_times(second.reflected, through_first) + product(forth, on, n);
+        matrix_product(back, forth, n),
+        first.transmitted + matrix_product(back, columns_times(second.reflected, through_first), n),
+        n);
+    const Matrix returned =
+        columns_times(second.reflected, through_first) + matrix_product(forth, on, n);
     return Layer{first.reflected + rows_times(through_first, returned) +
-                     product(columns_times(first_behind.transmitted, weight_), returned, n),
+                     matrix_product(columns_times(first_behind.transmitted, weight_), returned, n),
                  rows_times(through_second, on) + columns_times(second.transmitted, through_first) +
-                     product(columns_times(second.transmitted, weight_), on, n)};
+                     matrix_product(columns_times(second.transmitted, weight_), on, n)};
   };
   return {upper.optical_depth + lower.optical_depth,
           from(upper.above, upper.below, upper.optical_depth, lower.above, lower.optical_depth),

@@ -3,10 +3,12 @@
 #include <fstream>
 #include <string>
 #include <unistd.h>
+#include <vector>
 
 #include <doctest/doctest.h>
 
 #include "core/result/guarded_read.h"
+#include "core/result/result_file.h"
 #include "core/result/result_reader.h"
 
 namespace flatspeckle::test_sealed_file {
