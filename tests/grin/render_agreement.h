@@ -8,8 +8,6 @@
 
 namespace flatspeckle::grin::tests {
 
-inline const bool is_night = flatspeckle::tests::effort().samples == 1;
-
 /// Pairs of paths by which bidirectional tracing is compared with the other two.
 inline const double agreement_samples = is_night ? 5e4 : 8e3;
 

@@ -19,7 +19,6 @@ using namespace oracles;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-const bool is_night = flatspeckle::tests::effort().samples == 1;
 
 /// Fog that absorbs a little in a sphere of index 1.3, a point light off the centre, pulses seen by
 /// a cap of the wall.

@@ -27,8 +27,7 @@ const Surface block = Box{{-0.9, -0.8, -1}, {0.7, 1, 0.9}};
 const Surface bodies[] = {ball, block};
 const Box room{Vec3::Constant(-2), Vec3::Constant(2)};
 constexpr double reach = 1.99, near_bodies = 1;  // of points in it
-const bool is_night = flatspeckle::tests::effort().samples == 1;
-const double part_by_day = is_night ? 1 : 0.5;  // of the samples of renders
+const double part_by_day = is_night ? 1 : 0.5;   // of the samples of renders
 
 /// Length of the straight way between two points inside of a convex body.
 double length_inside(const Surface& body, const Vec3& p, const Vec3& q) {

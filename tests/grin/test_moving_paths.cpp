@@ -32,7 +32,6 @@ Powers powers(const RenderValues& values, double samples) {
   return tests::powers(make_render_scene(values), samples);
 }
 
-const bool is_night = flatspeckle::tests::effort().samples == 1;
 const double usual_samples = is_night ? 120000 : 30000;
 
 /// Compares derivatives at these pixels with differences by this member of the values.

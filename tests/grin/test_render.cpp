@@ -8,7 +8,6 @@ namespace flatspeckle::grin::tests::test_render {
 
 namespace {
 
-const bool is_night = flatspeckle::tests::effort().samples == 1;
 const Light point = PointLight{Vec3(0.3, -0.2, 0.5)};
 const Camera camera{Vec3(0, 0.2, -0.7), Vec3::UnitZ(), Vec3::UnitY(), 1.0, {2, 2}};
 const AreaDetector detector{Vec3::UnitZ(), Vec3::UnitY(), 1, 1, {2, 1}, right_angle};

@@ -43,7 +43,6 @@ TEST_CASE("the errors of short runs in a thick slab hold") {
   const double area = 1e4;
   const Rendered exact = rendered(scene, RenderMethod::light, 20000);
   CHECK(area * exact.error() < 0.004);
-  const bool is_night = flatspeckle::tests::effort().samples == 1;
   const int runs = is_night ? 20 : 8;
   int within = 0;
   double squares = 0;
