@@ -12,6 +12,9 @@
 
 namespace flatspeckle::grin::tests {
 
+/// Whether tests take all of their samples and cases.
+inline const bool is_night = flatspeckle::tests::effort().samples == 1;
+
 inline std::string name(RenderMethod method) {
   return method_word(method);
 }

@@ -19,6 +19,12 @@ const Camera small_lens{.x = {2, 0, 0},
                         .pixels = {1, 1},
                         .lens_radius = 0.15,
                         .focus_distance = 2};
+/// Through which enough photons pass.
+Camera wide_lens() {
+  Camera lens = small_lens;
+  lens.lens_radius = 0.4;
+  return lens;
+}
 
 }  // namespace
 
@@ -31,10 +37,10 @@ TwoScenes body_from_outside(const AnyIndexField& field, const WalkScene& walk, c
                 .stage = {.boundary = Box{{-2, -2, -2}, {2, 2, 2}},
                           .bodies = std::vector<Body>(1, {Sphere{}, {.mu_s = 0.5, .mu_a = 0.5}})},
                 .lights = {light},
-                .sensors = {small_lens}},
+                .sensors = {wide_lens()}},
       .walk = walk,
       .source = source,
-      .sensor = lens_sensor(small_lens)};
+      .sensor = lens_sensor(wide_lens())};
 }
 
 WalkScene ball_walk(double inside) {
@@ -53,6 +59,7 @@ void check_lens_and_pinhole(TwoScenes scenes, std::uint64_t photons, unsigned sa
                             double precision) {
   const PhotonPicture picture = photon_picture(scenes, photons, 6);
   check_against(picture, scenes, {RenderMethod::bidirectional}, samples, precision);
+  scenes.scene.sensors = {small_lens};
   const auto mean = [&](RenderMethod method) {
     const RenderJob job =
         render_job(scenes.scene, {.method = method}, flatspeckle::tests::fresh_seed(12));

@@ -224,8 +224,10 @@ TEST_CASE("the ways of a beam to a point behind a glass ball, by impact paramete
                             {-Vec3::UnitZ(), through, Vec3::UnitZ()}};
   for (const std::span<const BeamSeed> some :
        {std::span<const BeamSeed>(), std::span<const BeamSeed>(seeds)}) {
-    check(Space(Homogeneous{glass - 1}, stage), some);
-    check(*make_space(Homogeneous{glass - 1}, stage, {0.1, 40}), some);
+    // by day each of the spaces and of the searches once
+    if (is_night || some.empty()) check(Space(Homogeneous{glass - 1}, stage), some);
+    if (is_night || !some.empty())
+      check(*make_space(Homogeneous{glass - 1}, stage, {0.1, 40}), some);
   }
 }
 

@@ -145,6 +145,7 @@ RenderScene fibre(double spot) {
 
 TEST_CASE("joins are made for what they bring, not for what the straight line promises") {
   for (const double spot : {0.08, 0.1, 0.4}) {
+    if (!is_night && spot != 0.1) continue;
     CAPTURE(spot);
     const RenderScene scene = fibre(spot);
     for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {
@@ -173,6 +174,7 @@ TEST_CASE("the choice waits while another method may need much less") {
   scene.stage.medium.phase = {HgPhase{0.5}};
   scene.stage.bodies.push_back({Sphere{{0, 0, -4}, 5}, {}, 0.5});
   for (const int width : {18, 30}) {
+    if (!is_night && width > 18) continue;
     CAPTURE(width);
     Camera camera{{-20, 0, 0}, Vec3::UnitX(), Vec3::UnitY(), 1.2, {width, width * 2 / 3}};
     camera.lens_radius = 0.5;

@@ -80,6 +80,7 @@ TEST_CASE("derivatives are those of differences of the same paths") {
   const Powers all = powers(guide(tissue), samples);
   const double by[] = {0.04, 0.02, 0.03};
   for (std::size_t parameter = 0; parameter < 3; ++parameter) {
+    if (!is_night && parameter == 1) continue;  // by absorption it is the mean path, as above
     CAPTURE(parameter);
     const auto moved = [&](double share) {
       Tissue there = tissue;

@@ -27,7 +27,7 @@ TEST_CASE("a render depends on seed and batches, not on threads") {
   for (const AnyIndexField& field : {AnyIndexField(fisheye), AnyIndexField(Homogeneous{0.2})}) {
     const RenderScene scene = scene_in(field, {unit_box(), fog(1, 0.1, 0.5)}, point, camera);
     const auto sums = [&](std::uint64_t seed, int threads) {
-      return run_render(render_job(scene, {}, seed), 2000, threads).sums.total();
+      return run_render(render_job(scene, {}, seed), 600, threads).sums.total();
     };
     const auto one = sums(1, 1), three = sums(1, 3), other = sums(2, 3);
     CHECK(one == three);
@@ -67,6 +67,8 @@ TEST_CASE("light and sensor exchanged read the same, where n differs between the
     return AreaDetector{x, Vec3::UnitY(), side, side, {1, 1}, right_angle};
   };
   for (const RenderMethod method : unbiased_methods) {
+    // by day the one whose error is 2 %: the others need ten times the paths
+    if (!is_night && method != RenderMethod::bidirectional) continue;
     const Rendered forth =
         rendered(scene_in(field, stage, FaceLight{a, radius, 1}, detector_at(b)), method, 1e4);
     const Rendered back =
@@ -86,7 +88,7 @@ TEST_CASE("without absorption all of a light's power leaves through the boundary
       for (const double side : {-1.0, 1.0}) {
         const Vec3 centre = side * Vec3::Unit(axis), up = Vec3::Unit((axis + 1) % 3);
         const AreaDetector face{centre, up, 2, 2, {1, 1}, right_angle};
-        const Rendered result = rendered(scene_in(fisheye, stage, point, face), method, 20000,
+        const Rendered result = rendered(scene_in(fisheye, stage, point, face), method, 5000,
                                          static_cast<std::uint64_t>(2 * axis + (side > 0)));
         power += 4 * result.value();
         variance += 16 * result.error() * result.error();
@@ -127,7 +129,7 @@ TEST_CASE("nothing that is not a number comes from extreme scenes") {
     CAPTURE(extreme.name);
     for (const RenderMethod method : unbiased_methods) {
       CAPTURE(name(method));
-      CHECK(is_sound(rendered(extreme.scene, method, 600)));
+      CHECK(is_sound(rendered(extreme.scene, method, 300)));
     }
   }
 }
@@ -160,14 +162,14 @@ TEST_CASE("bad requests are refused") {
   const RenderScene scene = scene_in(fisheye, {unit_box(), {}}, point, camera);
   const RenderScene dense = scene_in(Homogeneous{}, {unit_box(), fog(1e7, 0, 0.9)}, point, camera);
   CHECK_THROWS_AS(render_job(dense, {}, 1), InputError);
-  CHECK_NOTHROW(render_job(dense, {.max_scatterings = 100}, 1));
+  CHECK_NOTHROW(render_job(dense, {.max_scatterings = 20}, 1));
   // so many tentative collisions beside a small grid that no flight would end
   RenderScene speck = dense;
   const FieldGrid small{Vec3::Zero(), Vec3::Constant(1e-3), {2, 2, 2}};
   speck.stage.medium.density = std::make_shared<DensityGrid>(small, std::vector(8, 1.0));
-  CHECK_THROWS_AS(render_job(speck, {.max_scatterings = 100}, 1), InputError);
+  CHECK_THROWS_AS(render_job(speck, {.max_scatterings = 20}, 1), InputError);
   speck.stage.medium.mu_s = 1e4;
-  CHECK_NOTHROW(render_job(speck, {.max_scatterings = 100}, 1));
+  CHECK_NOTHROW(render_job(speck, {.max_scatterings = 20}, 1));
   RenderScene silent = scene;
   silent.random_phase = true;
   CHECK_THROWS_AS(render_job(silent, {}, 1), InputError);

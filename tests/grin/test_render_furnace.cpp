@@ -14,16 +14,25 @@ double affordable(const NamedRender& named, double samples) {
   return named.name == "blobs and spline" ? samples / 4 : samples;
 }
 
+const Vec3 furnace_camera(0.2, -0.1, -0.8);
+
+/// Paths for errors of about 1 %; light tracing finds faces rarely and cameras hardly ever.
+double some(RenderMethod method) {
+  return method == RenderMethod::light ? 10000 : 2500;
+}
+
 }  // namespace
 
 TEST_CASE("light stays uniform without scattering, in every field and by every estimator") {
   for (const NamedRender& named : furnaces({})) {
     CAPTURE(named.name);
     for (const RenderMethod method : unbiased_methods) {
-      CHECK(check_furnace_face(named.scene, method, affordable(named, 10000)) < 0.08);
+      CHECK(check_furnace_face(named.scene, method, affordable(named, some(method))) < 0.05);
       // what is near a pinhole is seen by light tracing but seldom, and then brightly
       if (method != RenderMethod::light) {
-        CHECK(check_furnace_camera(named.scene, method, affordable(named, 20000)) < 0.02);
+        // rays that are reflected many times are rare, and carry less than 1e-3
+        CHECK(check_furnace_camera(named.scene, method, affordable(named, 4000), furnace_camera,
+                                   1e-3) < 0.02);
       }
     }
   }
@@ -33,9 +42,9 @@ TEST_CASE("light stays uniform where it scatters, in every field and by every es
   for (const NamedRender& named : furnaces(fog(1, 0, 0.85))) {
     CAPTURE(named.name);
     for (const RenderMethod method : unbiased_methods) {
-      CHECK(check_furnace_face(named.scene, method, affordable(named, 10000)) < 0.1);
+      CHECK(check_furnace_face(named.scene, method, affordable(named, some(method))) < 0.06);
       if (method != RenderMethod::light) {
-        CHECK(check_furnace_camera(named.scene, method, affordable(named, 8000)) < 0.1);
+        CHECK(check_furnace_camera(named.scene, method, affordable(named, 4000)) < 0.06);
       }
     }
   }
@@ -46,7 +55,7 @@ TEST_CASE("light stays uniform where bodies lie in each other, side by side, and
     for (const NamedRender& named : furnaces_of_bodies(medium)) {
       CAPTURE(named.name);
       for (const RenderMethod method : unbiased_methods)
-        CHECK(check_furnace_face(named.scene, method, 10000) < 0.1);
+        CHECK(check_furnace_face(named.scene, method, some(method)) < 0.1);
     }
 }
 

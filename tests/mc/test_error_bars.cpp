@@ -6,6 +6,7 @@
 #include "bench/oracles/discrete_ordinates.h"
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
+#include "tests/statistics.h"
 
 namespace flatspeckle::mc::test_error_bars {
 
@@ -66,7 +67,7 @@ TEST_CASE("error bars are honest behind deep slabs that absorb strongly") {
   const oracles::SlabTransport theory({optical_depth, albedo, oracles::henyey_greenstein(0)}, {0},
                                       60);
   const double expected = theory.covariance_without_reversed(0, 0);
-  constexpr int runs = 200;
+  const int runs = flatspeckle::tests::effort().samples == 1 ? 200 : 100;
   int within = 0;
   double sum = 0;
   for (int i = 0; i < runs; ++i) {
@@ -74,7 +75,7 @@ TEST_CASE("error bars are honest behind deep slabs that absorb strongly") {
     within += std::abs(found.value[0] - expected) < 2 * found.error[0];
     sum += found.value[0].real() / runs;
   }
-  CHECK(within > 0.9 * runs);
+  CHECK(within > 0.85 * runs);
   CHECK(sum == doctest::Approx(expected).epsilon(0.02));
 }
 

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "tests/mc/flux_runs.h"
+#include "tests/statistics.h"
 
 namespace flatspeckle::mc::test_flux_deep {
 
@@ -12,8 +13,8 @@ using tests::pi;
 
 TEST_CASE("flux through optical depth 100, absorbing or not") {
   std::uint64_t seed = 100;
-  for (const double g : {0.0, 0.9})
-    for (const double albedo : {1.0, 0.9}) tests::check_slab(100, albedo, g, 0.03, ++seed);
+  tests::check_slab(100, 1, 0, 0.03, ++seed);
+  tests::check_slab(100, 0.9, 0.9, 0.03, ++seed);
   tests::check_slab(100, 0.01, 0, 0.03, ++seed);
 }
 

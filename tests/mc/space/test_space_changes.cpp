@@ -9,6 +9,7 @@
 #include "tests/mc/space/slabs_in_space.h"
 #include "tests/mc/transport/sixth_order.h"
 #include "tests/oracles/space_pair_walk.h"
+#include "tests/statistics.h"
 
 namespace flatspeckle::mc::test_space_changes {
 
@@ -23,6 +24,7 @@ using tests::SpaceRequest;
 using tests::SpaceSlab;
 using tests::spherical;
 
+const bool is_night = flatspeckle::tests::effort().samples == 1;
 constexpr double wavenumber = 2 * pi;
 
 /// With the second view turned as transverse momenta ask for.
@@ -80,8 +82,9 @@ TEST_CASE("slabs in space: without a shift two frequencies are one") {
 }
 
 TEST_CASE("slabs in space: two frequencies along the same walks, oblique lights") {
-  for (const auto& [g, optical_depth, albedo] :
-       {std::array{0.0, 2.0, 1.0}, {0.6, 4.0, 0.95}, {0.9, 5.0, 0.99}}) {
+  std::vector<std::array<double, 3>> slabs{{0.6, 4.0, 0.95}};
+  if (is_night) slabs.insert(slabs.end(), {{0.0, 2.0, 1.0}, {0.9, 5.0, 0.99}});
+  for (const auto& [g, optical_depth, albedo] : slabs) {
     const auto slab = hg_space(200, optical_depth, g, albedo);
     const double k = slab.k / slab.mu_t, shift = (g == 0 ? -0.8 : 0.4) / k;
     for (const bool reversed : {false, true}) {
@@ -186,14 +189,15 @@ TEST_CASE("slabs in space: derivatives are finite differences of converged solut
       return tests::in_space(hg_in_space(depth, mu_t * depth, g, albedo), request);
     };
     const double mu_t = slab.optical_depth / depth;
-    check_slopes(BulkParameter::mu_t, mu_t, slab.reversed,
-                 [&](double step) { return scene(mu_t + step, slab.g, slab.albedo); });
-    check_slopes(BulkParameter::g, 1 - std::abs(slab.g), slab.reversed,
-                 [&](double step) { return scene(mu_t, slab.g + step, slab.albedo); });
     constexpr double critical = 1.4;  // less than the albedo that would keep such slabs alight
     if (slab.albedo < 1)
       check_slopes(BulkParameter::albedo, critical - slab.albedo, slab.reversed,
                    [&](double step) { return scene(mu_t, slab.g, slab.albedo + step); });
+    if (slab.reversed && !is_night) continue;
+    check_slopes(BulkParameter::mu_t, mu_t, slab.reversed,
+                 [&](double step) { return scene(mu_t + step, slab.g, slab.albedo); });
+    check_slopes(BulkParameter::g, 1 - std::abs(slab.g), slab.reversed,
+                 [&](double step) { return scene(mu_t, slab.g + step, slab.albedo); });
   }
 }
 

@@ -12,10 +12,13 @@
 #include "tests/mc/transport/sixth_order.h"
 #include "tests/mc/transport/slabs.h"
 #include "tests/oracles/pair_transport.h"
+#include "tests/statistics.h"
 
 namespace flatspeckle::mc::test_slab_covariance {
 
 namespace {
+
+const bool is_night = flatspeckle::tests::effort().samples == 1;
 
 using tests::deflected;
 using tests::hg_slab;
@@ -123,10 +126,11 @@ TEST_CASE("slab transport: the cone of coherent backscattering") {
     CAPTURE(d);
     const auto request = intensity_request({0.0}, {far_view(pi - d)});
     const Scene scene = hg_slab(200, {50, g, albedo}, request);
-    const auto found = tests::run(scene, ReversedPaths::yes, 200000, 40 + i).entries();
+    const auto found =
+        tests::run(scene, ReversedPaths::yes, is_night ? 200000 : 60000, 40 + i).entries();
     const double expected = backscattered(d, true, 1e-6);
     CHECK_WITHIN_4_SIGMA(found.value[0], found.error[0], expected, 0);
-    CHECK(found.error[0] < 0.01 * expected);
+    CHECK(found.error[0] < 0.015 * expected);
   }
 }
 
@@ -142,6 +146,7 @@ TEST_CASE("slab transport converges to nine digits") {
 TEST_CASE("slab transport: entries are right to the tolerance") {
   constexpr double tolerance = 1e-3;
   for (const double g : {0.0, 0.8, 0.98}) {
+    if (g > 0.9 && !is_night) continue;
     const auto request = memory_effect_request(wavenumber, 0.3, {0.1, pi - 0.4}, {0, 1e-4, 1e-3});
     const Scene scene = hg_slab(1000, {200, g, 0.95}, request);
     const auto rough = slab_covariance(scene, true, {tolerance}),
@@ -158,6 +163,7 @@ TEST_CASE("slab transport agrees with other solutions of the same equation") {
   constexpr double depth = 1000;
   for (const double light : {0.0, 0.4}) {
     for (const double tilt : {0.0, 1.0, -5.0, 20.0}) {  // q L
+      if (!is_night && (light > 0) != (tilt > 0)) continue;
       const double q = tilt / depth, optical_depth = 3, view = -0.2;
       const AnglePair pair{light, view, deflected(light, q), deflected(view, q)};
       const auto request = pairs_request({pair});
@@ -241,7 +247,7 @@ TEST_CASE("fields of diffusing scatterers at two times, as by Monte Carlo") {
     const auto request = intensity_request({0.2}, {far_view(0.5), far_view(pi + 0.2)});
     const Scene scene = hg_slab(300, {60, g, 0.97}, request);
     const auto job = delay_job(scene, make_plan(scene, ReversedPaths::yes), delays, 5);
-    const auto sums = tests::summed(job.field.batches, 200000);
+    const auto sums = tests::summed(job.field.batches, is_night ? 200000 : 60000);
     const auto found = change_estimates(request, job, sums).covariance;
     for (std::size_t t = 0; t < delays.size(); ++t) {
       const auto expected = slab_covariance(scene, true, {1e-5}, {.delay = delays[t]}).value;
@@ -302,6 +308,7 @@ TEST_CASE("derivatives of the doubling are finite differences of converged solut
   };
   constexpr double depth = 200;
   for (const Case& slab : {Case{3, 0, 1, 0.1, false}, Case{2, 0.6, 0.9, pi + 0.201, true}}) {
+    if (!is_night && !slab.reversed) continue;  // by day the one with all of the parameters
     CAPTURE(slab.g);
     const auto request = memory_effect_request(wavenumber, 0.2, {slab.view}, {0, 0.5 / depth});
     const auto scene = [&](double mu_t, double g, double albedo) {
@@ -343,7 +350,7 @@ TEST_CASE("derivatives by the radius and the index of cylinders") {
 }
 
 TEST_CASE("Monte Carlo on random slabs agrees with transport") {
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+  for (std::uint64_t seed = 1; seed <= (is_night ? 5 : 3); ++seed) {
     const Scene scene = tests::RandomSlab(seed).scene();
     const auto expected = slab_covariance(scene, true, {1e-5}).value;
     const auto found = tests::run(scene, ReversedPaths::yes, 30000, seed).entries();

@@ -5,6 +5,7 @@
 #include "flatland/media/layers.h"
 #include "mc/paths/layers/layer_gradient.h"
 #include "tests/mc/flux_runs.h"
+#include "tests/statistics.h"
 
 namespace flatspeckle::mc::test_layers {
 
@@ -110,20 +111,24 @@ TEST_CASE("derivatives by each layer agree with those of adding and doubling") {
   const std::vector<double Layer::*> members = {&Layer::optical_depth, &Layer::g, &Layer::albedo};
   REQUIRE(job.parameters.size() == 9);
   CHECK(job.parameters[3] == "mu_t of layer 2");
-  for (std::size_t p = 0; p < 9; ++p)
+  for (std::size_t p = 0; p < 9; ++p) {
+    const auto moved = [&](double by) {
+      auto layers = three;
+      layers[p / 3].*members[p % 3] += by;
+      return theory_of(layers, {light, 0.1, -0.8});
+    };
+    constexpr double step = 1e-4;
+    const auto more = moved(step), less = moved(-step);
     for (std::size_t v = 0; v < views.size(); ++v) {
-      const auto moved = [&](double step) {
-        auto layers = three;
-        layers[p / 3].*members[p % 3] += step;
-        return theory_of(layers, {light, 0.1, -0.8}).covariance_without_reversed(light, views[v]);
-      };
-      constexpr double step = 1e-4;
-      double expected = (moved(step) - moved(-step)) / (2 * step);
+      double expected = (more.covariance_without_reversed(light, views[v]) -
+                         less.covariance_without_reversed(light, views[v])) /
+                        (2 * step);
       if (p % 3 == 0) expected *= three[p / 3].thickness;  // by mu_t
       const std::size_t e = p * views.size() + v;
       CAPTURE(job.parameters[p]);
       CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], Complex(expected), 1e-4);
     }
+  }
 }
 
 }  // namespace flatspeckle::mc::test_layers
