@@ -128,7 +128,8 @@ TEST_CASE("deep slabs against photons that are counted") {
   struct {
     double depth, albedo, g;
   } const slabs[] = {{30, 0.98, 0.8}, {60, 1, 0.9}, {10, 0.8, 0.5}};
-  for (const auto& [depth, albedo, g] : slabs) {
+  for (const auto& [deep, albedo, g] : slabs) {
+    const double depth = deep;  // clang 14 captures no part of a binding
     CAPTURE(depth);
     const oracles::PhotonTally counted = counted_photons(depth, albedo, g);
     const RenderScene scene = both_faces(hg(albedo, g), depth);
