@@ -19,7 +19,7 @@ ErrorReference reference_of(const mc::LineScene& line) {
   return {many.value, relative_error(many), "400,000 paths"};
 }
 
-ErrorCurve by_paths(double cpu_seconds) {
+ErrorCurve pairs_by_paths(double cpu_seconds) {
   const mc::LineScene line = imaged_points();
   const ErrorReference reference = reference_of(line);
   ErrorCurve curve{"image, C_I of pairs", "paths", reference.how, reference.relative_error, {}};
@@ -60,7 +60,7 @@ ErrorCurve by_frames(double cpu_seconds) {
 }  // namespace
 
 std::vector<ErrorRun> imaging_error_runs() {
-  return {{"image, C_I of pairs", "paths", by_paths, true},
+  return {{"image, C_I of pairs", "paths", pairs_by_paths, true},
           {"image, patterns of sources", "frames", by_frames, false}};
 }
 

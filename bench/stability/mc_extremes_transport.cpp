@@ -32,7 +32,7 @@ Finding lossless_scene(const Scene& scene, double optical_depth) {
   return {std::abs(left + std::expm1(-optical_depth)), 1e-9};
 }
 
-Finding lossless(const Bulk& bulk, int dimension) {
+Finding lossless_transport(const Bulk& bulk, int dimension) {
   return lossless_scene(viewed_slab(bulk, 0, dimension), bulk.optical_depth);
 }
 
@@ -152,8 +152,8 @@ void mc_transport_extremes(ExtremeRows& rows) {
     rows.add("transport in space, " + what, invariant, check, bulk, 3);
   };
   for (const Bulk& bulk : {Bulk{1e-3}, Bulk{1e4}, Bulk{5, 0.99}})
-    both("OD " + short_number(bulk.optical_depth) + ", g " + short_number(bulk.g), energy, lossless,
-         bulk);
+    both("OD " + short_number(bulk.optical_depth) + ", g " + short_number(bulk.g), energy,
+         lossless_transport, bulk);
   for (const Bulk& bulk : {Bulk{1e-3, 0.5}, Bulk{30, 0, 0.8}})
     both("OD " + short_number(bulk.optical_depth) + ", albedo " + short_number(bulk.albedo), errors,
          by_paths, bulk);

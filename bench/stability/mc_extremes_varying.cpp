@@ -56,9 +56,9 @@ Finding rugged_map() {
   return {worst, 1e-9};
 }
 
-IndexField linear(Vec2 slope) {
-  IndexField field;
-  field.kind = IndexField::Kind::linear;
+flatspeckle::IndexField linear(Vec2 slope) {
+  flatspeckle::IndexField field;
+  field.kind = flatspeckle::IndexField::Kind::linear;
   field.slope = slope;
   return field;
 }
