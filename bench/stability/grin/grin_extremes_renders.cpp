@@ -195,7 +195,7 @@ void add_gradients(ExtremeRows& rows) {
     const double exact = (through(2, 2e-3) - 4 * through(2, 1e-3) + 3 * through(2, 0)) / -2e-3;
     return slope({2, 1e-9}, 1, 100'000, exact, 0.05);
   });
-  rows.add("derivative by mu_s, slab of OD 10", peierls, [] {
+  rows.add_slow("derivative by mu_s, slab of OD 10", peierls, [] {
     const double exact = (through(10.01, 0.1) - through(9.99, 0.1)) / 0.02;
     return slope({10, 0.1}, 0, 400'000, exact, 0.2);
   });
@@ -226,7 +226,7 @@ void add_field_gradients(ExtremeRows& rows) {
     const double exact = beam.by_alpha(0.3);
     return Finding{std::abs(by_alpha(beam, 0, 0, 64).value[0].real() / exact - 1), 1e-3};
   });
-  rows.add("derivative by alpha, fog of g = 1 - 1e-9", "that without fog, in errors", [=] {
+  rows.add_slow("derivative by alpha, fog of g = 1 - 1e-9", "that without fog, in errors", [=] {
     const GuidedBeam beam{0.2, 6};
     const Estimate found = by_alpha(beam, 2, 1 - 1e-9, 40'000);
     return in_errors(found.value[0], found.error[0], beam.by_alpha(0.3), 0.1);
@@ -312,10 +312,11 @@ void add_choices(ExtremeRows& rows) {
   rows.add("chosen method, slab of OD 0.01, reflected", "Peierls' equation, in errors", [] {
     return share_row({0.01, 0}, true, chosen, 100'000, isotropic_slab(0.01, 1).reflected, 0.1);
   });
-  rows.add("chosen method, slab of OD 200, albedo 0.9: 3e-46 comes through",
-           "transport's decay with depth, in errors", [] {
-             return share_row({180, 20}, false, chosen, 10'000, transmitted_deep(200), 0.05, 1e-4);
-           });
+  rows.add_slow(
+      "chosen method, slab of OD 200, albedo 0.9: 3e-46 comes through",
+      "transport's decay with depth, in errors", [] {
+        return share_row({180, 20}, false, chosen, 10'000, transmitted_deep(200), 0.05, 1e-4);
+      });
   rows.add_slow("chosen method, slab of OD 1000, reflected", "Milne, in errors", share_row,
                 ScatteringMedium{1000, 0}, true, chosen, 10'000, milne(1000), 0.01, 0);
   for (const double size : {1e-3, 1e-9})
