@@ -35,6 +35,31 @@ Estimate each(const Estimate& all, std::size_t parameters,
   return made;
 }
 
+CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,
+                                           const GroupedSums& sums, const GradientJob& job) {
+  const std::size_t parameters = job.parameters.size(), entries = request.entries.size();
+  const Estimate slopes = jackknife(sums, [&](double samples, std::span<const Complex> total) {
+    const Values covariance = job.field.covariance(samples, total);
+    const Values gradient = job.gradient(samples, total);
+    Values all;
+    for (std::size_t p = 0; p < parameters; ++p) {
+      const auto along = std::span(gradient).subspan(p * entries, entries);
+      const Values slope = directional_slope(
+          [&](const Values& moved) { return correlation_and_ranges(request, moved); }, covariance,
+          along);
+      all.insert(all.end(), slope.begin(), slope.end());
+    }
+    return all;
+  });
+  CorrelationGradient gradient;
+  const std::size_t tilts = request.tilts.size();
+  for (std::size_t first = 0; first < slopes.value.size(); first += tilts + 1) {
+    append(gradient.correlation, part(slopes, first, tilts));
+    append(gradient.range, part(slopes, first + tilts, 1));
+  }
+  return gradient;
+}
+
 }  // namespace
 
 std::vector<BulkParameter> bulk_parameters(const Scene& scene) {
@@ -70,31 +95,6 @@ void check_gradient(const Scene& scene) {
   if (scene.request.entries.size() > most)
     throw InputError("gradient: " + std::to_string(scene.request.entries.size()) +
                      " entries of the covariance are too many, at most " + std::to_string(most));
-}
-
-CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,
-                                           const GroupedSums& sums, const GradientJob& job) {
-  const std::size_t parameters = job.parameters.size(), entries = request.entries.size();
-  const Estimate slopes = jackknife(sums, [&](double samples, std::span<const Complex> total) {
-    const Values covariance = job.field.covariance(samples, total);
-    const Values gradient = job.gradient(samples, total);
-    Values all;
-    for (std::size_t p = 0; p < parameters; ++p) {
-      const auto along = std::span(gradient).subspan(p * entries, entries);
-      const Values slope = directional_slope(
-          [&](const Values& moved) { return correlation_and_ranges(request, moved); }, covariance,
-          along);
-      all.insert(all.end(), slope.begin(), slope.end());
-    }
-    return all;
-  });
-  CorrelationGradient gradient;
-  const std::size_t tilts = request.tilts.size();
-  for (std::size_t first = 0; first < slopes.value.size(); first += tilts + 1) {
-    append(gradient.correlation, part(slopes, first, tilts));
-    append(gradient.range, part(slopes, first + tilts, 1));
-  }
-  return gradient;
 }
 
 GradientEstimates gradient_estimates(const Scene& scene, const GroupedSums& sums,

@@ -62,8 +62,6 @@ void check_gradient(const Scene& scene);
 struct CorrelationGradient {
   Estimate correlation, range;
 };
-CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,
-                                           const GroupedSums& sums, const GradientJob& job);
 
 /// Derivatives of all that a gradient's file has, [parameter] first; range of q L.
 struct GradientEstimates {

@@ -300,12 +300,12 @@ TEST_CASE("derivatives of the memory effect are those of the integral equation's
     for (const Entry entry : request.entries)
       entries.push_back(slab.without_reversed(angles(scene, entry.a), angles(scene, entry.b)));
     auto values = field_correlation(request, entries);
-    values.emplace_back(memory_effect_range(request.tilt_q, values).value);
+    values.emplace_back(depth * memory_effect_range(request.tilt_q, values).value);
     return Eigen::ArrayXcd(Eigen::ArrayXcd::Map(values.data(), std::ssize(values)));
   };
-  REQUIRE(curve(mu_t, albedo).tail(1)[0].real() < request.tilt_q.back());
+  REQUIRE(curve(mu_t, albedo).tail(1)[0].real() < depth * request.tilt_q.back());
   const auto run = differentiate(scene, ReversedPaths::no, 200000, 71);
-  const auto found = memory_effect_gradient(request, run.sums, run.job);
+  const CorrelationGradient found = gradient_estimates(scene, run.sums, run.job).effect;
   const std::size_t n = tilts.size(), g = 1, by_albedo = 2;
   REQUIRE(run.job.parameters[g] == "g");
   const auto of_mu_t = derivatives([&](double m) { return curve(m, albedo); }, mu_t, 0.002),
