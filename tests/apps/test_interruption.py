@@ -90,22 +90,17 @@ class Interruption(ProgramTest):
         self.call("covariance", **SHORT, out="run.h5")
         self.assert_same_data("run.h5", "run.h5.aside-1")
 
-    def test_the_trace_goes_on(self):
+    def test_the_trace_goes_on_by_other_threads_to_another_stop(self):
         keys = LONG["mc"][1]
         self.interrupt(signal.SIGINT, 0.1, "covariance", **keys, threads=2, out="run.h5")
         before = datasets(self.folder / "run.h5", leave_out=())["state/run/trace/samples"]
-        self.call("covariance", "--resume", **keys, threads=2, out="run.h5")
+        keys = {**keys, "samples": 1_100_000}
+        self.call("covariance", "--resume", **keys, threads=3, out="run.h5")
         trace = datasets(self.folder / "run.h5", leave_out=())
         samples = trace["trace/samples"]
         np.testing.assert_array_equal(samples[:len(before) - 1], before[:-1])
         self.assertEqual(samples[-1], keys["samples"])
         self.assertTrue(np.all(np.diff(trace["trace/wall_s"]) >= 0))
-
-    def test_other_threads_and_stops_may_resume(self):
-        keys = LONG["mc"][1]
-        self.interrupt(signal.SIGINT, 0.1, "covariance", **keys, threads=2, out="run.h5")
-        keys = {**keys, "samples": 1_100_000}
-        self.call("covariance", "--resume", **keys, threads=3, out="run.h5")
         self.call("covariance", **keys, out="whole.h5")
         self.assert_same_data("run.h5", "whole.h5")
 
