@@ -134,7 +134,7 @@ class Memory(ProgramTest):
 
     def test_address_space_that_two_threads_fill(self):
         """Each has its buffer of BLAS before another can take the room."""
-        for _ in range(12):
+        for _ in range(12 if WHOLE else 4):
             done = self.limited("validate", dict(
                 width=20, depth=10, count=31, covariance="memory_effect", tilts=[0, 0.04, 0.16],
                 view_angles=[0.1, 0.5], samples=4000, wave_samples=20, threads=2), 400)
@@ -202,7 +202,7 @@ class Signals(ProgramTest):
             with self.subTest(keys=keys):
                 process = self.start("covariance", **keys, view_angles=[0], threads=1, out="x.h5",
                                      **({} if "domain" in keys else {"samples": 10**7}))
-                self.check_ends(process, 75, 1)
+                self.check_ends(process, 75, 1 if WHOLE else 0.3)
 
     def test_paths_without_end_are_refused(self):
         for optical_depth in (1e5, 1e9, 1e30):
@@ -217,9 +217,9 @@ class Signals(ProgramTest):
                      {"width": 0.01, "depth": 10, "count": 31}):
             with self.subTest(keys=keys):
                 began = cpu_of_children()
-                self.call("covariance", **keys, view_angles=[0.3], seconds=1, threads=1,
+                self.call("covariance", **keys, view_angles=[0.3], seconds=0.3, threads=1,
                           out="x.h5")
-                self.assertLess(cpu_of_children() - began, 3.1 * SLOWNESS)
+                self.assertLess(cpu_of_children() - began, 2.4 * SLOWNESS)
 
 
 if __name__ == "__main__":

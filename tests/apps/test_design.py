@@ -133,7 +133,7 @@ class Design(RefusingTest):
 
     def test_resumed(self):
         """Cut off after some steps and gone on with: the same bits."""
-        keys = {**SMALL, "nodes": [5, 9], "directions": 40, "rays_per_direction": 60, "threads": 1}
+        keys = {**SMALL, "nodes": [5, 9], "directions": 25, "rays_per_direction": 60, "threads": 1}
         self.design("whole.h5", **keys)
         run = self.start("design", out="cut.h5", **keys)
         while not (self.folder / "cut.h5.state").exists() and run.poll() is None:

@@ -40,7 +40,7 @@ class Fit(ProgramTest):
     def test_a_result_of_many_close_tilts(self):
         """Errors that are so correlated that what is left of them in some sums is rounding."""
         tilts = [0, 0.0003, 0.0006, 0.0009, 0.0012, 0.0016, 0.002, 0.0025, 0.003, 0.004, 0.006, 0.01]
-        for seed in (1, 2):
+        for seed in (1, 2) if WHOLE else (1,):
             self.call("covariance", domain="slab", depth=100, scatterer="hg", g=0.9, albedo=0.99,
                       optical_depth=10, tilts=tilts, covariance="memory_effect", view_angles=0,
                       method="mc", target_error=0.01, seed=seed, out="measured.h5")

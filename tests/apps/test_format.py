@@ -87,10 +87,15 @@ def type_of(item):
     return {"complex128": "complex", "uint8": "bool"}.get(item.dtype.name, item.dtype.name)
 
 
+SWEPT = {}  # file name -> keys
+
+
 def swept_keys(file):
-    """As axes, of a sweep of another subcommand, or of a search."""
+    """Returns the keys that are axes: those of a sweep of another subcommand, or of a search."""
+    if file.filename in SWEPT:
+        return SWEPT[file.filename]
     search = file["search"].attrs["swept"] if "search" in file else []
-    return [key.replace(".", "_") for key in [*file.attrs.get("swept", []), *search]]
+    return SWEPT.setdefault(file.filename, [key.replace(".", "_") for key in [*file.attrs.get("swept", []), *search]])
 
 
 def axes_of(dataset):
@@ -114,12 +119,12 @@ class Format(ResultsTest):
         for name, dataset in members(file).items():
             if name.split("/")[-1].removesuffix("_word") in swept_keys(file):
                 continue
-            found = [(of_method(name), type_of(dataset), axes, dataset.attrs.get("units", ""),
-                      dataset.attrs["long_name"]) for axes in axes_of(dataset)]
+            axes, unit, long_name = axes_of(dataset), dataset.attrs.get("units", ""), dataset.attrs["long_name"]
+            found = [(of_method(name), type_of(dataset), each, unit, long_name) for each in axes]
             rows = [EXPECTED[each] for each in found if each in EXPECTED]
             self.assertEqual(len(rows), 1, found)
             self.met.update(rows)
-            self.seen.update(axes_of(dataset), [dataset.attrs.get("units", "")])
+            self.seen.update(axes, [unit])
 
     def test_datasets(self):
         self.met, self.seen = set(), set()

@@ -5,7 +5,7 @@ import unittest
 
 import numpy as np
 
-from program import attributes, datasets
+from program import WHOLE, attributes, datasets
 from renders import AREA, BEAM, BOX, CAMERA, FIBRE, FOG, SCENES, RenderTest, write_density
 
 NAMES = ["luneburg", "fisheye", "grin_fibre", "waveguide", "glass_ball", "luneburg_pulse", "slab"]
@@ -72,7 +72,8 @@ class Scenes(RenderTest):
                 for words in ("brightest pixel", "mean of pixels", "relative error", "wrote"):
                     self.assertIn(words, self.output)
                 self.assertEqual(attributes(self.folder / "render.h5")["length_unit"], 1e-3)
-                self.check_config_runs_again()
+                if WHOLE or name in NAMES[1::3]:
+                    self.check_config_runs_again()
 
     def test_what_few_paths_bring_is_no_estimate(self):
         """Path tracing would have to join through a hundred mean free paths: no number is better than
@@ -240,8 +241,9 @@ class Energy(RenderTest):
         return power
 
     def test_of_scenes(self):
-        for name in NAMES:
-            for method in ("light", "bidirectional"):
+        """By night of each by both methods, by day by one in turn."""
+        for number, name in enumerate(NAMES):
+            for method in ("light", "bidirectional") if WHOLE else (("light", "bidirectional")[number % 2],):
                 with self.subTest(name, method=method):
                     self.fates(config=SCENES / f"render_{name}.toml", method=method, samples=200)
 
@@ -391,18 +393,14 @@ class SameNumbers(RenderTest):
                 with self.subTest(field=field, method=method):
                     yield {**self.KEYS, **field, "method": method}, 34_000 if method == "photon_map" else 4000
 
-    def test_threads(self):
+    def test_threads_and_resume(self):
         for keys, samples in self.kinds():
             for threads in (1, 3):
                 self.render(f"{threads}.h5", **keys, threads=threads, samples=samples)
             self.assert_same_data("1.h5", "3.h5")
-
-    def test_resume(self):
-        for keys, samples in self.kinds():
             self.render("parts.h5", **keys, samples=samples // 2)
             self.render("parts.h5", **keys, samples=samples, resume=True)
-            self.render("whole.h5", **keys, samples=samples)
-            self.assert_same("parts.h5", "whole.h5")
+            self.assert_same("parts.h5", "1.h5")
 
     def test_another_scene_may_not_resume(self):
         write_density(self.folder / "d.h5", np.ones((5, 5, 5)))

@@ -29,7 +29,7 @@ class Shares(SweepTest):
             self.assert_same_data("1.h5", "4.h5")
 
     def test_one_after_the_other(self):
-        self.call("sweep", **SWEEP, out="whole.h5")
+        self.whole(SWEEP)
         for number in range(3):
             self.assertEqual(len(self.finished()), (0, 3, 6)[number])
             done = self.call("sweep", **SWEEP, shard=f"{number}/3", out="sweep.h5")
@@ -82,14 +82,14 @@ class Shares(SweepTest):
 
     def test_whole_after_shares(self):
         """Without a merge: the sweep itself finds what is there."""
-        self.call("sweep", **SWEEP, out="whole.h5")
+        self.whole(SWEEP)
         self.call("sweep", **SWEEP, shard="1/3", out="sweep.h5")
         self.call("sweep", "--resume", **SWEEP, out="sweep.h5")
         self.assert_same_data("sweep.h5", "whole.h5")
         self.assertFalse(self.points().exists())
 
     def test_overlapping_folders(self):
-        self.call("sweep", **SWEEP, out="whole.h5")
+        self.whole(SWEEP)
         self.call("sweep", **SWEEP, shard="0/1", out="a.h5")
         self.call("sweep", **SWEEP, shard="1/2", out="b.h5")
         self.call("merge", shards=["b.h5.shards", "a.h5.shards"], out="merged.h5")
@@ -104,7 +104,7 @@ class Lists(SweepTest):
         return {**SWEEP, **axes, "points": "points.csv", **changes}
 
     def test_gives_the_numbers_of_the_grid(self):
-        self.call("sweep", **SWEEP, out="whole.h5")
+        self.whole(SWEEP)
         self.write("points.csv", csv(["g", "albedo", "optical_depth"],
                                      [[g, albedo, depth] for depth, g, albedo in self.ROWS]))
         self.call("sweep", **self.listed(), out="list.h5")
@@ -115,7 +115,7 @@ class Lists(SweepTest):
         self.assert_points_equal("list.h5", "whole.h5")
 
     def test_one_value_beside_the_table(self):
-        self.call("sweep", **SWEEP, out="whole.h5")
+        self.whole(SWEEP)
         self.write("points.csv", csv(["g", "optical_depth"], [[0.5, 2], [0, 1]]))
         self.call("sweep", **self.listed(albedo=0.9), out="list.h5")
         self.assert_points_equal("list.h5", "whole.h5")
@@ -242,7 +242,7 @@ class Stops(SweepTest):
         self.assertFalse(self.points().exists())
         root = attributes(self.folder / "sweep.h5")
         self.assertEqual((root["complete"], root["converged"]), (1, 0))
-        self.call("sweep", **SWEEP, out="whole.h5")
+        self.whole(SWEEP)
         self.assert_same_data("sweep.h5", "whole.h5")
 
     def test_target(self):
@@ -342,7 +342,7 @@ class Resume(SweepTest):
         """It is replaced."""
         self.call("sweep", **SWEEP, seed=2, out="sweep.h5")
         self.call("sweep", **SWEEP, out="sweep.h5")
-        self.call("sweep", **SWEEP, out="whole.h5")
+        self.whole(SWEEP)
         self.assert_same_data("sweep.h5", "whole.h5")
 
     def test_with_more_points(self):

@@ -8,7 +8,7 @@ import unittest
 import h5py
 import numpy as np
 
-from program import PROGRAM, datasets, flags
+from program import PROGRAM, WHOLE, datasets, flags
 from sweeps import SweepTest
 
 GUIDE = {"field": "ultrasound", "index": 1.33, "sound_wavenumber": 3.4, "stage_box": [-5, -5, 0, 5, 5, 10],
@@ -17,7 +17,7 @@ GUIDE = {"field": "ultrasound", "index": 1.33, "sound_wavenumber": 3.4, "stage_b
          "samples": 512, "method": "light"}
 GRID = {**GUIDE, "of": "render", "vary": ["amplitude=0:0.004:3", "mu_s=0.1,0.3"], "threads": 2}
 MANY = {**GRID, "samples": 2048, "vary": ["amplitude=0:0.004:6", "g=0:0.9:5"]}
-SLOW = {**GRID, "vary": ["amplitude=0:0.004:3", "mu_s=0.1,0.3"], "samples": 100_000}
+SLOW = {**GRID, "vary": ["amplitude=0:0.004:3", "mu_s=0.1,0.3"], "samples": 100_000 if WHOLE else 30_000}
 COSTS = ("wall_s", "cpu_s")
 
 
@@ -81,7 +81,7 @@ class SweepOf(SweepTest):
                     (self.folder / path).unlink()
 
     def test_axes(self):
-        self.call("sweep", **GRID, out="sweep.h5")
+        self.whole(GRID, "sweep.h5")
         with h5py.File(self.folder / "sweep.h5") as file:
             self.assertEqual([axis[0].name for axis in file["image"].dims],
                              ["/amplitude", "/mu_s", "/row", "/column"])
@@ -133,7 +133,7 @@ class SweepOf(SweepTest):
 
     def test_threads(self):
         self.call("sweep", **{**GRID, "threads": 1}, out="one.h5")
-        self.call("sweep", **{**GRID, "threads": 2}, out="two.h5")
+        self.whole(GRID, "two.h5")
         self.assert_same("one.h5", "two.h5")
 
     def test_interruption(self):
@@ -178,14 +178,15 @@ class SweepOf(SweepTest):
 
     def test_memory(self):
         """Is the same for many points as for a few, where as many as a chunk has are no few."""
+        many = 24000 if WHOLE else 13000
         rays = {"of": "trace", "field": "ultrasound", "index": 1.33, "sound_wavenumber": 3.5, "light": "line",
                 "ray_count": 2, "beam_radius": 0.25, "stop_plane": [0, 0, 0.1, 0, 0, 1], "max_length": 1, "step": 0.05,
                 "threads": 1}
         peaks = [self.peak_memory("sweep", **rays, vary=f"amplitude=1e-3:2e-3:{points}", out=f"{points}.h5")
-                 for points in (9000, 24000)]
+                 for points in (9000, many)]
         self.assertLess(peaks[1] - peaks[0], 2 ** 20)
-        amplitudes = datasets(self.folder / "24000.h5")["amplitude"]
-        np.testing.assert_allclose(amplitudes, np.linspace(1e-3, 2e-3, 24000), rtol=1e-15)
+        amplitudes = datasets(self.folder / f"{many}.h5")["amplitude"]
+        np.testing.assert_allclose(amplitudes, np.linspace(1e-3, 2e-3, many), rtol=1e-15)
 
     def peak_memory(self, *words, **keys):
         """In bytes: as the child of a small process, whose own is counted until the program begins."""
@@ -196,7 +197,7 @@ class SweepOf(SweepTest):
         return int(done.stdout) * 1024
 
     def test_config_makes_it_again(self):
-        self.call("sweep", **GRID, out="sweep.h5")
+        self.whole(GRID, "sweep.h5")
         with h5py.File(self.folder / "sweep.h5") as file:
             self.write("again.toml", file.attrs["config"])
         self.call("sweep", config="again.toml", out="again.h5")

@@ -9,23 +9,27 @@ import time
 import unittest
 
 import journals
-from program import WHOLE, attributes
-from sweeps import MANY, SLOW, SWEEP, SweepTest, is_complete, names_of
+from program import WHOLE, attributes, cpu_of_children
+from sweeps import MANY, SLOW, SWEEP, SweepTest, cpu_seconds, is_complete, names_of
 
-# About two seconds of two threads.
-LONG = {**MANY, "samples": 40_000}
+# About two seconds of one thread, by day one.
+LONG = {**MANY, "samples": 40_000 if WHOLE else 20_000}
+ONE = {**SLOW, "optical_depth": [3], "samples": 1_000_000 if WHOLE else 400_000}
 
 
 class Kill(SweepTest):
     def test_at_many_moments(self):
-        start = self.seconds_of("--version")
-        duration = self.seconds_of("sweep", **LONG, out="whole.h5") - start
+        before = cpu_of_children()
+        self.call("sweep", **LONG, out="whole.h5")
+        needed = cpu_of_children() - before
         moments = random.Random(1)
         kept, ended, midway = {}, 0, 0
         times = 20 if WHOLE else 8
         for _ in range(times):
             process = self.start("sweep", "--resume", **LONG, out="sweep.h5")
-            time.sleep(start + moments.random() * 0.15 * duration)
+            moment = moments.random() * 0.15 * needed
+            while process.poll() is None and cpu_seconds(process) < moment:
+                time.sleep(0.002)
             process.kill()
             if process.wait() == 0:
                 (self.folder / "sweep.h5").unlink()
@@ -52,7 +56,7 @@ class Kill(SweepTest):
     def test_what_was_being_written_is_cleared_away(self):
         """Of a kill while a file is written, before the unfinished file has gone, and before the
         folder has gone."""
-        self.call("sweep", **SWEEP, out="whole.h5")
+        self.whole(SWEEP)
         self.all_points(SWEEP)
         name = next(iter(self.finished()))
         place = self.points()
@@ -74,14 +78,13 @@ class Interruption(SweepTest):
     def test_in_the_midst_of_points(self):
         """Points that stop at a number of samples, and such that stop at an error, of which many
         are unfinished at a time."""
-        for stop in ({}, {"samples": None, "method": "mc", "target_error": 0.0008}):
+        for stop in ({}, {"samples": None, "method": "mc", "target_error": 0.0008 if WHOLE else 0.001}):
             with self.subTest(stop=stop):
                 keys = {**SLOW, **stop}
-                self.call("sweep", **keys, out="whole.h5")
+                self.whole(keys)
                 for number, threads in ((signal.SIGINT, 2), (signal.SIGTERM, 1),
                                         (signal.SIGINT, 3)):
-                    self.interrupted(number, **{**keys, "threads": threads}, resume=True,
-                                     out="sweep.h5")
+                    self.interrupted(number, cpu_s=0.06, **{**keys, "threads": threads}, resume=True, out="sweep.h5")
                     self.assertFalse((self.folder / "sweep.h5").exists())
                 self.assertTrue(self.unfinished())
                 done = self.call("sweep", "--resume", **keys, out="sweep.h5")
@@ -104,8 +107,8 @@ class Interruption(SweepTest):
 
     def test_by_both_methods(self):
         keys = {"domain": "box", "width": 10, "depth": 10, "scatterer": "point",
-                "density": [0.2, 0.4], "tilts": [0, 0.1], "method": "both", "samples": 600_000,
-                "wave_samples": 16000, "threads": 2}
+                "density": [0.2, 0.4], "tilts": [0, 0.1], "method": "both", "samples": 600_000 if WHOLE else 300_000,
+                "wave_samples": 16000 if WHOLE else 8000, "threads": 2}
         self.call("sweep", **keys, out="whole.h5")
         for cpu_s in (0.1, 0.3):
             self.interrupted(cpu_s=cpu_s, **keys, resume=True, out="sweep.h5")
@@ -156,7 +159,7 @@ class Damage(SweepTest):
 
     def setUp(self):
         super().setUp()
-        self.call("sweep", **SWEEP, out="whole.h5")
+        self.whole(SWEEP)
 
     def check_mended(self, aside, whole="whole.h5", keys=SWEEP):
         """What was damaged is told of, kept beside, and done again."""
@@ -179,7 +182,7 @@ class Damage(SweepTest):
     def test_of_finished_points(self):
         positions = random.Random(2)
         flips = [flipped_at(positions.randrange(1 << 20), positions.randrange(8))
-                 for _ in range(12)]
+                 for _ in range(12 if WHOLE else 5)]
         for change in (*flips, lambda data: data + bytes(100), lambda data: bytes(len(data))):
             self.all_points(SWEEP)
             for line in self.check_mended(self.damage(self.journal(), change)):
@@ -193,14 +196,15 @@ class Damage(SweepTest):
             self.check_mended({})
 
     def test_of_unfinished_points(self):
-        self.whole(SLOW, "slow.h5")
+        keys = SLOW if WHOLE else ONE
+        self.whole(keys, "slow.h5")
         for change in (truncated, emptied, flipped_at(9000, 0)):
-            self.interrupted(**SLOW, out="sweep.h5")
+            self.interrupted(**keys, out="sweep.h5")
             damaged = {}
             for name in self.unfinished():
                 damaged |= self.damage(self.points() / name, change)
             self.assertTrue(damaged)
-            self.check_mended(damaged, "slow.h5", SLOW)
+            self.check_mended(damaged, "slow.h5", keys)
 
     def test_of_no_file_at_all(self):
         """A folder in the place of an unfinished point."""
@@ -228,8 +232,8 @@ class Damage(SweepTest):
 
     def test_of_unfinished_points_of_another_sweep(self):
         """Or of another point."""
-        keys = {**SLOW, "optical_depth": [3], "samples": 1_000_000}
-        self.call("sweep", **keys, out="slow.h5")
+        keys = ONE
+        self.whole(keys, "slow.h5")
         for changes in ({"seed": 2}, {"optical_depth": [2]}):
             self.interrupted(**{**keys, **changes}, out="other.h5")
             (other, data), = self.unfinished("other.h5").items()
@@ -267,7 +271,7 @@ class Damage(SweepTest):
 class MergeOfDamage(SweepTest):
     def setUp(self):
         super().setUp()
-        self.call("sweep", **SWEEP, out="whole.h5")
+        self.whole(SWEEP)
         self.all_points(SWEEP)
         self.names = list(self.finished())
 

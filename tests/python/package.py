@@ -5,6 +5,7 @@ import pathlib
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 WHOLE = "FLATSPECKLE_TEST_WHOLE" in os.environ  # by night: all tests at their full sizes
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -24,3 +25,8 @@ class PackageTest(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
         os.environ["FLATSPECKLE_CACHE"] = str(self.folder / "cache")
+
+    def leave_figures_undrawn(self):
+        """By day figures are made and not drawn, which takes most of their time: apps/plots draws one of each script."""
+        if not WHOLE:
+            self.enterContext(mock.patch.object(fs.plots, "whole"))

@@ -1,6 +1,7 @@
 """Calls: arrays arrive as they are, refusals are told by key, an interrupted run goes on, a call like an
 earlier one costs nothing."""
 
+import functools
 import os
 import signal
 import subprocess
@@ -171,6 +172,11 @@ class Refusals(PackageTest):
 
 
 class Interruption(PackageTest):
+    @staticmethod
+    @functools.cache
+    def whole():
+        return fs.covariance(LONG, cache=False)
+
     def interrupt(self):
         """As by Ctrl-C, once the program is at work and has had time for some batches."""
         while not any(self.folder.rglob(".*.h5.lock")):
@@ -190,7 +196,7 @@ class Interruption(PackageTest):
             np.testing.assert_array_equal(one[name], other[name])
 
     def test_goes_on(self):
-        whole = fs.covariance(LONG, cache=False)
+        whole = self.whole()
         self.interrupted()
         files = list((self.folder / "cache").rglob("result.h5"))
         self.assertEqual(len(files), 1)
@@ -205,7 +211,7 @@ class Interruption(PackageTest):
 
     def test_in_a_file_of_ones_own(self):
         self.interrupted(out=self.folder / "mine.h5")
-        self.assert_same(fs.covariance(LONG, cache=False),
+        self.assert_same(self.whole(),
                          fs.covariance(LONG, out=self.folder / "mine.h5", resume=True))
 
     def test_the_program_is_gone(self):

@@ -24,6 +24,10 @@ def explained(*words):
 
 
 class Explain(PackageTest):
+    def setUp(self):
+        super().setUp()
+        self.leave_figures_undrawn()
+
     def check(self, path):
         text = explained(path).stdout
         with h5py.File(path) as file:

@@ -13,7 +13,7 @@ import numpy as np
 from package import BOX, CURVE, FEW, PackageTest, fs
 
 
-class Plots(PackageTest):
+class Drawn(PackageTest):
     def test_a_curve(self):
         curve = fs.covariance(CURVE, tilts=np.linspace(0, 4e-4, 5))
         figure = fs.plots.memory_effect(curve)
@@ -23,6 +23,22 @@ class Plots(PackageTest):
                             for line in drawn))
         figure.savefig(self.folder / "curve.png")
         self.assertFalse(plt.get_fignums())
+
+    def test_figures_are_whole_however_they_are_saved(self):
+        swept = fs.sweep(depth=100, g=[0, 0.5], optical_depth=[2], tilts=[0, 0.01, 0.02])
+        both = fs.validate(BOX, view_angles=[0, 0.3], wave_samples=20, **FEW)
+        curves = [fs.covariance(CURVE, g=g) for g in (0.8, 0.9)]
+        for figure in (fs.plots.memory_effect(swept), fs.plots.validation(both), fs.plots.memory_effect(*curves)):
+            box = figure.get_tightbbox(figure.canvas.get_renderer())
+            width, height = figure.get_size_inches()
+            self.assertTrue(box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height, box)
+            self.assertTrue(figure.legends)
+
+
+class Plots(PackageTest):
+    def setUp(self):
+        super().setUp()
+        self.leave_figures_undrawn()
 
     def test_options(self):
         curve = fs.covariance(CURVE)
@@ -36,16 +52,6 @@ class Plots(PackageTest):
         self.assertTrue(fs.plots.memory_effect(*curves).axes)
         with self.assertRaisesRegex(fs.InputError, "draws one result"):
             fs.plots.validation(*curves)
-
-    def test_figures_are_whole_however_they_are_saved(self):
-        swept = fs.sweep(depth=100, g=[0, 0.5], optical_depth=[2], tilts=[0, 0.01, 0.02])
-        both = fs.validate(BOX, view_angles=[0, 0.3], wave_samples=20, **FEW)
-        curves = [fs.covariance(CURVE, g=g) for g in (0.8, 0.9)]
-        for figure in (fs.plots.memory_effect(swept), fs.plots.validation(both), fs.plots.memory_effect(*curves)):
-            box = figure.get_tightbbox(figure.canvas.get_renderer())
-            width, height = figure.get_size_inches()
-            self.assertTrue(box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height, box)
-            self.assertTrue(figure.legends)
 
     def test_parts_and_changed_copies_are_refused(self):
         curve = fs.covariance(CURVE)
