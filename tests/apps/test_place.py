@@ -117,9 +117,14 @@ class Correlated(PlaceTest):
     SCENE = {"width": 12, "depth": 8, "scatterer": "tm", "radius": 0.16, "index": 1.2, "count": 200,
              "view_angles": [0.5, 3.0], "samples": 4000}
 
+    made = {}  # the structure factor, measured once for all tests
+
     def setUp(self):
         super().setUp()
-        self.place(width=12, depth=8, radii=0.16, count=200, structure="s.h5", realizations=200)
+        if not self.made:
+            self.place(width=12, depth=8, radii=0.16, count=200, structure="s.h5", realizations=200)
+            self.made["s.h5"] = (self.folder / "s.h5").read_bytes()
+        (self.folder / "s.h5").write_bytes(self.made["s.h5"])
 
     def test_measured_and_theory_agree(self):
         for structure in ("none", "hard_disks", "s.h5"):

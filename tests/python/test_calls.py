@@ -19,7 +19,7 @@ from package import BOX, CURVE, FEW, ROOT, SLAB, PackageTest, fs
 
 from flatspeckle import functions, program
 
-LONG = {**BOX, "view_angles": [0.1, 0.5, 1], "samples": 3_000_000, "threads": 1}
+LONG = {**BOX, "view_angles": [0.1, 0.5, 1], "samples": 2_000_000, "threads": 1}
 MOST_CPU_S = 0.15  # of this process alone
 
 
