@@ -181,6 +181,8 @@ class Image(BodiesTest):
             other = self.trace(**keys, image_plane=plane(9 + moved["image/distance"] + beside))
             self.assertGreater(other["image/spot_radius"], moved["image/spot_radius"])
         self.assertLess(moved["image/least_path_difference_rms"], moved["image/path_difference_rms"])
+        for name in "image/path_difference", "image/least_path_difference":
+            np.testing.assert_allclose(moved[f"{name}_rms"], np.sqrt(np.mean(moved[name] ** 2)), rtol=1e-12)
 
     def test_parallel_rays_have_no_focus(self):
         found = self.trace(**PARALLEL, ray_count=5, stop_plane=plane(1), image_plane=plane(2))
