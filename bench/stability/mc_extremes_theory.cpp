@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bench/oracles/multiprecision.h"
+#include "bench/scenes/standard_scenes.h"
 #include "bench/stability/extreme_rows.h"
 #include "flatland/media/medium.h"
 #include "grin/media/scattering/diffusion_rate.h"

@@ -160,10 +160,10 @@ Finding guide_tangent() {
 
 /// Period 2 pi 1e4; the optical path beyond the length is 1e-7 of it.
 Finding ray_in_faint_guide() {
-  const ParabolicGuide guide({1e-6, 1e-4});
-  RayState ray = start_ray(guide, {0.3, 0, 0}, Vec3::UnitZ());
+  const ParabolicGuide faint({1e-6, 1e-4});
+  RayState ray = start_ray(faint, {0.3, 0, 0}, Vec3::UnitZ());
   const double beta = ray.v[2], sigma = 1.25 * 2 * pi / 1e-4, n0 = 1 + 1e-6;
-  for (int i = 0; i < 1000; ++i) Yoshida4::step(guide, ray, sigma / 1000);
+  for (int i = 0; i < 1000; ++i) Yoshida4::step(faint, ray, sigma / 1000);
   const double path = beta * sigma * (n0 * n0 + beta * beta) / (2 * beta);
   return {larger({std::abs(ray.x[0]) / 0.3, std::abs(ray.v[0] / -0.3e-4 - 1),
                   std::abs(ray.optical_path / path - 1) * 1e7}),
@@ -173,13 +173,13 @@ Finding ray_in_faint_guide() {
 /// No dispersion: optical path n0 times the length for every slope, over 1000 half periods.
 Finding sech_dispersion() {
   const double n0 = 1.5, alpha = 0.6, length = 1000 * pi / alpha;
-  const SechGuide guide({n0 - 1, alpha});
+  const SechGuide sech({n0 - 1, alpha});
   const std::vector<Surface> end{Plane{{0, 0, length}, Vec3::UnitZ()}};
   double worst = 0;
   for (const double slope : {0.0, 0.3, 0.8}) {
     ControlledSteps<Yoshida4> steps{1e-12, 0.01, 1};
-    RayState ray = start_ray(guide, Vec3::Zero(), {slope * 0.6, slope * 0.8, 1});
-    if (trace(guide, end, {1e5, 1e-9}, steps, ray).stop != Stop::surface) return yes(false);
+    RayState ray = start_ray(sech, Vec3::Zero(), {slope * 0.6, slope * 0.8, 1});
+    if (trace(sech, end, {1e5, 1e-9}, steps, ray).stop != Stop::surface) return yes(false);
     worst = larger(worst, std::abs(ray.optical_path / (n0 * length) - 1));
   }
   return {worst, 1e-9};
