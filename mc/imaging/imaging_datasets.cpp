@@ -239,7 +239,7 @@ void write_prediction(const ResultGroup& root, const LineScene& line, const Imag
   if (expected.success) root.put("predicted_success", *expected.success);
 }
 
-/// What was seen in the media.
+/// Writes what the views of all media show.
 void write_frames(ResultFile& file, const ResultGroup& root, const LineScene& line,
                   const ImagingTask& task, const std::vector<ImagedMedium>& media) {
   const double moved = magnification(line), length_of_pixel = 1 / std::abs(moved);
