@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <vector>
 
@@ -29,8 +30,10 @@ void check_chi_square(const std::vector<double>& counts, const std::vector<doubl
 /// The seed of this number; where FLATSPECKLE_TEST_SEED is set (scripts/check.sh), a fresh one.
 std::uint64_t fresh_seed(std::uint64_t number);
 
-/// What long tests take of their samples by day, a quarter, and how much larger errors are then; by
-/// night (FLATSPECKLE_TEST_WHOLE is set) they take all.
+/// Whether tests take all of their samples and cases (FLATSPECKLE_TEST_WHOLE is set), as by night.
+inline const bool is_night = std::getenv("FLATSPECKLE_TEST_WHOLE") != nullptr;
+
+/// What long tests take of their samples, by day a quarter, and how much larger errors are then.
 struct Effort {
   double samples = 0.25, errors = 2;
 };

@@ -12,8 +12,7 @@
 
 namespace flatspeckle::grin::tests {
 
-/// Whether tests take all of their samples and cases.
-inline const bool is_night = flatspeckle::tests::effort().samples == 1;
+using flatspeckle::tests::is_night;
 
 inline std::string name(RenderMethod method) {
   return method_word(method);

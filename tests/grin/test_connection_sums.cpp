@@ -3,18 +3,20 @@
 
 namespace flatspeckle::grin::tests::test_connection_sums {
 
+using flatspeckle::tests::is_night;
+
 TEST_CASE("in Luneburg's ball f K has the mean f of the one curve") {
   const Inside<bench::Ball> ball{{1}};
   std::vector<HarmonicCurve> exact = harmonic_curves(from, to, 2 * std::numbers::pi);
   std::erase_if(exact, [](const HarmonicCurve& curve) { return curve.largest_radius() > 1; });
   REQUIRE(exact.size() == 1);
   const ConnectionTrial trial(field, ball, from, to, {.step = 0.1, .max_length = 4});
-  const int estimates = 40000;
-  check_sums(estimated(trial, estimates, 81), estimates, exact, 0.006);
+  const int estimates = is_night ? 400000 : 40000;
+  check_sums(estimated(trial, estimates, 81), estimates, exact, is_night ? 0.002 : 0.006);
 }
 
 TEST_CASE("without the rim f K has the mean of the sum of f over all curves") {
-  check_four_curves(12'000, 0.015);
+  check_four_curves(is_night ? 60'000 : 12'000, is_night ? 0.007 : 0.015);
 }
 
 TEST_CASE("roulette leaves the mean alone") {
@@ -24,9 +26,9 @@ TEST_CASE("roulette leaves the mean alone") {
   const ConnectionTrial trial(
       field, WholeSpace(), from, to,
       {.step = 0.2, .max_length = longest, .start = {.chord_share = 0.1}, .roulette_after = 4});
-  const int estimates = 25000;
+  const int estimates = is_night ? 100000 : 25000;
   const Moments moments = estimated(trial, estimates, 83);
-  check_sums(moments, estimates, exact, 0.03);
+  check_sums(moments, estimates, exact, is_night ? 0.02 : 0.03);
   CHECK(moments.statistics.roulette_ends > estimates / 20);
 }
 

@@ -9,10 +9,17 @@ namespace flatspeckle::grin::tests::test_slab_render {
 
 using namespace oracles;
 
+/// check_share of a long run, shorter by day.
+void check_long_share(const RenderScene& scene, RenderMethod method, double samples, double expected,
+                      double largest_error) {
+  const flatspeckle::tests::Effort effort = flatspeckle::tests::effort();
+  check_share(scene, method, effort.samples * samples, expected, effort.errors * largest_error);
+}
+
 TEST_CASE("van de Hulst's slab by light and bidirectional tracing") {
   for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {
-    check_share(van_de_hulst(Face::reflected), method, 50000, 0.09739, 2e-3);
-    check_share(van_de_hulst(Face::transmitted), method, 50000, 0.66096, 3e-3);
+    check_long_share(van_de_hulst(Face::reflected), method, 200000, 0.09739, 1e-3);
+    check_long_share(van_de_hulst(Face::transmitted), method, 200000, 0.66096, 1.5e-3);
   }
 }
 
@@ -21,8 +28,9 @@ TEST_CASE("isotropic slabs against Peierls' equation") {
     const ScatteringMedium medium = isotropic(albedo);
     const SlabShares exact = isotropic_slab(2, albedo);
     for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {
-      check_share(slab(medium, 2, 100, Face::reflected), method, 25000, exact.reflected, 4e-3);
-      check_share(slab(medium, 2, 100, Face::transmitted), method, 25000, exact.transmitted, 4e-3);
+      check_long_share(slab(medium, 2, 100, Face::reflected), method, 100000, exact.reflected, 2e-3);
+      check_long_share(slab(medium, 2, 100, Face::transmitted), method, 100000, exact.transmitted,
+                       2e-3);
     }
   }
 }
@@ -30,8 +38,8 @@ TEST_CASE("isotropic slabs against Peierls' equation") {
 TEST_CASE("a half-space against Chandrasekhar's H function") {
   const double albedo = 0.9;
   const ScatteringMedium medium = isotropic(albedo);
-  check_share(slab(medium, 40, 100, Face::reflected), RenderMethod::bidirectional, 50000,
-              isotropic_half_space(albedo), 4e-3);
+  check_long_share(slab(medium, 40, 100, Face::reflected), RenderMethod::bidirectional, 200000,
+                   isotropic_half_space(albedo), 2e-3);
 }
 
 TEST_CASE("the errors of short runs in a thick slab hold") {

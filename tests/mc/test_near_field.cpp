@@ -11,6 +11,7 @@ namespace flatspeckle::mc::test_near_field {
 
 namespace {
 
+using flatspeckle::tests::is_night;
 using tests::pi;
 
 constexpr double k = 2 * pi;
@@ -131,7 +132,7 @@ TEST_CASE("the error bars of sensors inside the medium are honest") {
   // Independent small runs: how the estimates scatter against what they say.
   const auto request = intensity_request(Lights{0.0}, {near_sensor({1, 3}), near_sensor({0, 6})});
   const Scene scene = tests::hg_box(20, 10, {4, 0}, request);
-  const int runs = flatspeckle::tests::effort().samples == 1 ? 800 : 400;
+  const int runs = is_night ? 800 : 400;
   double sum[2] = {}, squares[2] = {}, said[2] = {};
   for (int i = 0; i < runs; ++i) {
     const auto found = tests::run(scene, ReversedPaths::automatic, 2000, 1000 + i, 100).entries();

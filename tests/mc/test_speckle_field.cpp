@@ -14,9 +14,10 @@ namespace flatspeckle::mc::test_speckle_field {
 namespace {
 
 using flatspeckle::tests::check_chi_square;
+using flatspeckle::tests::is_night;
 using tests::pi;
 
-const std::uint64_t fields_drawn = flatspeckle::tests::effort().samples == 1 ? 10000 : 3000;
+const std::uint64_t fields_drawn = is_night ? 10000 : 3000;
 constexpr std::uint64_t seed = 3;
 
 /// Lower triangle, row by row.

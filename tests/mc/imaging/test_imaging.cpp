@@ -18,8 +18,7 @@ namespace flatspeckle::mc::test_imaging {
 
 namespace {
 
-const bool is_night = flatspeckle::tests::effort().samples == 1;
-
+using flatspeckle::tests::is_night;
 using Positions = std::vector<int>;
 
 bool distances_distinct(const Positions& x, int apart) {

@@ -16,6 +16,7 @@ namespace flatspeckle::mc::test_space_changes {
 namespace {
 
 using Eigen::Vector3d;
+using flatspeckle::tests::is_night;
 using tests::downward;
 using tests::hg_in_space;
 using tests::hg_space;
@@ -24,7 +25,6 @@ using tests::SpaceRequest;
 using tests::SpaceSlab;
 using tests::spherical;
 
-const bool is_night = flatspeckle::tests::effort().samples == 1;
 constexpr double wavenumber = 2 * pi;
 
 /// With the second view turned as transverse momenta ask for.

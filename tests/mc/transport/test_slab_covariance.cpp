@@ -18,8 +18,7 @@ namespace flatspeckle::mc::test_slab_covariance {
 
 namespace {
 
-const bool is_night = flatspeckle::tests::effort().samples == 1;
-
+using flatspeckle::tests::is_night;
 using tests::deflected;
 using tests::hg_slab;
 using tests::pi;

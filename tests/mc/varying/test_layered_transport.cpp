@@ -16,11 +16,13 @@ namespace flatspeckle::mc::test_layered_transport {
 
 namespace {
 
-const bool is_night = flatspeckle::tests::effort().samples == 1;
-
+using flatspeckle::tests::is_night;
 using tests::Layer;
 using tests::layered;
 using tests::pi;
+
+/// Relative error of transport, less than those of the walks beside it.
+const double precision = is_night ? 1e-4 : 1e-3;
 
 /// Intensities and a tilt, in transmission, reflection and near backscattering.
 CovarianceRequest some_pairs() {
@@ -58,12 +60,12 @@ TEST_CASE("a slab cut into layers is the slab") {
 
 TEST_CASE("different layers, absorbing ones among them, agree with paths") {
   const Scene scene = layered({{20, 2, 0.8, 0.99}, {30, 0.5, 0, 0}, {10, 1, 0, 1}}, some_pairs());
-  const auto expected = slab_covariance(scene, true, {1e-3}).value;
+  const auto expected = slab_covariance(scene, true, {precision}).value;
   const auto found = tests::run(scene, ReversedPaths::yes, is_night ? 60000 : 20000, 3).entries();
   for (std::size_t e = 0; e < expected.size(); ++e) {
     CAPTURE(e);
     CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected[e],
-                         1e-3 * std::abs(expected[e / 2 * 2]));
+                         2 * precision * std::abs(expected[e / 2 * 2]));
     CHECK(found.error[e] < 0.05 * std::abs(expected[e / 2 * 2]));
   }
 }
@@ -88,14 +90,14 @@ TEST_CASE("layers that diffuse unlike each other agree with paths") {
   materials[0].motion.diffusion = 4;
   materials[1].motion.diffusion = 0.25;
   scene.profile = std::make_shared<const Layers>(materials, std::vector<double>{20, 10});
-  const auto expected = slab_covariance(scene, true, {1e-3}, {.delay = delay}).value;
+  const auto expected = slab_covariance(scene, true, {precision}, {.delay = delay}).value;
   const PathJob job = delay_job(scene, make_plan(scene, ReversedPaths::yes), {delay}, 5);
   const auto found = jackknife(tests::summed(job.field.batches, is_night ? 60000 : 20000), job.all);
   for (std::size_t e = 0; e < expected.size(); ++e) {
     CAPTURE(e);
     const std::size_t later = expected.size() + e;
     CHECK_WITHIN_4_SIGMA(found.value[later], found.error[later], expected[e],
-                         1e-3 * std::abs(expected[e]));
+                         precision * std::abs(expected[e]));
   }
 }
 
