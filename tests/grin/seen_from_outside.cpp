@@ -29,7 +29,7 @@ Camera wide_lens() {
 }  // namespace
 
 TwoScenes body_from_outside(const AnyIndexField& field, const WalkScene& walk, const Light& light,
-                            const PhotonSource& source) {
+                            const PhotonSource& source, double power) {
   return {
       .scene = {.field = field,
                 .step = 0.1,
@@ -40,7 +40,16 @@ TwoScenes body_from_outside(const AnyIndexField& field, const WalkScene& walk, c
                 .sensors = {wide_lens()}},
       .walk = walk,
       .source = source,
+      .power = power,
       .sensor = lens_sensor(wide_lens())};
+}
+
+PhotonSource towards_ball() {
+  return [all = point_source({0, 0, -1.5})](auto& random) {
+    for (;;)
+      if (const Photon one = all(random); one.direction.z() > 1 - 2 * share_towards_ball)
+        return one;
+  };
 }
 
 WalkScene ball_walk(double inside) {

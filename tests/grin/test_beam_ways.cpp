@@ -139,7 +139,7 @@ double reflected(double impact, double index) {
 /// point that meet the ball; signs of rho as in the point's.
 void for_each_glint(double index, double rho, double z,
                     const std::function<void(double, double, double)>& use) {
-  constexpr int nodes = 20000;
+  const int nodes = is_night ? 20000 : 5000;
   for (int k = -1; k <= 6; ++k)
     for (const double side : {1.0, -1.0}) {
       const auto at = [&](double b) { return pass_ball(b, index, k, side * rho, z); };
@@ -237,7 +237,10 @@ const Vec3 lens_at(2, 0.3, 0.4);
 
 void check_glints(double lens_radius, double expected, double expected_error) {
   const Vec3 at = lens_radius > 0 ? lens_at : Vec3(lens_at - 1e-9 * Vec3::UnitX());
-  const Rendered result = rendered(glints(at, lens_radius), RenderMethod::bidirectional, 4e5);
+  const Rendered result = rendered(glints(at, lens_radius), RenderMethod::bidirectional,
+                                   is_night          ? 4e5
+                                   : lens_radius > 1 ? 2e5
+                                                     : 2e4);
   CAPTURE(lens_radius);
   CHECK(std::abs(result.value() - expected) <
         4 * std::hypot(result.error(), expected_error) + 1e-5 * expected);
@@ -265,7 +268,7 @@ TEST_CASE("a wide lens sees the glints of a beam in a glass ball as rays say") {
   const StageLights lights(scene.lights, scene.stage, [](const PathPoint&) { return 1.0; });
   const SensorEnd lens(scene.sensors[0], scene.stage);
   RandomStream random(9, 98, 0);
-  constexpr int rays = 1000000;
+  const int rays = is_night ? 1000000 : 400000;
   double sum = 0, squares = 0;
   for (int i = 0; i < rays; ++i) {
     const EndPosition from = lights.beam_position(0.5, random.uniform(), random.uniform());

@@ -111,7 +111,7 @@ namespace {
 
 /// Shares of photons in the slab, in mean free paths, that come through and that come back.
 oracles::PhotonTally counted_photons(double depth, double albedo, double g) {
-  constexpr std::uint64_t photons = 100'000;
+  const std::uint64_t photons = is_night ? 100'000 : 30'000;
   const double half = 50 * depth;
   const oracles::WalkScene slab{
       .boundary = {{-half, -half, 0}, {half, half, depth}},
@@ -127,8 +127,9 @@ oracles::PhotonTally counted_photons(double depth, double albedo, double g) {
 TEST_CASE("deep slabs against photons that are counted") {
   struct {
     double depth, albedo, g;
-  } const slabs[] = {{30, 0.98, 0.8}, {60, 1, 0.9}, {10, 0.8, 0.5}};
+  } const slabs[] = {{30, 0.98, 0.8}, {10, 0.8, 0.5}, {60, 1, 0.9}};
   for (const auto& [deep, albedo, g] : slabs) {
+    if (deep > 50 && !is_night) continue;
     const double depth = deep;  // clang 14 captures no part of a binding
     CAPTURE(depth);
     const oracles::PhotonTally counted = counted_photons(depth, albedo, g);

@@ -382,7 +382,7 @@ TEST_CASE("flights and joins agree on where light collides in and around a refra
   int number = 0;
   for (const NamedSpace& named : refracting())
     for (const Vec3& at : {Vec3(0.3, -0.4, -1.7), Vec3(0.2, 0.3, -0.4)}) {
-      if (!is_night && ++number % 4 > 1) continue;  // by day one of the places, in turn
+      if (!is_night && ++number % 5 != 0) continue;  // by day every fifth, at either place
       const PathPoint p{at, Regions(named.stage).at(at)};
       CAPTURE(named.name);
       CAPTURE(at);

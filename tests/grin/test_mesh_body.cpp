@@ -75,7 +75,7 @@ TEST_CASE("a clear ball of triangles keeps no light, whatever its index") {
     const Space space(Homogeneous{index - 1}, stage);
     RandomStream random(3, 98, 0);
     int lost = 0;
-    constexpr int flights = 200000;
+    const int flights = is_night ? 200000 : 60000;
     for (int i = 0; i < flights; ++i) {
       const double rho = std::sqrt(random.uniform()), phi = 2 * std::numbers::pi * random.uniform();
       const Vec3 x(rho * std::cos(phi), rho * std::sin(phi), -1.9);
@@ -106,7 +106,7 @@ TEST_CASE("light stays uniform about a body of triangles, by every estimator") {
 TEST_CASE("no path by a ring of triangles is worth far more than others") {
   const RenderJob job = render_job(even_ring(), {RenderMethod::bidirectional}, 4);
   std::vector<Complex> sums(job.batches.size);
-  constexpr int shares = 8, batches = 6000 / shares;
+  const int shares = 8, batches = (is_night ? 6000 : 2000) / shares;
   double sum = 0;
   std::vector<double> squares(shares);
   for (int i = 0; i < shares * batches; ++i) {

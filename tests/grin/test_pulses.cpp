@@ -146,7 +146,7 @@ TEST_CASE("late light of a slab decays as transport and, nearly, as diffusion ha
   const double exact = slab_decay_rate(length, 1, mu_a);
   const double diffusion = diffusion_decay_rate(length, 1, mu_a);
   const RenderJob job = render_job(scene, {RenderMethod::light}, 3);
-  const RunState state = run_render(job, 400000);
+  const RunState state = run_render(job, is_night ? 400000 : 150000);
   // two windows; the outer bins hold what does not belong to them
   const int from = 10, width = 5, later = 10;
   const Estimate rate = jackknife(state.sums, [&](double, std::span<const Complex> sums) {

@@ -127,7 +127,7 @@ TEST_CASE("light scattered once agrees with quadrature where two curves join man
     CAPTURE(is_searched);
     const Rendered result =
         rendered(scene(field, medium, ball), {.method = RenderMethod::path, .max_scatterings = 1},
-                 is_night ? 1e5 : 2.5e4);
+                 is_night ? 1e5 : 6e3);
     CAPTURE(result.error() / expected);
     CHECK(std::abs(result.value() - expected) < 4 * result.error());
     CHECK((result.counts.connections.mean_refind() > 1.05) == is_searched);

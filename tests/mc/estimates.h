@@ -7,10 +7,13 @@
 
 #include "flatland/scene/scene.h"
 #include "mc/paths/estimators/covariance_estimator.h"
+#include "tests/statistics.h"
 
 namespace flatspeckle::mc::tests {
 
 inline constexpr double pi = std::numbers::pi;
+using flatspeckle::tests::effort;
+using flatspeckle::tests::is_night;
 
 /// Henyey-Greenstein bulk; `request` replaces lights, views and entries.
 struct HgBulk {
@@ -42,7 +45,10 @@ struct Run {
 /// The sums of so many samples, on two threads.
 GroupedSums summed(const BatchJob& job, std::uint64_t samples);
 
-/// Deterministic: two threads or not.
+/// How many of these paths tests take: by day a quarter where there are more than 40,000 (Effort).
+std::uint64_t shortened(std::uint64_t paths);
+
+/// Deterministic: two threads or not. Takes `shortened` paths.
 Run run(const Scene& scene, const Plan& plan, std::uint64_t paths, std::uint64_t seed);
 /// By the plan of the scene. paths_per_batch = 0 keeps the plan's.
 Run run(const Scene& scene, ReversedPaths reversed, std::uint64_t paths, std::uint64_t seed,

@@ -53,7 +53,8 @@ TEST_CASE("cylinders in a slab: derivatives of paths by radius and index are tho
   }
 }
 
-TEST_CASE("cylinders in a box: derivatives are differences of runs with common random numbers") {
+TEST_CASE(
+    "nightly: cylinders in a box: derivatives are differences of runs with common random numbers") {
   const auto found = derivatives(cylinders("box", {}), 400000);
   const auto entries = [](double radius, double index) {
     return tests::run(cylinders("box", {radius, index}), ReversedPaths::no, 1600000, 5).entries();

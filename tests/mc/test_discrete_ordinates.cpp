@@ -33,6 +33,8 @@ std::vector<double> answers(double optical_depth, double albedo, double g, int n
 void check_convergence(double g, int nodes, double tolerance) {
   for (const double optical_depth : {0.1, 1.0, 10.0, 100.0}) {
     for (const double albedo : {1.0, 0.9}) {
+      if (!tests::is_night && (albedo == 1) != (optical_depth < 0.5 || optical_depth > 50))
+        continue;
       CAPTURE(g);
       CAPTURE(optical_depth);
       CAPTURE(albedo);
@@ -120,7 +122,7 @@ TEST_CASE("anisotropic slab: intensities agree with discrete ordinates") {
         CAPTURE(views[v]);
         const Complex expected = slab.covariance_without_reversed(light, views[v]);
         CHECK_WITHIN_4_SIGMA(found.value[v], found.error[v], expected, 0);
-        CHECK(found.error[v] < 0.03 * std::abs(expected));
+        CHECK(found.error[v] < 0.03 * tests::effort().errors * std::abs(expected));
       }
     }
   }

@@ -6,14 +6,15 @@
 #include "bench/oracles/discrete_ordinates.h"
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
-#include "tests/statistics.h"
 
 namespace flatspeckle::mc::test_error_bars {
 
 namespace {
 
-using flatspeckle::tests::is_night;
+using tests::is_night;
 using tests::pi;
+
+const int paths = is_night ? 4000 : 1600;
 
 Scene box_points(const CovarianceRequest& request) {
   SceneSpec spec;
@@ -54,7 +55,7 @@ TEST_CASE("error bars are honest: estimates of many seeds spread as they say") {
       20, 10, {4, 0.9, 0.9}, full_request({0, 0.5}, {far_view(pi), near_sensor({1, 10.05})}));
   for (const Scene& scene : {resonant, peaked}) {
     const auto ratios = spread_over_error([&](std::uint64_t seed) {
-      return tests::run(scene, ReversedPaths::yes, 4000, seed, 100).entries();
+      return tests::run(scene, ReversedPaths::yes, paths, seed, paths / 40).entries();
     });
     for (const double ratio : ratios) CHECK(ratio == doctest::Approx(1).epsilon(0.15));
   }
@@ -72,7 +73,9 @@ TEST_CASE("error bars are honest behind deep slabs that absorb strongly") {
   int within = 0;
   double sum = 0;
   for (int i = 0; i < runs; ++i) {
-    const auto found = tests::run(scene, ReversedPaths::no, 12800, i, 100).entries();
+    const auto found =
+        tests::run(scene, ReversedPaths::no, is_night ? 12800 : 3200, i, is_night ? 100 : 25)
+            .entries();
     within += std::abs(found.value[0] - expected) < 2 * found.error[0];
     sum += found.value[0].real() / runs;
   }
@@ -85,7 +88,7 @@ TEST_CASE("error bars of the memory effect and its range are honest") {
       memory_effect_request(2 * pi, 0, {0, 0.3}, {0.005, 0.01, 0.02, 0.03, 0.04, 0.06});
   const Scene scene = tests::hg_slab(10, {2, 0.5}, request);
   const auto ratios = spread_over_error([&](std::uint64_t seed) {
-    const auto result = tests::run(scene, ReversedPaths::no, 4000, seed, 100);
+    const auto result = tests::run(scene, ReversedPaths::no, paths, seed, paths / 40);
     const auto effect = memory_effect(request, result.sums, result.job.covariance);
     Estimate estimate{{effect.correlation.begin(), effect.correlation.end()},
                       effect.correlation_error};

@@ -75,7 +75,8 @@ TEST_CASE("flux of slabs agrees with discrete ordinates to 2 %") {
   for (const double optical_depth : {0.1, 1.0, 10.0})
     for (const double g : {0.0, 0.5, 0.9, -0.5})
       for (const double albedo : {1.0, 0.99, 0.5})
-        tests::check_slab(optical_depth, albedo, g, 0.02, ++seed);
+        if (const auto i = seed++; tests::is_night || (i + i / 3 + i / 12) % 3 == 0)
+          tests::check_slab(optical_depth, albedo, g, 0.02, seed);
 }
 
 TEST_CASE("flux of a slab of cylinders agrees with discrete ordinates") {
@@ -218,14 +219,14 @@ TEST_CASE("what is reflected, transmitted, lost and absorbed adds up, from every
   for (const double albedo : {1.0, 0.9, 0.3}) {
     for (const double g : {0.0, 0.9}) {
       const Scene scene = lit_box(8, 30, {0.5, g, albedo}, lights);
-      const auto run = tests::run_flux(scene, paths(6000), 5);
+      const auto run = tests::run_flux(scene, paths(tests::is_night ? 6000 : 2000), 5);
       const Estimate sum = total(run);
       for (std::size_t light = 0; light < lights.size(); ++light) {
         CAPTURE(albedo);
         CAPTURE(lights[light]);
         CHECK_WITHIN_4_SIGMA(sum.value[light], sum.error[light],
                              1 - direct_transmittance(scene, lights[light]), 1e-12);
-        CHECK(sum.error[light] < 0.03);
+        CHECK(sum.error[light] < 0.03 * tests::effort().errors);
       }
     }
   }

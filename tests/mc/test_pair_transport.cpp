@@ -62,7 +62,7 @@ void check_memory_effect(double optical_depth, double g, double albedo, int pane
                          3e-4 * expected.magnitude[t]);
     CHECK_WITHIN_4_SIGMA(effect.correlation[t], effect.correlation_error[t],
                          expected.correlation[t], 3e-4);
-    CHECK(effect.correlation_error[t] < 0.02);
+    CHECK(effect.correlation_error[t] < 0.02 * tests::effort().errors);
   }
 }
 
@@ -104,7 +104,7 @@ TEST_CASE("pair transport without a tilt is transport of intensity") {
 TEST_CASE("the memory effect of forward-peaked scatterers agrees with pair transport") {
   check_memory_effect(5, 0.5, 0.95, 4, 100000);
   check_memory_effect(10, 0.8, 1, 5, 100000);
-  check_memory_effect(5, 0.9, 0.9, 8, 100000);
+  if (tests::is_night) check_memory_effect(5, 0.9, 0.9, 8, 100000);
   check_memory_effect(30, 0.8, 0.8, 5, 100000);
 }
 

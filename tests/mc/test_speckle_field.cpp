@@ -14,7 +14,7 @@ namespace flatspeckle::mc::test_speckle_field {
 namespace {
 
 using flatspeckle::tests::check_chi_square;
-using flatspeckle::tests::is_night;
+using tests::is_night;
 using tests::pi;
 
 const std::uint64_t fields_drawn = is_night ? 10000 : 3000;

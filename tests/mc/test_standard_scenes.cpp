@@ -90,20 +90,21 @@ void check_entries(double albedo, int count, const std::vector<KnownEntry>& know
     CAPTURE(known[e].q);
     CHECK_WITHIN_4_SIGMA(found.value[e], std::hypot(found.error[e], known_error),
                          known[e].covariance, 0);
-    CHECK(found.error[e] < 5e-3);
+    CHECK(found.error[e] < 5e-3 * tests::effort().errors);
   }
 }
 
 }  // namespace
 
 TEST_CASE("slab_hg: the integral equation gives the known ranges for g = 0") {
-  for (const auto& known : {KnownRange{10, 0, 1, 1.360, 0.003},
-                            {10, 0, 0.99, 1.480, 0.003},
-                            {10, 0, 0.95, 1.833, 0.002},
-                            {10, 0, 0.9, 2.156, 0.002},
-                            {10, 0, 0.8, 2.700, 0.004},
-                            {20, 0, 1, 1.406, 0.006},
-                            {40, 0, 1, 1.446, 0.006}}) {
+  std::vector<KnownRange> all{{10, 0, 0.8, 2.700, 0.004}, {40, 0, 1, 1.446, 0.006}};
+  if (tests::is_night)
+    all.insert(all.end(), {{10, 0, 1, 1.360, 0.003},
+                           {10, 0, 0.99, 1.480, 0.003},
+                           {10, 0, 0.95, 1.833, 0.002},
+                           {10, 0, 0.9, 2.156, 0.002},
+                           {20, 0, 1, 1.406, 0.006}});
+  for (const KnownRange& known : all) {
     CAPTURE(known.optical_depth);
     CAPTURE(known.albedo);
     CHECK(std::abs(theoretical_range(known) - known.range) < 4 * known.error);

@@ -17,12 +17,7 @@ constexpr double k = 2 * pi;
 
 Estimate textbook(const Scene& scene, bool reversed, std::uint64_t paths, std::uint64_t seed) {
   const FieldJob job = oracles::textbook_job(scene, reversed, 200, seed);
-  RunOptions options;
-  options.stop.samples = paths;
-  options.threads = 2;
-  RunState state;
-  run_batches(job.batches, options, state);
-  return jackknife(state.sums, job.covariance);
+  return jackknife(tests::summed(job.batches, tests::shortened(paths)), job.covariance);
 }
 
 void check_same(const Scene& scene, bool reversed, std::uint64_t paths) {
@@ -109,6 +104,7 @@ TEST_CASE("ours and the textbook estimator agree on slabs of Henyey-Greenstein s
   const auto forward = memory_effect_request(k, 0, {0, 0.5}, {0, 2e-4, 6e-4});
   const auto backward = memory_effect_request(k, 0, {pi, pi - 0.3}, {0, 2e-4, 6e-4});
   for (const double g : {0.0, 0.5, 0.9}) {
+    if (!tests::is_night && g == 0) continue;
     CAPTURE(g);
     check_same(tests::hg_slab(1000, {100, g, 1}, forward), false, 40000);
     check_same(tests::hg_slab(1000, {100, g, 0.95}, backward), true, 40000);

@@ -1,11 +1,13 @@
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <doctest/doctest.h>
 #include <omp.h>
 
 #include "core/numbers/random.h"
 #include "reference.h"
+#include "tests/statistics.h"
 #include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/sums/fast_product.h"
 
@@ -13,6 +15,7 @@ namespace flatspeckle::wave::test_fast_product {
 
 namespace {
 
+using flatspeckle::tests::is_night;
 using Kind = Scatterer::Kind;
 
 // On a grid of squares, each shifted by up to `room` of what its square leaves.
@@ -48,18 +51,18 @@ struct Disks {
 
 const std::vector<Disks> all_disks{
     {9, 0.6, {disk(Kind::soft, 0.2)}},
-    {8, 0.6, {disk(Kind::hard, 0.25)}},
     {6, 3, {disk(Kind::te, 1.1)}},
     {7, 2.5, {disk(Kind::tm, 0.9, {1.5, 0.1}), disk(Kind::soft, 0.1), {.kind = Kind::point}}},
     {9, 0.01, {disk(Kind::hard, 0.004)}},
-    {4, 9, {disk(Kind::soft, 4)}},
     {8, 1.5, {disk(Kind::tm, 0.5, 3.2), disk(Kind::tm, 0.61, 3.2)}},
+    {8, 0.6, {disk(Kind::hard, 0.25)}},  // from here on by night
+    {4, 9, {disk(Kind::soft, 4)}},
 };
 
 }  // namespace
 
 TEST_CASE("rings on a grid and near blocks make the matrix, whatever the range") {
-  for (const Disks& disks : all_disks) {
+  for (const Disks& disks : std::span(all_disks).first(is_night ? 7 : 5)) {
     const TMatrixSystem system(shaken_grid(disks.side, disks.square, disks.scatterers), two_pi,
                                1e-10);
     const auto x = random_columns(2 * system.unknowns());
@@ -67,6 +70,7 @@ TEST_CASE("rings on a grid and near blocks make the matrix, whatever the range")
     const double extent = disks.square * static_cast<double>(disks.side);
     for (const double range : {extent / 12, extent / 4})
       for (const double tolerance : {1e-5, 1e-11}) {
+        if (!is_night && (range < extent / 8) == (tolerance < 1e-8)) continue;
         CAPTURE(disks.square);
         CAPTURE(range);
         CAPTURE(tolerance);
@@ -103,7 +107,8 @@ TEST_CASE("no scatterer, one, and two close ones") {
 
 // A whispering gallery: T_n is near 1 where J_n(k a) is below 1e-6.
 TEST_CASE("waves too singular for a grid are told and done without") {
-  const TMatrixSystem system(shaken_grid(10, 2.4, {disk(Kind::tm, 1, 6.0)}), two_pi, 1e-10);
+  const TMatrixSystem system(shaken_grid(is_night ? 10 : 7, 2.4, {disk(Kind::tm, 1, 6.0)}), two_pi,
+                             1e-10);
   CHECK(!RingProduct(system, 3, 1e-12).resolved());
   const auto x = random_columns(system.unknowns());
   CHECK(relative_distance(FastProduct(system, 1e-12)(x), system.apply(x)) < 1e-12);

@@ -7,6 +7,7 @@
 
 #include "core/numbers/complex.h"
 #include "mc/fit/task/intensity_pairs.h"
+#include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc::test_intensity_pairs {
 
@@ -36,7 +37,8 @@ std::vector<double> drawn(const std::vector<double>& field_correlations, int pat
 
 TEST_CASE("C_I of pairs is unbiased, its errors are what is told, and far less than moments'") {
   const VectorXd truth{{0.98, 0.9, 0.5, 0.03}};
-  constexpr int runs = 100, patterns = 1000;
+  constexpr int runs = 100;
+  const int patterns = tests::is_night ? 1000 : 300;
   std::mt19937_64 random(11);
   VectorXd sum = VectorXd::Zero(truth.size()), squares = sum, errors = sum;
   double chi_squared = 0;

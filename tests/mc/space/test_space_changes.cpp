@@ -9,17 +9,16 @@
 #include "tests/mc/space/slabs_in_space.h"
 #include "tests/mc/transport/sixth_order.h"
 #include "tests/oracles/space_pair_walk.h"
-#include "tests/statistics.h"
 
 namespace flatspeckle::mc::test_space_changes {
 
 namespace {
 
 using Eigen::Vector3d;
-using flatspeckle::tests::is_night;
 using tests::downward;
 using tests::hg_in_space;
 using tests::hg_space;
+using tests::is_night;
 using tests::pi;
 using tests::SpaceRequest;
 using tests::SpaceSlab;
@@ -168,7 +167,7 @@ namespace {
 template <typename At>
 void check_slopes(BulkParameter parameter, double scale, bool reversed, const At& at) {
   CAPTURE(static_cast<int>(parameter));
-  const Refinement refinement{1e-8, 6};
+  const Refinement refinement{is_night ? 1e-8 : 1e-6, 6};
   tests::check_sixth_order(
       slab_slopes(at(0), reversed, refinement, parameter).value, scale,
       [&](double step) { return slab_covariance(at(step), reversed, refinement).value; });

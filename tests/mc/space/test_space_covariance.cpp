@@ -5,7 +5,6 @@
 #include "tests/mc/space/scenes_in_space.h"
 #include "tests/mc/space/slabs_in_space.h"
 #include "tests/oracles/space_pair_walk.h"
-#include "tests/statistics.h"
 
 namespace flatspeckle::mc::test_space_covariance {
 
@@ -102,26 +101,29 @@ TEST_CASE("slabs in space: nine digits") {
 }
 
 TEST_CASE("slabs in space: the covariance of a walk at oblique lights, tilts along and across") {
+  const std::uint64_t photons = tests::is_night ? 40000 : 20000;
   for (const auto& [g, optical_depth, albedo] :
        {std::array{0.0, 2.0, 1.0}, {0.6, 4.0, 0.95}, {0.9, 5.0, 0.99}}) {
     const auto slab = hg_space(200, optical_depth, g, albedo);
     for (const double angle : {0.7, 2.7})
       for (const bool reversed : {false, true}) {
+        if (reversed && angle > 1) continue;  // backscattering has an angle of its own
         const Vector3d view = reversed ? Vector3d(-spherical(0.5, 0.001)) : spherical(angle, 1.1);
         const auto [lights, views] = tilted(slab, view, 1.5, -2.5);
         const oracles::SpacePairWalk ladder{
             slab.k / slab.mu_t, optical_depth, g,           albedo,
             lights.first,       lights.second, views.first, views.second};
-        auto [value, error] = ladder.estimate(40000, 1, true);
+        auto [value, error] = ladder.estimate(photons, 1, true);
         if (reversed) {
           auto other = ladder;
           other.light2 = -views.second;
           other.view2 = -lights.second;
-          const auto more = other.estimate(40000, 2, false);
+          const auto more = other.estimate(photons, 2, false);
           value += more.value;
           error = std::hypot(error, more.error);
         }
-        const Complex found = covariance(slab, lights, views, reversed, 1e-3);
+        const Complex found =
+            covariance(slab, lights, views, reversed, tests::is_night ? 1e-3 : 3e-3);
         CHECK(std::abs(found.real() - value.real()) < 4 * error);
         CHECK(std::abs(found.imag() - value.imag()) < 4 * error);
         CHECK(error < 0.15 * std::abs(found));  // or it would tell little

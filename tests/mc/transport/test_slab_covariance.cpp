@@ -12,15 +12,14 @@
 #include "tests/mc/transport/sixth_order.h"
 #include "tests/mc/transport/slabs.h"
 #include "tests/oracles/pair_transport.h"
-#include "tests/statistics.h"
 
 namespace flatspeckle::mc::test_slab_covariance {
 
 namespace {
 
-using flatspeckle::tests::is_night;
 using tests::deflected;
 using tests::hg_slab;
+using tests::is_night;
 using tests::pi;
 using tests::wavenumber;
 
@@ -104,6 +103,7 @@ TEST_CASE("slab transport: intensities and correlations of deep slabs as by disc
 TEST_CASE("slab transport: the memory effect ends where discrete ordinates have C_I = 1/2") {
   for (const DeepSlab& slab : {DeepSlab{10, 0, 1}, DeepSlab{10, 0.5, 1}, DeepSlab{10, 0.9, 1},
                                DeepSlab{10, 0, 0.9}, DeepSlab{40, 0, 1}}) {
+    if (!is_night && (slab.optical_depth < 40) == (slab.g < 0.9 && slab.albedo == 1)) continue;
     CAPTURE(slab.optical_depth);
     CAPTURE(slab.g);
     const double q_depth = half_width(slab.optical_depth, slab.g, slab.albedo),
@@ -145,7 +145,7 @@ TEST_CASE("slab transport converges to nine digits") {
 TEST_CASE("slab transport: entries are right to the tolerance") {
   constexpr double tolerance = 1e-3;
   for (const double g : {0.0, 0.8, 0.98}) {
-    if (g > 0.9 && !is_night) continue;
+    if (g != 0.8 && !is_night) continue;
     const auto request = memory_effect_request(wavenumber, 0.3, {0.1, pi - 0.4}, {0, 1e-4, 1e-3});
     const Scene scene = hg_slab(1000, {200, g, 0.95}, request);
     const auto rough = slab_covariance(scene, true, {tolerance}),
@@ -249,7 +249,8 @@ TEST_CASE("fields of diffusing scatterers at two times, as by Monte Carlo") {
     const auto sums = tests::summed(job.field.batches, is_night ? 200000 : 60000);
     const auto found = change_estimates(request, job, sums).covariance;
     for (std::size_t t = 0; t < delays.size(); ++t) {
-      const auto expected = slab_covariance(scene, true, {1e-5}, {.delay = delays[t]}).value;
+      const auto expected =
+          slab_covariance(scene, true, {is_night ? 1e-5 : 1e-3}, {.delay = delays[t]}).value;
       for (std::size_t v = 0; v < 2; ++v) {
         const std::size_t e = 2 * t + v;
         CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected[v], 0);
@@ -292,7 +293,7 @@ namespace {
 template <typename At>
 void check_slopes(BulkParameter parameter, double scale, bool reversed, const At& at) {
   CAPTURE(static_cast<int>(parameter));
-  const Refinement refinement{1e-9, 8};
+  const Refinement refinement{is_night ? 1e-9 : 1e-8, 8};
   tests::check_sixth_order(
       slab_slopes(at(0), reversed, refinement, parameter).value, scale,
       [&](double step) { return slab_covariance(at(step), reversed, refinement).value; });
@@ -349,10 +350,11 @@ TEST_CASE("derivatives by the radius and the index of cylinders") {
 }
 
 TEST_CASE("Monte Carlo on random slabs agrees with transport") {
-  for (std::uint64_t seed = 1; seed <= (is_night ? 5 : 3); ++seed) {
+  for (std::uint64_t seed = 1; seed <= (is_night ? 5 : 2); ++seed) {
     const Scene scene = tests::RandomSlab(seed).scene();
-    const auto expected = slab_covariance(scene, true, {1e-5}).value;
-    const auto found = tests::run(scene, ReversedPaths::yes, 30000, seed).entries();
+    const auto expected = slab_covariance(scene, true, {is_night ? 1e-5 : 1e-4}).value;
+    const auto found =
+        tests::run(scene, ReversedPaths::yes, is_night ? 30000 : 20000, seed).entries();
     CAPTURE(seed);
     for (std::size_t e = 0; e < expected.size(); ++e) {
       CAPTURE(e);

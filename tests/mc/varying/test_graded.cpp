@@ -196,11 +196,11 @@ TEST_CASE("Source and sensor may change places") {
     const Vec2 a{0, -2}, b{1, 7};
     const auto there =
         tests::run(graded(field, intensity_request({point_source(a)}, {near_sensor(b)})),
-                   ReversedPaths::no, 40000, 5)
+                   ReversedPaths::no, 50000, 5)
             .entries();
     const auto back =
         tests::run(graded(field, intensity_request({point_source(b)}, {near_sensor(a)})),
-                   ReversedPaths::no, 40000, 6)
+                   ReversedPaths::no, 50000, 6)
             .entries();
     CHECK_WITHIN_4_SIGMA(there.value[0], std::hypot(there.error[0], back.error[0]), back.value[0],
                          0);

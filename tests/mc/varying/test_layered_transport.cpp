@@ -10,13 +10,12 @@
 #include "mc/slab/slab_flux.h"
 #include "mc/slab/slab_jobs.h"
 #include "tests/mc/estimates.h"
-#include "tests/statistics.h"
 
 namespace flatspeckle::mc::test_layered_transport {
 
 namespace {
 
-using flatspeckle::tests::is_night;
+using tests::is_night;
 using tests::Layer;
 using tests::layered;
 using tests::pi;
