@@ -30,19 +30,25 @@ function(flatspeckle_rooms name)
   install(TARGETS flatspeckle_${name} EXPORT flatspeckle)
 endfunction()
 
+# Roots of this module need not set errno nor comparisons raise flags, so that their loops become vectors. It
+# shares the precompiled header of those like it.
+function(flatspeckle_roots_without_errno name)
+  target_compile_options(flatspeckle_${name} PRIVATE -fno-math-errno -fno-trapping-math)
+  flatspeckle_share_headers(${name} grin_media)
+endfunction()
+
 # Uses the precompiled header of another module, which is compiled with the same options.
 function(flatspeckle_share_headers name owner)
   target_precompile_headers(flatspeckle_${name} REUSE_FROM flatspeckle_${owner})
 endfunction()
 
-# Warnings, instruction set and sanitizers; nothing of it reaches those who link the library. Roots need not set
-# errno nor comparisons raise flags, so that their loops become vectors.
+# Warnings, instruction set and sanitizers; nothing of it reaches those who link the library.
 function(flatspeckle_flags target)
   # Warnings take 3 % of the compiler's time, so that those who only use the program go without. clang tells of
   # each loop that it leaves as it is, which costs time and nothing else.
   target_compile_options(${target} PRIVATE
     $<$<CONFIG:Debug>:-Wall;-Wextra;-Wpedantic;-Wshadow;-Wconversion;-Wno-sign-conversion>
-    $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed> -fno-math-errno -fno-trapping-math)
+    $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed>)
   # gcc 12 warns of its own AVX-512 header. It tidies its memory when it holds a gigabyte, not time and again from
   # 128 MB on: 6 % less time.
   target_compile_options(${target} PRIVATE
