@@ -9,7 +9,7 @@ from program import ProgramTest, datasets
 FOG = {"domain": "box", "width": 300, "depth": 20, "scatterer": "hg", "g": 0.9, "optical_depth": 5}
 IMAGE = {**FOG, "object_x": [0, 40, 130, 290], "object_depth": -4000, "camera": [-0.4, 0.4],
          "pixels": 1024, "repeats": 2, "paths_per_field": 1000, "prediction_paths": 500}
-WEIGHTS = {**IMAGE, "pixels": 512, "repeats": 1, "points": 0, "object_extent": 80, "blinking_frames": 4000,
+WEIGHTS = {**IMAGE, "pixels": 64, "repeats": 1, "points": 0, "object_extent": 80, "blinking_frames": 4000,
            "paths_per_field": 100}
 
 
@@ -101,7 +101,7 @@ class Blinking(ProgramTest):
         found = self.image(**{**IMAGE, "width": 600, "optical_depth": 12,
                               "object_depth": -20000, "pixels": 2048,
                               "object_x": [-900, -530, -180, 160, 500, 910],
-                              "paths_per_field": 4000, "prediction_paths": 4000},
+                              "paths_per_field": 2000, "prediction_paths": 2000},
                            blinking="subsets", blinking_frames=60)
         self.assertLess(found["pair_correlation"].min(), 0.1)
         self.assertEqual(found["sources_success"], 1)

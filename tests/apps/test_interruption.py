@@ -12,12 +12,12 @@ import numpy as np
 
 from program import BOX, TILTS, ProgramTest, attributes, catches, datasets
 
-# Each runs for a third of a second or more on two threads.
+# Each runs for 0.15 seconds or more on two threads.
 LONG = {
-    "mc": ("covariance", {**BOX, **TILTS, "samples": 1_000_000}),
+    "mc": ("covariance", {**BOX, **TILTS, "samples": 600_000}),
     "wave": ("covariance", {**BOX, **TILTS, "samples": 5000, "method": "wave"}),
     "validate, in mc": ("validate", {**BOX, **TILTS, "samples": 600_000, "wave_samples": 20}),
-    "validate, in wave": ("validate", {**BOX, **TILTS, "samples": 5000, "wave_samples": 20000}),
+    "validate, in wave": ("validate", {**BOX, **TILTS, "samples": 5000, "wave_samples": 8000}),
 }
 SHORT = {**BOX, **TILTS, "samples": 20_000, "threads": 2}
 NEVER = 1e-9  # a target error that is not reached
@@ -92,9 +92,9 @@ class Interruption(ProgramTest):
 
     def test_the_trace_goes_on_by_other_threads_to_another_stop(self):
         keys = LONG["mc"][1]
-        self.interrupt(signal.SIGINT, 0.1, "covariance", **keys, threads=2, out="run.h5")
+        self.interrupt(signal.SIGINT, 0.05, "covariance", **keys, threads=2, out="run.h5")
         before = datasets(self.folder / "run.h5", leave_out=())["state/run/trace/samples"]
-        keys = {**keys, "samples": 1_100_000}
+        keys = {**keys, "samples": 700_000}
         self.call("covariance", "--resume", **keys, threads=3, out="run.h5")
         trace = datasets(self.folder / "run.h5", leave_out=())
         samples = trace["trace/samples"]
@@ -107,7 +107,7 @@ class Interruption(ProgramTest):
     def test_a_part_that_waits_its_turn_is_kept(self):
         """More samples for the first part: meanwhile the file still holds the second one."""
         scene = LONG["validate, in wave"][1]
-        self.interrupt(signal.SIGINT, 0.2, "validate", **scene, threads=2, out="run.h5")
+        self.interrupt(signal.SIGINT, 0.1, "validate", **scene, threads=2, out="run.h5")
         before = datasets(self.folder / "run.h5", leave_out=())["state/wave/group_sums"]
         more = {**scene, "samples": 50_000_000}
         status = self.interrupt(signal.SIGINT, 0.05, "validate", "--resume", **more, threads=2,
@@ -120,14 +120,14 @@ class Interruption(ProgramTest):
 
     def test_that_it_begins_anew_is_said(self):
         keys = {**LONG["mc"][1], "threads": 2, "out": "run.h5"}
-        self.interrupt(signal.SIGINT, 0.1, "covariance", **keys)
+        self.interrupt(signal.SIGINT, 0.05, "covariance", **keys)
         for noted, of in ((True, {}), (False, {}), (False, {"seed": 2})):
             done = self.call("covariance", **{**keys, **of, "samples": 1000})
             self.assertEqual("--resume would go on" in done.stderr, noted)
 
     def test_another_seed_may_not(self):
         keys = LONG["mc"][1]
-        self.interrupt(signal.SIGINT, 0.1, "covariance", **keys, threads=2, out="run.h5")
+        self.interrupt(signal.SIGINT, 0.05, "covariance", **keys, threads=2, out="run.h5")
         before = self.listing()
         self.call("covariance", "--resume", **keys, seed=2, out="run.h5", status=2)
         self.assertEqual(self.listing(), before)
