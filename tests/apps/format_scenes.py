@@ -186,7 +186,7 @@ RUNS = {
     "ball_power": ("render", {**STAGE, "field": None, "alpha": None, "index": None, "sensor": "directional",
                               "body_sphere": [0, 0, 2, 0.5], "index_around": 1.3, "max_scatterings": 9}),
     "mesh": ("render", {**STAGE, "field": None, "alpha": None, "index": None, "sensor": "directional",
-                        "body_mesh": "wedge.stl", "body_mesh_spacing": 0.2, "pixels": [3, 2], "samples": 200}),
+                        "body_mesh": "wedge.stl", "body_mesh_spacing": 0.2, "method": "light", "pixels": [3, 2], "samples": 200}),
     "aperture": ("design", {"nodes": [3], "goal": "throughput", "sources": [0, 0, -1], "aperture_radius": 0.3,
                             "rays_per_source": 10}),
     "lens": ("design", {"nodes": [2], "directions": 4, "rays_per_direction": 5}),
@@ -236,12 +236,15 @@ class ResultsTest(ProgramTest):
             maker.write(name, text)
         for name, run in RUNS.items():
             make_file(maker, name, *run)
+        cls.files = {name: h5py.File(cls.results / f"{name}.h5") for name in RUNS}
+        for file in cls.files.values():
+            cls.addClassCleanup(file.close)
 
     def setUp(self):
         self.folder = self.results
 
     def on_each_file(self, check):
         """check(open h5py file)."""
-        for name in RUNS:
-            with self.subTest(file=name), h5py.File(self.folder / f"{name}.h5") as file:
+        for name, file in self.files.items():
+            with self.subTest(file=name):
                 check(file)
