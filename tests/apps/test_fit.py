@@ -13,7 +13,7 @@ MEASURED = DATA / "measurements"
 FREE = ["g=0.5:0.95", "albedo=0.9:1", "optical_depth=1:20"]
 TRUTH = [0.8, 0.98, 4]
 ALL = [MEASURED / f"slab_{name}.csv" for name in ("transmission", "reflection", "transmittance")]
-NEAR_START, FAR_START = ({"g": 0.7, "albedo": 0.95, "optical_depth": 7}, {"g": 0.55, "albedo": 0.91, "optical_depth": 15})
+FAR_START = {"g": 0.55, "albedo": 0.91, "optical_depth": 15}
 
 
 class Fit(ProgramTest):
@@ -23,7 +23,7 @@ class Fit(ProgramTest):
         return done, datasets(self.folder / "fit.h5")
 
     def test_tables(self):
-        """And the same end from a start that the scene states."""
+        """By night, the same end from a start that the scene states."""
         done, found = self.fit(*ALL)
         pulls = (found["estimate"] - TRUTH) / found["estimate_error"]
         self.assertLess(np.abs(pulls).max(), 3)
@@ -33,7 +33,9 @@ class Fit(ProgramTest):
         self.assertAlmostEqual(chi_squared, np.sum(found["pull"]**2), delta=1e-6)
         self.assertLess(chi_squared, 14 + 4 * 28**0.5)
         self.assertIn("mu_s (1 - g) is known to", done.stdout)
-        _, stated = self.fit(*ALL, **(FAR_START if WHOLE else NEAR_START))
+        if not WHOLE:
+            return
+        _, stated = self.fit(*ALL, **FAR_START)
         off = np.abs(found["estimate"] - stated["estimate"]) / found["estimate_error"]
         self.assertLess(off.max(), 0.1)
 
@@ -146,7 +148,7 @@ class Fit(ProgramTest):
         slab = {"domain": "slab", "depth": 50, "scatterer": "hg", "g": 0.6, "optical_depth": 5,
                 "view_angles": [0.2, 0.9, 2.64] if WHOLE else [0.2, 2.64]}
         self.call("covariance", **slab, method="mc", samples=20000, seed=5, diffusion=0.5, shear=0.02,
-                  delays=[0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2], out="flow.h5")
+                  delays=[0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2] if WHOLE else [0, 0.01, 0.05, 0.2], out="flow.h5")
         free = {"depth": 50, "g": 0.6, "optical_depth": 5, "threads": 1}
         for words in ({"measurement": "flow.h5"}, {"measurement": "contrast.h5"}):
             if words["measurement"] == "contrast.h5":
@@ -205,9 +207,10 @@ class Fit(ProgramTest):
         self.assertTrue(lines[1].startswith("hg.h5"), lines)
 
     def test_plans(self):
-        self.call("fit", "--plan", "--free", "g=-0.5:0.95", "optical_depth=0.1:20", "--vary", "g=0.5,0.8",
-                  "optical_depth=1,4", depth=2000, view_angles=0.1, tilts=[0.0002, 0.0006], out="plans.h5")
-        self.call("fit", "--plan", "--free", "g=-0.5:0.95", "optical_depth=0.1:20", g=0.8, optical_depth=1,
+        free = ["g=-0.5:0.95", "optical_depth=0.1:20"][:2 if WHOLE else 1]
+        self.call("fit", "--plan", "--free", *free, "--vary", "g=0.5,0.8", "optical_depth=1,4",
+                  depth=2000, view_angles=0.1, tilts=[0.0002, 0.0006], out="plans.h5")
+        self.call("fit", "--plan", "--free", *free, g=0.8, optical_depth=1,
                   depth=2000, view_angles=0.1, tilts=[0.0002, 0.0006], out="plan.h5")
         plans, plan = datasets(self.folder / "plans.h5"), datasets(self.folder / "plan.h5")
         np.testing.assert_allclose(plans["point_patterns_to_percent"][2], plan["patterns_to_percent"])

@@ -17,7 +17,7 @@ GUIDE = {"field": "ultrasound", "index": 1.33, "sound_wavenumber": 3.4, "stage_b
          "samples": 512, "method": "light"}
 GRID = {**GUIDE, "of": "render", "vary": ["amplitude=0:0.004:3", "mu_s=0.1,0.3"], "threads": 2}
 MANY = {**GRID, "samples": 2048, "vary": ["amplitude=0:0.004:6", "g=0:0.9:5"]}
-SLOW = {**GRID, "vary": ["amplitude=0:0.004:3", "mu_s=0.1,0.3"], "samples": 100_000 if WHOLE else 30_000}
+SLOW = {**GRID, "vary": ["amplitude=0:0.004:3", "mu_s=0.1,0.3"], "samples": 100_000 if WHOLE else 15_000}
 COSTS = ("wall_s", "cpu_s")
 
 
