@@ -46,7 +46,10 @@ class Interruption(ProgramTest):
         self.assertEqual([path for path in self.listing() if ".tmp" in path], [])
 
     def test_resumed_equals_uninterrupted(self):
+        """By night of both parts of `validate`, by day of its second one."""
         for name, (subcommand, keys) in LONG.items():
+            if name == "validate, in mc" and not WHOLE:
+                continue
             with self.subTest(run=name):
                 out = {"out": f"{name}.h5", "threads": 2}
                 for number, delay in ((signal.SIGINT, 0.05), (signal.SIGTERM, 0.02)):
