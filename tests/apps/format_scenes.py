@@ -186,15 +186,15 @@ RUNS = {
     "ball_power": ("render", {**STAGE, "field": None, "alpha": None, "index": None, "sensor": "directional",
                               "body_sphere": [0, 0, 2, 0.5], "index_around": 1.3, "max_scatterings": 9}),
     "mesh": ("render", {**STAGE, "field": None, "alpha": None, "index": None, "sensor": "directional",
-                        "body_mesh": "wedge.stl", "body_mesh_spacing": 0.1}),
+                        "body_mesh": "wedge.stl", "body_mesh_spacing": 0.2, "method": "light", "pixels": [3, 2], "samples": 200}),
     "aperture": ("design", {"nodes": [3], "goal": "throughput", "sources": [0, 0, -1], "aperture_radius": 0.3,
                             "rays_per_source": 10}),
     "lens": ("design", {"nodes": [2], "directions": 4, "rays_per_direction": 5}),
     "lens_radial": ("design", {"design": "radial", "directions": 1, "rays_per_direction": 9}),
     "lens_graded": ("design", {"design": "guide", "goal": "equal_path", "delta": 0.01, "ray_count": 9}),
     "display": ("design", {"design": "box", "nodes": [7], "goal": "irradiance", "pictures": "picture.csv", "rays_across": 4,
-                           "iterations": 2}),
-    **{f"bench_{kind}": (f"bench {kind}", {"quick": True, "every": 25})
+                           "iterations": 1}),
+    **{f"bench_{kind}": (f"bench {kind}", {"quick": True, "every": 100})
        for kind in ("error", "stability", "plan")},
 }
 
@@ -236,12 +236,15 @@ class ResultsTest(ProgramTest):
             maker.write(name, text)
         for name, run in RUNS.items():
             make_file(maker, name, *run)
+        cls.files = {name: h5py.File(cls.results / f"{name}.h5") for name in RUNS}
+        for file in cls.files.values():
+            cls.addClassCleanup(file.close)
 
     def setUp(self):
         self.folder = self.results
 
     def on_each_file(self, check):
         """check(open h5py file)."""
-        for name in RUNS:
-            with self.subTest(file=name), h5py.File(self.folder / f"{name}.h5") as file:
+        for name, file in self.files.items():
+            with self.subTest(file=name):
                 check(file)

@@ -217,9 +217,9 @@ class Signals(ProgramTest):
                      {"width": 0.01, "depth": 10, "count": 31}):
             with self.subTest(keys=keys):
                 began = cpu_of_children()
-                self.call("covariance", **keys, view_angles=[0.3], seconds=0.3, threads=1,
+                self.call("covariance", **keys, view_angles=[0.3], seconds=0.1, threads=1,
                           out="x.h5")
-                self.assertLess(cpu_of_children() - began, 2.4 * SLOWNESS)
+                self.assertLess(cpu_of_children() - began, 2.2 * SLOWNESS)
 
 
 if __name__ == "__main__":

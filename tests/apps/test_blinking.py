@@ -9,7 +9,7 @@ from program import ProgramTest, datasets
 FOG = {"domain": "box", "width": 300, "depth": 20, "scatterer": "hg", "g": 0.9, "optical_depth": 5}
 IMAGE = {**FOG, "object_x": [0, 40, 130, 290], "object_depth": -4000, "camera": [-0.4, 0.4],
          "pixels": 1024, "repeats": 2, "paths_per_field": 1000, "prediction_paths": 500}
-WEIGHTS = {**IMAGE, "pixels": 512, "repeats": 1, "points": 0, "object_extent": 80, "blinking_frames": 4000,
+WEIGHTS = {**IMAGE, "pixels": 128, "repeats": 1, "points": 0, "object_extent": 80, "blinking_frames": 4000,
            "paths_per_field": 100}
 
 
@@ -101,14 +101,14 @@ class Blinking(ProgramTest):
         found = self.image(**{**IMAGE, "width": 600, "optical_depth": 12,
                               "object_depth": -20000, "pixels": 2048,
                               "object_x": [-900, -530, -180, 160, 500, 910],
-                              "paths_per_field": 4000, "prediction_paths": 4000},
+                              "paths_per_field": 4000, "prediction_paths": 4000, "repeats": 1},
                            blinking="subsets", blinking_frames=60)
         self.assertLess(found["pair_correlation"].min(), 0.1)
         self.assertEqual(found["sources_success"], 1)
         self.assertEqual(found["success"], 0)
 
     def test_threads_do_not_matter(self):
-        one, two = (self.image(f"{n}.h5", **IMAGE, threads=n, blinking="speckle", blinking_frames=20)
+        one, two = (self.image(f"{n}.h5", **{**IMAGE, "paths_per_field": 200}, threads=n, blinking="speckle", blinking_frames=20)
                     for n in (1, 2))
         for name in one:
             np.testing.assert_array_equal(one[name], two[name], name)

@@ -6,7 +6,7 @@ import unittest
 import h5py
 import numpy as np
 
-from program import CYLINDERS, flags
+from program import CYLINDERS, WHOLE, flags
 from refusing import RefusingTest
 
 # Cylinders hundreds of wavelengths wide: their T-matrix takes seconds.
@@ -115,7 +115,7 @@ class Cheap(RefusingTest):
             data.attrs["origin"], data.attrs["spacing"] = np.zeros(3), np.ones(3)
 
     def test_each(self):
-        for subcommand, scene, changes, words in CASES:
+        for subcommand, scene, changes, words in CASES if WHOLE else CASES[::2]:
             with self.subTest(subcommand=subcommand, changes=changes):
                 keys = {"out": "new.h5", **scene, **changes}
                 self.assert_refused(words, subcommand, *flags({**keys, "out": None}),

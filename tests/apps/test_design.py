@@ -133,11 +133,11 @@ class Design(RefusingTest):
 
     def test_resumed(self):
         """Cut off after some steps and gone on with: the same bits."""
-        keys = {**SMALL, "nodes": [5, 9], "directions": 25, "rays_per_direction": 60, "threads": 1}
+        keys = {**SMALL, "nodes": [5, 9], "directions": 25, "rays_per_direction": 20, "threads": 1}
         self.design("whole.h5", **keys)
         run = self.start("design", out="cut.h5", **keys)
         while not (self.folder / "cut.h5.state").exists() and run.poll() is None:
-            time.sleep(0.05)
+            time.sleep(0.005)
         run.send_signal(signal.SIGINT)
         run.communicate()
         self.assertIn(run.returncode, (0, 75))
@@ -174,18 +174,17 @@ class Design(RefusingTest):
         before = cpu_of_children()
         run = self.start("design", design="guide", goal="equal_path", delta=0.01, coefficients=0, ray_count=1000000,
                          threads=1, out="cut.h5")
-        time.sleep(3)
+        time.sleep(1)
         run.send_signal(signal.SIGINT)
         run.communicate()
-        self.assertLess(cpu_of_children() - before, 3 + 1.5)
+        self.assertLess(cpu_of_children() - before, 1 + 1.5)
         self.assertIn(run.returncode, (75, 130))
         self.assertFalse((self.folder / "cut.h5").exists())
 
     def test_threads_do_not_matter(self):
-        for threads in (1, 2, 4):
+        for threads in (1, 4):
             self.design(f"{threads}.h5", threads=threads, **SMALL)
-        for threads in (2, 4):
-            self.assert_same_data("1.h5", f"{threads}.h5")
+        self.assert_same_data("1.h5", "4.h5")
 
     def test_target_that_is_not_reached(self):
         _, found = self.design("lens.h5", status=3, target=1e-9, **SMALL)

@@ -13,7 +13,7 @@ MEASURED = DATA / "measurements"
 FREE = ["g=0.5:0.95", "albedo=0.9:1", "optical_depth=1:20"]
 TRUTH = [0.8, 0.98, 4]
 ALL = [MEASURED / f"slab_{name}.csv" for name in ("transmission", "reflection", "transmittance")]
-NEAR_START, FAR_START = ({"g": 0.7, "albedo": 0.95, "optical_depth": 7}, {"g": 0.55, "albedo": 0.91, "optical_depth": 15})
+FAR_START = {"g": 0.55, "albedo": 0.91, "optical_depth": 15}
 
 
 class Fit(ProgramTest):
@@ -23,7 +23,7 @@ class Fit(ProgramTest):
         return done, datasets(self.folder / "fit.h5")
 
     def test_tables(self):
-        """And the same end from a start that the scene states."""
+        """By night, the same end from a start that the scene states."""
         done, found = self.fit(*ALL)
         pulls = (found["estimate"] - TRUTH) / found["estimate_error"]
         self.assertLess(np.abs(pulls).max(), 3)
@@ -33,7 +33,9 @@ class Fit(ProgramTest):
         self.assertAlmostEqual(chi_squared, np.sum(found["pull"]**2), delta=1e-6)
         self.assertLess(chi_squared, 14 + 4 * 28**0.5)
         self.assertIn("mu_s (1 - g) is known to", done.stdout)
-        _, stated = self.fit(*ALL, **(FAR_START if WHOLE else NEAR_START))
+        if not WHOLE:
+            return
+        _, stated = self.fit(*ALL, **FAR_START)
         off = np.abs(found["estimate"] - stated["estimate"]) / found["estimate_error"]
         self.assertLess(off.max(), 0.1)
 
@@ -59,26 +61,20 @@ class Fit(ProgramTest):
         self.assertIn("at its bound", done.stdout)
         self.assertIn("chi^2 is unlikely", done.stdout)
 
-    def test_covariance_in_place_of_errors(self):
+    def test_covariance_in_place_of_errors_and_squares(self):
+        """C_I with the errors of C_E^2 gives the same estimate."""
         rows = np.loadtxt(MEASURED / "slab_transmission.csv", delimiter=",", skiprows=2)
         columns = np.hstack([rows[:, :3], np.diag(rows[:, 3]**2)])
         names = ["view_angle", "tilt", "field_correlation"] + [f"covariance_{i}" for i in range(1, 9)]
         np.savetxt(self.folder / "t.csv", columns, delimiter=",", header=",".join(names), comments="")
-        free = ["g=0.5:0.95", "optical_depth=1:20"]
-        _, errors = self.fit(MEASURED / "slab_transmission.csv", free=free, albedo=0.98)
-        _, covariance = self.fit("t.csv", free=free, albedo=0.98)
-        np.testing.assert_allclose(errors["estimate"], covariance["estimate"], rtol=1e-6)
-
-    def test_squares(self):
-        """C_I with the errors of C_E^2 tells the same."""
-        rows = np.loadtxt(MEASURED / "slab_transmission.csv", delimiter=",", skiprows=2)
+        _, field = self.fit(ALL[0], free=FREE[::2], albedo=0.98)
+        _, covariance = self.fit("t.csv", free=FREE[::2], albedo=0.98)
+        np.testing.assert_allclose(field["estimate"], covariance["estimate"], rtol=1e-6)
         rows[:, 3] *= 2 * rows[:, 2]
         rows[:, 2] **= 2
         np.savetxt(self.folder / "t.csv", rows, delimiter=",", comments="",
                    header="view_angle,tilt,intensity_correlation,error")
-        free = ["g=0.5:0.95", "optical_depth=1:20"]
-        _, field = self.fit(MEASURED / "slab_transmission.csv", free=free, albedo=0.98)
-        _, squares = self.fit("t.csv", free=free, albedo=0.98)
+        _, squares = self.fit("t.csv", free=FREE[::2], albedo=0.98)
         off = np.abs(field["estimate"] - squares["estimate"]) / field["estimate_error"]
         self.assertLess(off.max(), 0.3)
 
@@ -140,23 +136,25 @@ class Fit(ProgramTest):
         box = {"domain": "box", "width": 20, "depth": 10, "scatterer": "tm"}
         self.call("covariance", **box, radius=0.16, index="1.5", density=0.33, seed=7, method="mc",
                   samples=int(40000 * SAMPLES), view_angles=[0.2, 0.5, 0.9, 1.3, 1.8, 2.4, 2.8], out="box.h5")
-        self.call("fit", "--free", "density=0.1:1", "radius=0.1:0.25", "index=1.2:1.8", scatterer="tm",
+        by_night = ["index=1.2:1.8"] if WHOLE else []
+        self.call("fit", "--free", "density=0.1:1", "radius=0.1:0.25", *by_night, index=None if WHOLE else "1.5", scatterer="tm",
                   measurement="box.h5", model_share=0.5, threads=1, out="fit.h5")
         found = datasets(self.folder / "fit.h5")
-        pulls = (found["estimate"] - [0.33, 0.16, 1.5]) / found["estimate_error"]
+        pulls = (found["estimate"] - [0.33, 0.16, 1.5][:len(found["estimate"])]) / found["estimate_error"]
         self.assertLess(np.abs(pulls).max(), 4)
 
     def test_motion(self):
         """Diffusion and shear from decays and from contrasts of a run; delays of a table, with one of 0."""
-        slab = {"domain": "slab", "depth": 50, "scatterer": "hg", "g": 0.6, "optical_depth": 5}
+        slab = {"domain": "slab", "depth": 50, "scatterer": "hg", "g": 0.6, "optical_depth": 5,
+                "view_angles": [0.2, 0.9, 2.64] if WHOLE else [0.2, 2.64]}
         self.call("covariance", **slab, method="mc", samples=20000, seed=5, diffusion=0.5, shear=0.02,
-                  view_angles=[0.2, 0.9, 2.64], delays=[0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2], out="flow.h5")
+                  delays=[0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2] if WHOLE else [0, 0.01, 0.05, 0.2], out="flow.h5")
         free = {"depth": 50, "g": 0.6, "optical_depth": 5, "threads": 1}
         for words in ({"measurement": "flow.h5"}, {"measurement": "contrast.h5"}):
             if words["measurement"] == "contrast.h5":
                 self.call("covariance", **slab, method="mc", samples=20000, seed=6, diffusion=0.5, shear=0.02,
-                          view_angles=[0.2, 0.9, 2.64], delays=[0.001, 0.002, 0.004, 0.008, 0.02, 0.05, 0.1, 0.2],
-                          exposures=[0.02, 0.05, 0.1, 0.2], beta=0.5, out="contrast.h5")
+                          delays=[0.001, 0.002, 0.004, 0.008, 0.02, 0.05, 0.1, 0.2],
+                          exposures=[0.02, 0.05, 0.1, 0.2] if WHOLE else [0.02, 0.1], beta=0.5, out="contrast.h5")
             self.call("fit", "--free", "diffusion=0.05:5", "shear=0:0.1", **free, **words, out="fit.h5")
             found = datasets(self.folder / "fit.h5")
             pulls = (found["estimate"] - [0.5, 0.02]) / found["estimate_error"]
@@ -209,18 +207,19 @@ class Fit(ProgramTest):
         self.assertTrue(lines[1].startswith("hg.h5"), lines)
 
     def test_plans(self):
-        self.call("fit", "--plan", "--free", "g=-0.5:0.95", "optical_depth=0.1:20", "--vary", "g=0.5,0.8",
-                  "optical_depth=1,4", depth=2000, view_angles=0.1, tilts=[0.0002, 0.0006], out="plans.h5")
-        self.call("fit", "--plan", "--free", "g=-0.5:0.95", "optical_depth=0.1:20", g=0.8, optical_depth=1,
+        free = ["g=-0.5:0.95", "optical_depth=0.1:20"][:2 if WHOLE else 1]
+        self.call("fit", "--plan", "--free", *free, "--vary", "g=0.5,0.8", "optical_depth=1,4",
+                  depth=2000, view_angles=0.1, tilts=[0.0002, 0.0006], out="plans.h5")
+        self.call("fit", "--plan", "--free", *free, g=0.8, optical_depth=1,
                   depth=2000, view_angles=0.1, tilts=[0.0002, 0.0006], out="plan.h5")
         plans, plan = datasets(self.folder / "plans.h5"), datasets(self.folder / "plan.h5")
         np.testing.assert_allclose(plans["point_patterns_to_percent"][2], plan["patterns_to_percent"])
 
     def test_not_converged(self):
-        done, found = self.fit(*ALL, status=3, most_iterations=1)
+        done, found = self.fit(ALL[0], free=FREE[::2], albedo=0.98, status=3, most_iterations=1)
         self.assertIn("not converged", done.stdout)
         self.assertEqual(attributes(self.folder / "fit.h5")["converged"], 0)
-        self.assertEqual(len(found["estimate"]), 3)
+        self.assertEqual(len(found["estimate"]), 2)
 
 
 if __name__ == "__main__":

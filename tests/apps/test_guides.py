@@ -1,4 +1,4 @@
-"""Every command of the README and the guides. Here: its keys are known and its values accepted. By
+"""Every command of the README and the guides. Here: its keys are known and its values accepted, by day of every other one. By
 night each guide's blocks run one after the other, as a reader would."""
 
 import os
@@ -53,7 +53,8 @@ class Written(ProgramTest):
     def test_every_command_is_accepted(self):
         (self.folder / "data").symlink_to(DATA)
         for page in PAGES:
-            for words in (words for language, block in blocks(page) if language == "sh" for words in commands(block)):
+            written = [words for language, block in blocks(page) if language == "sh" for words in commands(block)]
+            for words in written if WHOLE else written[::2]:
                 if words[0] in RESOLVE and (WHOLE or "mean_field" not in words):  # computing the mean field takes seconds
                     with self.subTest(page=page.name, command=words):
                         self.check(words)

@@ -69,7 +69,7 @@ class Moves(ProgramTest):
 
     def test_tilts_that_are_sought_end_at_twice_the_range(self):
         for medium in ({"domain": "slab", "depth": 100, "optical_depth": 10, "g": 0.8},
-                       {"width": 40, "depth": 20, "optical_depth": 4, "g": 0.5, "samples": 20000}):
+                       {"width": 40, "depth": 20, "optical_depth": 4, "g": 0.5, "samples": 8000}):
             self.call("covariance", scatterer="hg", **medium, covariance="memory_effect",
                       light_angles=0.1, view_angles=2.9, tilt_count=9, out="sought.h5")
             file = self.open("sought.h5")

@@ -57,7 +57,7 @@ class Optimise(ProgramTest):
 
     def test_foci_of_a_square_beam(self):
         """Of 0.5 mm: its aberration asks for 1.061 of the paraxial amplitude (the power on a small disk peaks there)."""
-        for length in (10, 20, 30, 45) if WHOLE else (10, 45):
+        for length in (10, 20, 30, 45) if WHOLE else (10,):
             q = (np.pi / 2 / length) ** 2
             paraxial = q * 1.3333 / (3.4851 ** 2 / 2 - q)
             self.call("optimise", **{**FOCUS, "light": "square", "ray_count": 500, "beam_radius": 0.25,

@@ -36,7 +36,7 @@ class OwnPlaces(RefusingTest):
 
     def test_mean_and_contrast_are_one_and_their_errors_are_what_placements_differ_by(self):
         found = []
-        for seed in range(1, 25 if WHOLE else 13):
+        for seed in range(1, 25 if WHOLE else 10):
             self.call("validate", **BOX, placement=self.draw(seed), **VIEWS, samples=4000, out="own.h5")
             own = datasets(self.folder / "own.h5")
             found.append([float(own[name]) for name in ("mean_ratio", "ratio_contrast", "mean_ratio_error",

@@ -7,7 +7,7 @@ import h5py
 import numpy as np
 
 import journals
-from program import DATA, SLAB, attributes, datasets
+from program import DATA, SLAB, WHOLE, attributes, datasets
 from sweeps import MANY, NEVER, SLOW, SWEEP, SweepTest, is_complete, names_of
 
 BOTH = {"domain": "box", "width": 10, "depth": 10, "scatterer": "point", "density": [0.2, 0.4],
@@ -23,9 +23,8 @@ def csv(keys, rows):
 class Shares(SweepTest):
     def test_threads(self):
         for keys in (SWEEP, {**SWEEP, "samples": None, "target_error": 0.05}):
-            for threads in (1, 2, 4):
+            for threads in (1, 4):
                 self.call("sweep", **{**keys, "threads": threads}, out=f"{threads}.h5")
-            self.assert_same_data("1.h5", "2.h5")
             self.assert_same_data("1.h5", "4.h5")
 
     def test_one_after_the_other(self):
@@ -57,7 +56,7 @@ class Shares(SweepTest):
 
     def test_at_the_same_time(self):
         self.whole(MANY)
-        for out in (["sweep.h5"] * 3, ["a.h5", "b.h5", "c.h5"]):
+        for out in (["sweep.h5"] * 3, ["a.h5", "b.h5", "c.h5"])[:2 if WHOLE else 1]:
             shares = [self.start("sweep", **MANY, shard=f"{number}/3", out=name)
                       for number, name in enumerate(out)]
             for share in shares:
@@ -72,7 +71,7 @@ class Shares(SweepTest):
 
     def test_shares_of_several_numbers(self):
         """Each point is some share's, and no other's."""
-        for count in (1, 2, 5, 7, 8):
+        for count in (1, 3, 8):
             names = []
             for number in range(count):
                 out = f"{count}-{number}.h5"

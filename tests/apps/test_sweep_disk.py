@@ -14,7 +14,7 @@ from mounts import go_where_mounts_are_allowed, mounts_allowed
 from sweeps import MANY, SLOW, SWEEP, SweepTest
 
 # About a second of one thread.
-STEADY = {**MANY, "samples": 25_000}
+STEADY = {**MANY, "samples": 15_000}
 
 
 class DiskTest(SweepTest):
@@ -68,7 +68,7 @@ class DiskTest(SweepTest):
         done = self.call("sweep", "--resume", **keys, out="sweep.h5")
         self.assertNotIn("warning", done.stderr)
         self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["sweep.h5"])
-        self.call("sweep", **keys, out=self.aside / "whole.h5")
+        self.whole(keys, self.aside / "whole.h5")
         self.assert_same_data("sweep.h5", self.aside / "whole.h5")
 
 
@@ -156,7 +156,7 @@ class ReadOnly(DiskTest):
         done = self.call("sweep", "--resume", **SWEEP, out="sweep.h5", status=4)
         self.assert_one_line(done.stderr, "sweep.h5.shards", "Read-only")
         self.call("merge", out="sweep.h5")
-        self.call("sweep", **SWEEP, out=self.aside / "whole.h5")
+        self.whole(SWEEP, self.aside / "whole.h5")
         self.assert_same_data("sweep.h5", self.aside / "whole.h5")
 
 
@@ -171,7 +171,7 @@ class Vanished(DiskTest):
         process = self.begin()
         self.points().rename(self.aside / "points")
         self.assertEqual(process.wait(timeout=60), 0, process.stderr.read())
-        self.call("sweep", **STEADY, out=self.aside / "whole.h5")
+        self.whole(STEADY, self.aside / "whole.h5")
         self.assert_same_data("sweep.h5", self.aside / "whole.h5")
 
     def test_folder_of_the_result(self):

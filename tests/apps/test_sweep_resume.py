@@ -12,9 +12,9 @@ import journals
 from program import WHOLE, attributes, cpu_of_children
 from sweeps import MANY, SLOW, SWEEP, SweepTest, cpu_seconds, is_complete, names_of
 
-# About two seconds of one thread, by day one.
-LONG = {**MANY, "samples": 40_000 if WHOLE else 20_000}
-ONE = {**SLOW, "optical_depth": [3], "samples": 1_000_000 if WHOLE else 400_000}
+# About two seconds of one thread, by day 0.7.
+LONG = {**MANY, "samples": 40_000 if WHOLE else 14_000}
+ONE = {**SLOW, "optical_depth": [3], "samples": 1_000_000 if WHOLE else 250_000}
 
 
 class Kill(SweepTest):
@@ -78,7 +78,7 @@ class Interruption(SweepTest):
     def test_in_the_midst_of_points(self):
         """Points that stop at a number of samples, and such that stop at an error, of which many
         are unfinished at a time."""
-        for stop in ({}, {"samples": None, "method": "mc", "target_error": 0.0008 if WHOLE else 0.001}):
+        for stop in ({}, {"samples": None, "method": "mc", "target_error": 0.0008 if WHOLE else 0.0015}):
             with self.subTest(stop=stop):
                 keys = {**SLOW, **stop}
                 self.whole(keys)
@@ -107,10 +107,10 @@ class Interruption(SweepTest):
 
     def test_by_both_methods(self):
         keys = {"domain": "box", "width": 10, "depth": 10, "scatterer": "point",
-                "density": [0.2, 0.4], "tilts": [0, 0.1], "method": "both", "samples": 600_000 if WHOLE else 300_000,
-                "wave_samples": 16000 if WHOLE else 8000, "threads": 2}
+                "density": [0.2, 0.4], "tilts": [0, 0.1], "method": "both", "samples": 600_000 if WHOLE else 150_000,
+                "wave_samples": 16000 if WHOLE else 4000, "threads": 2}
         self.call("sweep", **keys, out="whole.h5")
-        for cpu_s in (0.1, 0.3):
+        for cpu_s in (0.1, 0.3 if WHOLE else 0.15):
             self.interrupted(cpu_s=cpu_s, **keys, resume=True, out="sweep.h5")
         self.call("sweep", "--resume", **keys, out="sweep.h5")
         self.assert_same_data("sweep.h5", "whole.h5")

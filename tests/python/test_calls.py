@@ -19,7 +19,7 @@ from package import BOX, CURVE, FEW, ROOT, SLAB, PackageTest, fs
 
 from flatspeckle import functions, program
 
-LONG = {**BOX, "view_angles": [0.1, 0.5, 1], "samples": 2_000_000, "threads": 1}
+LONG = {**BOX, "view_angles": [0.1, 0.5, 1], "samples": 1_000_000, "threads": 1}
 MOST_CPU_S = 0.15  # of this process alone
 
 
@@ -181,7 +181,7 @@ class Interruption(PackageTest):
         """As by Ctrl-C, once the program is at work and has had time for some batches."""
         while not any(self.folder.rglob(".*.h5.lock")):
             time.sleep(0.01)
-        time.sleep(0.3)
+        time.sleep(0.1)
         os.kill(os.getpid(), signal.SIGINT)
 
     def interrupted(self, **given):

@@ -10,7 +10,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
-from package import BOX, CURVE, FEW, PackageTest, fs
+from package import BOX, CURVE, FEW, WHOLE, PackageTest, fs
 
 
 class Drawn(PackageTest):
@@ -28,7 +28,9 @@ class Drawn(PackageTest):
         swept = fs.sweep(depth=100, g=[0, 0.5], optical_depth=[2], tilts=[0, 0.01, 0.02])
         both = fs.validate(BOX, view_angles=[0, 0.3], wave_samples=20, **FEW)
         curves = [fs.covariance(CURVE, g=g) for g in (0.8, 0.9)]
-        for figure in (fs.plots.memory_effect(swept), fs.plots.validation(both), fs.plots.memory_effect(*curves)):
+        figures = [lambda: fs.plots.validation(both), lambda: fs.plots.memory_effect(*curves), lambda: fs.plots.memory_effect(swept)]
+        for figure in (figures if WHOLE else figures[:1]):
+            figure = figure()
             box = figure.get_tightbbox(figure.canvas.get_renderer())
             width, height = figure.get_size_inches()
             self.assertTrue(box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height, box)
