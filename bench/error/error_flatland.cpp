@@ -29,7 +29,7 @@ struct FlatScene {
   std::shared_ptr<const Scene> scene;
 };
 
-mc::Plan plan_of(const Scene& scene) {
+mc::Plan automatic_plan(const Scene& scene) {
   return mc::make_plan(scene, mc::ReversedPaths::automatic);
 }
 
@@ -39,11 +39,11 @@ ErrorTrial trial_of(const FieldJob& job) {
 
 ErrorTrial textbook(const Scene& scene, std::uint64_t seed) {
   constexpr std::uint64_t paths = 50;
-  return trial_of(oracles::textbook_job(scene, plan_of(scene).reversed, paths, seed));
+  return trial_of(oracles::textbook_job(scene, automatic_plan(scene).reversed, paths, seed));
 }
 
 ErrorTrial ours(const Scene& scene, std::uint64_t seed) {
-  mc::Plan plan = plan_of(scene);
+  mc::Plan plan = automatic_plan(scene);
   plan.paths_per_batch = 50;
   return trial_of(mc::covariance_job(scene, plan, seed));
 }
@@ -53,7 +53,7 @@ ErrorTrial fields(const Scene& scene, std::uint64_t seed) {
   constexpr std::uint64_t paths = 100;
   ErrorTrial trial{{}, sample_mean};
   trial.batches.size = scene.request.entries.size();
-  trial.batches.run = [draw = mc::fields_by_paths(scene, plan_of(scene), seed, paths),
+  trial.batches.run = [draw = mc::fields_by_paths(scene, automatic_plan(scene), seed, paths),
                        request = scene.request](std::uint64_t number, std::span<Complex> sums) {
     std::vector<Complex> field(request.channels.size());
     std::vector<double> intensity(field.size());
@@ -187,7 +187,7 @@ SceneSpec two_term_slab() {
 using ToTolerance = std::function<std::vector<Complex>(double tolerance)>;
 
 ToTolerance by_transport(const std::shared_ptr<const Scene>& scene) {
-  const bool reversed = scene->medium.dimension == 2 && plan_of(*scene).reversed;
+  const bool reversed = scene->medium.dimension == 2 && automatic_plan(*scene).reversed;
   return [=](double tolerance) { return mc::slab_covariance(*scene, reversed, {tolerance}).value; };
 }
 
@@ -278,7 +278,7 @@ struct Flow {
   ErrorReference reference() const {
     constexpr double tolerance = 1e-8;
     ErrorReference found{{}, tolerance, "transport"};
-    const bool reversed = plan_of(scene).reversed;
+    const bool reversed = automatic_plan(scene).reversed;
     const auto add = [&](double delay) {
       const auto still = mc::slab_covariance(scene, reversed, {tolerance}, {.delay = delay}).value;
       for (std::size_t e = 0; e < still.size(); ++e) {
@@ -300,7 +300,7 @@ ErrorRun flow_run() {
   spec.view_angles = {-0.9, -0.4, 0.2, 0.8, pi - 0.6, pi - 0.2};
   const Flow flow{make_scene(spec)};
   const ErrorMethod method{"slab_hg, flow", "ours", [=](std::uint64_t seed) {
-                             mc::Plan plan = plan_of(flow.scene);
+                             mc::Plan plan = automatic_plan(flow.scene);
                              plan.paths_per_batch = 50;
                              const auto job =
                                  mc::delay_job(flow.scene, plan, flow.delays, seed, flow.motion);

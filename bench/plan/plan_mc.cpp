@@ -19,13 +19,13 @@ namespace {
 
 using mc::Plan;
 using std::numbers::pi;
-constexpr std::uint64_t seed = 1;
+constexpr std::uint64_t first_seed = 1;
 
 SampledKernel kernel_of(const FieldJob& job) {
   return {job.batches.size, job.batches.samples_per_batch, job.batches.run, job.covariance};
 }
 
-Plan plan_of(const Scene& scene) {
+Plan plan_without_reversed(const Scene& scene) {
   return mc::make_plan(scene, mc::ReversedPaths::no);
 }
 
@@ -49,11 +49,11 @@ PlanCase flag(const std::string& left_out, const NamedScene& on, Draws numbers, 
               void (*generalise)(Plan&)) {
   return case_of_samples({"mc", left_out, on.name, "path"}, numbers, measure,
                          [=, scene = on.scene]() -> TwoKernels {
-                           const Plan special = plan_of(scene);
+                           const Plan special = plan_without_reversed(scene);
                            Plan general = special;
                            generalise(general);
-                           const std::uint64_t other = numbers == Draws::same ? seed : seed + 1;
-                           return {kernel_of(mc::covariance_job(scene, general, seed)),
+                           const std::uint64_t other = numbers == Draws::same ? first_seed : first_seed + 1;
+                           return {kernel_of(mc::covariance_job(scene, general, first_seed)),
                                    kernel_of(mc::covariance_job(scene, special, other))};
                          });
 }
@@ -61,10 +61,10 @@ PlanCase flag(const std::string& left_out, const NamedScene& on, Draws numbers, 
 /// A scene with something of no effect against the scene without it, whose single scattering is by
 /// paths as well where `sampled_single`.
 TwoKernels beside(const Scene& general, const Scene& special, bool sampled_single = false) {
-  Plan plan = plan_of(special);
+  Plan plan = plan_without_reversed(special);
   plan.sampled_single |= sampled_single;
-  return {kernel_of(mc::covariance_job(general, plan_of(general), seed)),
-          kernel_of(mc::covariance_job(special, plan, seed + 1))};
+  return {kernel_of(mc::covariance_job(general, plan_without_reversed(general), first_seed)),
+          kernel_of(mc::covariance_job(special, plan, first_seed + 1))};
 }
 
 /// All entries of a scene's channels.
@@ -91,12 +91,12 @@ Estimator picked(const Estimator& triangle, const std::vector<Entry>& entries) {
 
 TwoKernels few_entries(const Scene& scene) {
   const Scene whole = with_whole_matrix(scene);
-  Plan special = plan_of(scene), general = plan_of(whole);
+  Plan special = plan_without_reversed(scene), general = plan_without_reversed(whole);
   special.sampled_single = general.sampled_single = true;
   special.paths_per_batch = general.paths_per_batch;
-  SampledKernel all = kernel_of(mc::covariance_job(whole, general, seed));
+  SampledKernel all = kernel_of(mc::covariance_job(whole, general, first_seed));
   all.estimator = picked(all.estimator, scene.request.entries);
-  return {all, kernel_of(mc::covariance_job(scene, special, seed))};
+  return {all, kernel_of(mc::covariance_job(scene, special, first_seed))};
 }
 
 /// The same phase function as one of the bulk that has no form of its own.
@@ -147,17 +147,17 @@ TwoKernels refraction(const Scene& scene) {
 
 TwoKernels derivatives(const Scene& scene) {
   const Plan plan = mc::gradient_plan(scene, mc::ReversedPaths::no);
-  return {kernel_of(mc::gradient_job(scene, plan, seed).field),
-          kernel_of(mc::covariance_job(scene, plan, seed))};
+  return {kernel_of(mc::gradient_job(scene, plan, first_seed).field),
+          kernel_of(mc::covariance_job(scene, plan, first_seed))};
 }
 
 SampledKernel delays_of(const Scene& scene, const mc::Motion& motion = {}) {
   const std::vector<double> times = {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2};
-  return kernel_of(mc::delay_job(scene, plan_of(scene), times, seed, motion).field);
+  return kernel_of(mc::delay_job(scene, plan_without_reversed(scene), times, first_seed, motion).field);
 }
 
 TwoKernels delays(const Scene& scene) {
-  return {delays_of(scene), kernel_of(mc::covariance_job(scene, plan_of(scene), seed))};
+  return {delays_of(scene), kernel_of(mc::covariance_job(scene, plan_without_reversed(scene), first_seed))};
 }
 
 /// Scatterers that flow by nothing beside diffusing.
@@ -168,8 +168,8 @@ TwoKernels flow(const Scene& scene) {
 TwoKernels frequencies(const Scene& scene) {
   const std::vector<double> shifts = {1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 1e-2, 2e-2};
   const Plan plan = mc::frequency_plan(scene, mc::ReversedPaths::automatic);
-  return {kernel_of(mc::frequency_job(scene, plan, shifts, seed).field),
-          kernel_of(mc::covariance_job(scene, plan, seed))};
+  return {kernel_of(mc::frequency_job(scene, plan, shifts, first_seed).field),
+          kernel_of(mc::covariance_job(scene, plan, first_seed))};
 }
 
 Scene with_request(Scene scene, CovarianceRequest request) {

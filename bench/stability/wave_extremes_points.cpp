@@ -162,7 +162,7 @@ void add_points(ExtremeRows& rows) {
   });
 }
 
-void add_fields(ExtremeRows& rows) {
+void add_point_fields(ExtremeRows& rows) {
   rows.add_each("three TM disks in a unit of length of ", {1e-9, 1e9}, "", "far field scales",
                 unit_of_length);
   rows.add("two soft disks, 1e-9 radii from a rim", "the field there, of 1", soft_rim);
@@ -170,7 +170,7 @@ void add_fields(ExtremeRows& rows) {
            clustered_sum);
 }
 
-void add_refusals(ExtremeRows& rows) {
+void add_point_refusals(ExtremeRows& rows) {
   const Scatterer one{.kind = Kind::tm, .radius = 0.2};
   rows.add_refused("sensor within a disk", "outside every scatterer", [=] {
     auto options = to(1e-6);
@@ -203,8 +203,8 @@ void add_refusals(ExtremeRows& rows) {
 
 void wave_point_extremes(ExtremeRows& rows) {
   add_points(rows);
-  add_fields(rows);
-  add_refusals(rows);
+  add_point_fields(rows);
+  add_point_refusals(rows);
   add_clusters(rows);
 }
 
