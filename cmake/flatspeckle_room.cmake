@@ -42,10 +42,11 @@ function(flatspeckle_share_headers name owner)
   target_precompile_headers(flatspeckle_${name} REUSE_FROM flatspeckle_${owner})
 endfunction()
 
-# What this target itself computes is little: it compiles in a third less time. Other options of the optimiser than
-# those of a precompiled header make this of no use.
+# What this target itself computes is little: it compiles in a quarter less time. Only a precompiled header of the
+# same options serves it.
 function(flatspeckle_without_loops target)
-  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-Og>)
+  target_compile_options(${target} PRIVATE
+    $<$<CONFIG:Release>:-O1;$<$<CXX_COMPILER_ID:GNU>:-finline-small-functions>>)
 endfunction()
 
 # Warnings, instruction set and sanitizers; nothing of it reaches those who link the library.
