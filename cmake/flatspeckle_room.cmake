@@ -39,8 +39,15 @@ endfunction()
 
 # Uses the precompiled header of another module, which is compiled with the same options and definitions.
 function(flatspeckle_share_headers name owner)
+  set_target_properties(flatspeckle_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)  # as every room is
   target_precompile_headers(flatspeckle_${name} REUSE_FROM flatspeckle_${owner})
 endfunction()
+
+# What those include who use rays: to be precompiled for the program and for tests.
+set(flatspeckle_ray_headers
+  <core/run/runner.h> <grin/media/fields/any_index_field.h> <grin/media/scattering/scattering_medium.h>
+  <grin/rays/connections/connection.h> <grin/rays/marching/any_steps.h> <grin/rays/surfaces/level_surface.h>
+  <grin/rays/surfaces/lens.h> <grin/rays/surfaces/room.h> <grin/rays/surfaces/straight_way.h>)
 
 # What this target itself computes is little: it compiles in a quarter less time. Only a precompiled header of the
 # same options serves it.

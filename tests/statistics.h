@@ -33,7 +33,7 @@ std::uint64_t fresh_seed(std::uint64_t number);
 /// Whether tests take all of their samples and cases (FLATSPECKLE_TEST_WHOLE is set), as by night.
 inline const bool is_night = std::getenv("FLATSPECKLE_TEST_WHOLE") != nullptr;
 
-/// What long tests take of their samples, by day a quarter, and how much larger errors are then.
+/// Long tests take this part of their samples, a quarter by day, and their errors may be so much larger.
 struct Effort {
   double samples = 0.25, errors = 2;
 };

@@ -249,7 +249,7 @@ TEST_CASE("diffuse reflectance by polar angle: as photons see it") {
 
 TEST_CASE("a glass ball that scatters, seen from outside by a lens and a pinhole") {
   std::vector<double> indices;              // by day the beam alone
-  if (is_night) indices = {1.0, 1.4, 0.8};  // the last: weak connections, seldom found
+  if (is_night) indices = {1.0, 1.4, 0.8};  // n = 0.8: few paths connect, with small weights
   for (const double index : indices)
     check_lens_and_pinhole(body_from_outside(Homogeneous{index - 1}, ball_walk(index), side_point,
                                              towards_ball(), share_towards_ball),
