@@ -9,8 +9,8 @@ import time
 import unittest
 
 import journals
-from program import WHOLE, attributes, cpu_of_children
-from sweeps import MANY, SLOW, SWEEP, SweepTest, cpu_seconds, is_complete, names_of
+from program import WHOLE, attributes
+from sweeps import MANY, SLOW, SWEEP, SweepTest, is_complete, names_of
 
 # About two seconds of one thread, by day 0.7.
 LONG = {**MANY, "samples": 40_000 if WHOLE else 14_000}
@@ -19,17 +19,17 @@ ONE = {**SLOW, "optical_depth": [3], "samples": 1_000_000 if WHOLE else 250_000}
 
 class Kill(SweepTest):
     def test_at_many_moments(self):
-        before = cpu_of_children()
+        """Each a random time after a random number of points has been finished."""
         self.call("sweep", **LONG, out="whole.h5")
-        needed = cpu_of_children() - before
         moments = random.Random(1)
         kept, ended, midway = {}, 0, 0
         times = 20 if WHOLE else 8
         for _ in range(times):
             process = self.start("sweep", "--resume", **LONG, out="sweep.h5")
-            moment = moments.random() * 0.15 * needed
-            while process.poll() is None and cpu_seconds(process) < moment:
+            points = len(kept) + moments.randrange(6)
+            while process.poll() is None and len(self.finished()) < points:
                 time.sleep(0.002)
+            time.sleep(0.03 * moments.random())
             process.kill()
             if process.wait() == 0:
                 (self.folder / "sweep.h5").unlink()
@@ -82,8 +82,7 @@ class Interruption(SweepTest):
             with self.subTest(stop=stop):
                 keys = {**SLOW, **stop}
                 self.whole(keys)
-                for number, threads in ((signal.SIGINT, 2), (signal.SIGTERM, 1),
-                                        (signal.SIGINT, 3)):
+                for number, threads in ((signal.SIGINT, 2), (signal.SIGTERM, 1), (signal.SIGINT, 3))[:3 if WHOLE else 2]:
                     self.interrupted(number, cpu_s=0.06, **{**keys, "threads": threads}, resume=True, out="sweep.h5")
                     self.assertFalse((self.folder / "sweep.h5").exists())
                 self.assertTrue(self.unfinished())
