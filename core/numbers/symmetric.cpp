@@ -1,28 +1,27 @@
 #include "core/numbers/symmetric.h"
 
+#include <limits>
+
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "core/numbers/blas.h"
+
 namespace flatspeckle {
 
-namespace {
-
-using Solver = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
-
-SymmetricEigen found_by(const Solver& solver) {
-  return {solver.eigenvalues(), solver.eigenvectors()};
-}
-
-}  // namespace
-
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a) {
-  return found_by(Solver(a));
+  blas_single_thread();
+  SymmetricEigen found{Eigen::VectorXd(a.rows()), a};
+  const blasint n = blas_size(static_cast<std::size_t>(a.rows())), height = std::max<blasint>(n, 1);
+  if (LAPACKE_dsyev(LAPACK_COL_MAJOR, 'V', 'L', n, found.vectors.data(), height, found.values.data()) != 0)
+    found.values.setConstant(std::numeric_limits<double>::quiet_NaN());
+  return found;
 }
 
 SymmetricEigen tridiagonal_eigen(const Eigen::VectorXd& diagonal, const Eigen::VectorXd& beside) {
-  Solver solver;
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
   solver.computeFromTridiagonal(diagonal, beside);
-  return found_by(solver);
+  return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& a, const Eigen::VectorXd& b) {
