@@ -13,6 +13,11 @@ mkdir -p "$results/ten_disks"
 
 say() { printf '\n== %s\n' "$*"; }
 
+drawing=()
+draw() {  # PLOT RESULT FOLDER: while the next is computed
+  python3 "plots/$1.py" "$2" --out "$3" & drawing+=($!)
+}
+
 reference=data/reference/g10
 
 solve_and_compare() {  # KIND FLAG...: KIND as in the names of the reference's tables
@@ -35,14 +40,15 @@ ten_disks() {
 both_methods() {
   say "Resonant points in a box: both methods, entry by entry"
   "$flatspeckle" validate --config data/scenes/box_points.toml --out "$results/box_points.h5"
-  python3 plots/validation.py "$results/box_points.h5" --out "$results/validation"
-  python3 plots/error_time.py "$results/box_points.h5" --out "$results/error_time"
+  draw validation "$results/box_points.h5" "$results/validation"
+  draw error_time "$results/box_points.h5" "$results/error_time"
 }
 
 slab() {
   say "A slab of Henyey-Greenstein scatterers: memory effect over g and albedo"
   "$flatspeckle" sweep --config data/scenes/slab_hg.toml --out "$results/slab_hg.h5"
-  python3 plots/memory_effect.py "$results/slab_hg.h5" --out "$results/memory_effect"
+  draw memory_effect "$results/slab_hg.h5" "$results/memory_effect"
 }
 
 for step in "${steps[@]}"; do "$step"; done
+for plot in "${drawing[@]}"; do wait "$plot"; done
