@@ -5,7 +5,7 @@ import unittest
 import h5py
 import numpy as np
 
-from program import ProgramTest
+from program import WHOLE, ProgramTest
 from refusing import RefusingTest
 
 BOX = {"domain": "box", "width": 20, "depth": 10, "density": 0.155, "light_angles": 0,
@@ -44,7 +44,7 @@ class Density(ProgramTest):
         self.write("hole.csv", HOLE)
         write_cells(self.folder / "hole.h5", checkered())
         for key, name in (("density_blobs", "hole.csv"), ("density_map", "hole.h5")):
-            self.call("validate", **BOX, **{key: name}, samples=100000, wave_samples=3000,
+            self.call("validate", **BOX, **{key: name}, samples=100000, wave_samples=6000 if WHOLE else 3000,
                       wave_tolerance=1e-3, out="result.h5")
             with h5py.File(self.folder / "result.h5") as file:
                 mc, exact = file["mc/intensity"][()], file["wave/intensity"][()]

@@ -2,7 +2,6 @@
 dataset and attribute has a row, and every row is met by some file. With --update puts the tables
 of the program into the document."""
 
-import functools
 import itertools
 import re
 import subprocess
@@ -21,7 +20,6 @@ OF_HDF5 = {"CLASS", "NAME", "DIMENSION_LIST", "DIMENSION_LABELS", "REFERENCE_LIS
 TABLES = subprocess.run([PROGRAM, "datasets"], capture_output=True, text=True, check=True).stdout
 
 
-@functools.cache
 def members(file, kind=h5py.Dataset):
     """name -> object, all groups down."""
     found = {}

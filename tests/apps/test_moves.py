@@ -5,7 +5,7 @@ import unittest
 import h5py
 import numpy as np
 
-from program import BOX, ProgramTest
+from program import BOX, WHOLE, ProgramTest
 
 MAP = {**BOX, "covariance": "tilt_shift", "tilts": [0, 0.01, 0.03], "shifts": [-0.1, 0],
        "view_angles": [0.3, 0.5], "samples": 20000}
@@ -69,7 +69,7 @@ class Moves(ProgramTest):
 
     def test_tilts_that_are_sought_end_at_twice_the_range(self):
         for medium in ({"domain": "slab", "depth": 100, "optical_depth": 10, "g": 0.8},
-                       {"width": 40, "depth": 20, "optical_depth": 4, "g": 0.5, "samples": 8000}):
+                       {"width": 40, "depth": 20, "optical_depth": 4, "g": 0.5, "samples": 20_000 if WHOLE else 8000}):
             self.call("covariance", scatterer="hg", **medium, covariance="memory_effect",
                       light_angles=0.1, view_angles=2.9, tilt_count=9, out="sought.h5")
             file = self.open("sought.h5")

@@ -4,7 +4,7 @@ import unittest
 
 import numpy as np
 
-from program import DATA, datasets
+from program import DATA, WHOLE, datasets
 from refusing import RefusingTest
 
 GLASS = [1.5, 0, 0, 0]
@@ -47,7 +47,7 @@ class Bodies(BodiesTest):
     def test_render_sees_that_ball_too(self):
         keys = {"stage_box": [-3, -3, -3, 3, 3, 3], "field": "homogeneous", "sensor": "area", "sensor_at": [0, 0, 3],
                 "sensor_size": [4, 4], "pixels": [1, 1], "point_light": [0, 0, -2.5, 1], "method": "light",
-                "samples": 80_000, "threads": 1}
+                "samples": 200_000 if WHOLE else 80_000, "threads": 1}
         dim = [1.5, 0.5, 0.1, 0]  # it scatters and absorbs
         totals = []
         for body in ({"ball": [0, 0, 0, 1, *dim]}, {"lens": [0, 0, -1, 1, 1, -1, 2, *dim]}):

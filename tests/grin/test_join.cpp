@@ -7,6 +7,7 @@
 #include "bench/scenes/random_fields.h"
 #include "grin/rays/connections/connection_solver.h"
 #include "tests/grin/space_stages.h"
+#include "tests/statistics.h"
 
 namespace flatspeckle::grin::test_join {
 
@@ -14,6 +15,7 @@ namespace {
 
 using bench::random_direction;
 using bench::random_point;
+using flatspeckle::tests::is_night;
 
 const Sphere ball;
 
@@ -258,7 +260,7 @@ TEST_CASE("the share of curves that start along the chord does not change their 
   }
   REQUIRE(curves > 1);
   Mean number, spread;
-  for (int i = 0; i < 12000; ++i) {
+  for (int i = 0; i < (is_night ? 12000 : 9000); ++i) {
     const auto found = connect_chord_first(trial, random, statistics);
     number.add(found.multiplicity);
     spread.add(found.curve ? found.multiplicity / found.curve->spreading : 0);

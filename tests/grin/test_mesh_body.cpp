@@ -106,7 +106,7 @@ TEST_CASE("light stays uniform about a body of triangles, by every estimator") {
 TEST_CASE("no path by a ring of triangles is worth far more than others") {
   const RenderJob job = render_job(even_ring(), {RenderMethod::bidirectional}, 4);
   std::vector<Complex> sums(job.batches.size);
-  const int shares = 8, batches = (is_night ? 6000 : 2000) / shares;
+  const int shares = 8, batches = (is_night ? 6000 : 1200) / shares;
   double sum = 0;
   std::vector<double> squares(shares);
   for (int i = 0; i < shares * batches; ++i) {

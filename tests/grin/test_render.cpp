@@ -69,10 +69,11 @@ TEST_CASE("light and sensor exchanged read the same, where n differs between the
   for (const RenderMethod method : unbiased_methods) {
     // by day the one whose error is 2 %: the others need ten times the paths
     if (!is_night && method != RenderMethod::bidirectional) continue;
+    const double samples = is_night ? 1e4 : 4e3;
     const Rendered forth =
-        rendered(scene_in(field, stage, FaceLight{a, radius, 1}, detector_at(b)), method, 1e4);
+        rendered(scene_in(field, stage, FaceLight{a, radius, 1}, detector_at(b)), method, samples);
     const Rendered back =
-        rendered(scene_in(field, stage, FaceLight{b, radius, 1}, detector_at(a)), method, 1e4, 2);
+        rendered(scene_in(field, stage, FaceLight{b, radius, 1}, detector_at(a)), method, samples, 2);
     CAPTURE(name(method));
     CAPTURE(forth.error() / forth.value());
     CHECK(std::abs(forth.value() - back.value()) <

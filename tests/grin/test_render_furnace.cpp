@@ -64,8 +64,9 @@ TEST_CASE("light is uniform for a camera inside a body, too") {
   for (const NamedRender& named : furnaces_of_bodies(fog(1, 0, 0.85))) {
     CAPTURE(named.name);
     for (const RenderMethod method : {RenderMethod::path, RenderMethod::bidirectional})
-      for (const Vec3& at : {inner, outer})
-        CHECK(check_furnace_camera(named.scene, method, 8000, at) < 0.1);
+      for (const Vec3& at : {inner, outer})  // by day one of them for each method
+        if (is_night || (at == inner) == (method == RenderMethod::path))
+          CHECK(check_furnace_camera(named.scene, method, 8000, at) < 0.1);
   }
 }
 

@@ -1,4 +1,4 @@
-"""Each tutorial runs, draws its picture, and finds its own assertions true, within a minute; the longest four by night."""
+"""Each tutorial runs, draws its picture, and finds its own assertions true, within a minute; the longest six by night."""
 
 import contextlib
 import multiprocessing
@@ -15,7 +15,7 @@ matplotlib.use("Agg")
 from package import ROOT, WHOLE, PackageTest
 
 TUTORIALS = sorted((ROOT / "docs/tutorials").glob("*.py"))
-BY_NIGHT = {"classics", "own_cylinders", "lens", "waveguide"}
+BY_NIGHT = {"classics", "contrast_and_flow", "imaging", "lens", "own_cylinders", "waveguide"}
 MOST_S = 60 * float(os.environ.get("FLATSPECKLE_SLOWNESS", 1))
 
 

@@ -101,7 +101,7 @@ TEST_CASE("slabs in space: nine digits") {
 }
 
 TEST_CASE("slabs in space: the covariance of a walk at oblique lights, tilts along and across") {
-  const std::uint64_t photons = tests::is_night ? 40000 : 20000;
+  const std::uint64_t photons = tests::is_night ? 40000 : 10000;
   for (const auto& [g, optical_depth, albedo] :
        {std::array{0.0, 2.0, 1.0}, {0.6, 4.0, 0.95}, {0.9, 5.0, 0.99}}) {
     const auto slab = hg_space(200, optical_depth, g, albedo);
@@ -126,7 +126,7 @@ TEST_CASE("slabs in space: the covariance of a walk at oblique lights, tilts alo
             covariance(slab, lights, views, reversed, tests::is_night ? 1e-3 : 3e-3);
         CHECK(std::abs(found.real() - value.real()) < 4 * error);
         CHECK(std::abs(found.imag() - value.imag()) < 4 * error);
-        CHECK(error < 0.15 * std::abs(found));  // or it would tell little
+        CHECK(error < (tests::is_night ? 0.15 : 0.22) * std::abs(found));  // or it would tell little
       }
   }
 }
