@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # first_results.sh PROGRAM FOLDER [STEP...]: runs the program on shipped data and scenes and writes results and plots to
-# FOLDER. Steps: ten_disks (exact fields against references), both_methods (Monte Carlo against the exact solver), slab
-# (memory-effect curves); all of them by default.
+# FOLDER. Steps: slab (memory-effect curves), both_methods (Monte Carlo against the exact solver), ten_disks (exact
+# fields against references); all of them by default.
 set -euo pipefail
 flatspeckle=$(realpath "$1")
 results=$(realpath -m "$2")
 steps=("${@:3}")
-[[ ${#steps[@]} -gt 0 ]] || steps=(ten_disks both_methods slab)
+[[ ${#steps[@]} -gt 0 ]] || steps=(slab both_methods ten_disks)
 PATH=/usr/bin:$PATH  # Debian's python3, which knows h5py and matplotlib
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mkdir -p "$results/ten_disks"

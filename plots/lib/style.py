@@ -138,3 +138,4 @@ def save(figure, prefix, dpi=None):
                              ("pdf", {"CreationDate": None, "Subject": text or None})):
         figure.savefig(f"{prefix}.{ending}", metadata=metadata, dpi=dpi or LOOK["savefig.dpi"])
         print(f"wrote {prefix}.{ending}")
+        figure.set_layout_engine("none")  # both files show what the first laid out
