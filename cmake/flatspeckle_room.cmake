@@ -73,7 +73,7 @@ function(flatspeckle_flags target)
   # 128 MB on: 6 % less time.
   target_compile_options(${target} PRIVATE
     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;--param=ggc-min-heapsize=1000000>)
-  # Threads are ours: those of Eigen's products spin where they wait for each other, and beside other programs wait long.
+  # Threads are ours: those of Eigen's products spin where they wait for each other, long beside other programs.
   target_compile_definitions(${target} PRIVATE EIGEN_DONT_PARALLELIZE)
   # Nobody asks whether a root failed: it need not set errno, nor comparisons raise flags, and loops become vectors.
   target_compile_options(${target} PRIVATE -fno-math-errno -fno-trapping-math)
