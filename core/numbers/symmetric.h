@@ -10,8 +10,8 @@ struct SymmetricEigen {
   Eigen::MatrixXd vectors;
 };
 
-/// Of a symmetric matrix, by LAPACK's tridiagonal QR: Eigen's takes ten seconds to compile. Values are NaN where
-/// an element is not finite.
+/// Decomposes a symmetric matrix by LAPACK's tridiagonal QR (Eigen's takes ten seconds to compile). The values are
+/// NaN where an element is not finite.
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
 
 /// Of a symmetric tridiagonal matrix; beside: the n - 1 elements next to the diagonal.
