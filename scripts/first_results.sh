@@ -14,7 +14,7 @@ mkdir -p "$results/ten_disks"
 say() { printf '\n== %s\n' "$*"; }
 
 drawing=()
-draw() {  # PLOT RESULT FOLDER: while the next is computed
+draw() {  # PLOT RESULT PREFIX: while the next is computed
   python3 "plots/$1.py" "$2" --out "$3" & drawing+=($!)
 }
 

@@ -1,5 +1,6 @@
 #include "core/numbers/symmetric.h"
 
+#include <algorithm>
 #include <limits>
 
 #include <Eigen/Cholesky>

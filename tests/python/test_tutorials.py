@@ -1,4 +1,4 @@
-"""Each tutorial runs, draws its picture, and finds its own assertions true, within a minute; the longest six by night."""
+"""Each tutorial runs, draws its picture, and finds its own assertions true, within a minute; six of them by night."""
 
 import contextlib
 import multiprocessing
