@@ -34,20 +34,13 @@ function(flatspeckle_rooms name)
   install(TARGETS flatspeckle_${name} EXPORT flatspeckle)
 endfunction()
 
-# Uses the precompiled header of another module, and with it, as gcc does unasked, its level of optimisation: that of
-# core is -O2; that of grin_media -O3, by which what steps along rays and paths gains up to a third.
+# Compiles with the precompiled header of another module and with its options, without which it would be refused. gcc
+# takes the level of optimisation, too, from the header: that of core is -O2, that of grin_media -O3, by which what
+# steps along rays and paths gains up to a third.
 function(flatspeckle_share_headers name owner)
-  set_target_properties(flatspeckle_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)  # as every room is
+  get_target_property(options flatspeckle_${owner} COMPILE_OPTIONS)
+  set_target_properties(flatspeckle_${name} PROPERTIES COMPILE_OPTIONS "${options}" POSITION_INDEPENDENT_CODE ON)
   target_precompile_headers(flatspeckle_${name} REUSE_FROM flatspeckle_${owner})
-  if(owner STREQUAL core)
-    flatspeckle_second_level(${name})
-  endif()
-endfunction()
-
-# As fast as -O3 where its vectors are what counts, and compiled in a tenth to a fifth less time.
-function(flatspeckle_second_level name)
-  target_compile_options(flatspeckle_${name} PRIVATE
-    $<$<CONFIG:Release>:-O2;$<$<CXX_COMPILER_ID:GNU>:-fvect-cost-model=dynamic>>)
 endfunction()
 
 # What those include who use rays: to be precompiled for the program and for tests.

@@ -31,14 +31,14 @@ fuzz() {
   cmake --preset fuzz
   cmake --build --preset fuzz --parallel "$jobs"
   ctest --preset fuzz
-  local kind found
-  for kind in scene table grid result result_bytes; do
-    found=$PWD/build/fuzz/found/$kind
+  local target found
+  for target in scene table grid result result_bytes; do
+    found=$PWD/build/fuzz/found/$target
     mkdir -p "$found"
     # HDF5 itself dies of damaged files, in a child process: docs/development.md.
-    ASAN_OPTIONS=allocator_may_return_null=1 build/fuzz/bin/fuzz_$kind -max_total_time=60 \
+    ASAN_OPTIONS=allocator_may_return_null=1 build/fuzz/bin/fuzz --target=$target -max_total_time=60 \
       -max_len=2500 -rss_limit_mb=2048 -timeout=60 -detect_leaks=0 -malloc_limit_mb=0 \
-      -artifact_prefix="$found/" "$found" "$PWD/tests/fuzz/corpus/$kind"
+      -artifact_prefix="$found/" "$found" "$PWD/tests/fuzz/corpus/$target"
   done
 }
 

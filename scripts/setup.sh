@@ -34,7 +34,7 @@ install_missing() {
 # For the program alone.
 install_build_packages() {
   install_missing g++ cmake ninja-build pkg-config libhdf5-dev liblapacke-dev libopenblas-dev \
-    libfftw3-dev libnlopt-dev libeigen3-dev libcli11-dev librandom123-dev
+    libfftw3-dev libnlopt-dev libeigen3-dev libcli11-dev librandom123-dev libtomlplusplus-dev
 }
 
 # For the subcommand bench.

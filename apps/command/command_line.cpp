@@ -18,6 +18,7 @@
 #include <CLI/CLI.hpp>
 
 #include "apps/command/key_lists.h"
+#include "apps/command/scene_file.h"
 #include "apps/command/subcommands.h"
 #include "core/error.h"
 #include "core/keys/key.h"
@@ -28,83 +29,17 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// Appends a line of a file less its comment.
-void append(const std::string& line, std::string& statement, bool& in_list) {
-  char quote = '\0';
-  for (const char c : line) {
-    if (quote == '\0' && c == '#') break;
-    if (quote != '\0' || c == '"' || c == '\'') {
-      quote = quote == '\0' ? c : quote == c ? '\0' : quote;
-    } else if (c == '[' || c == ']') {
-      if (in_list == (c == '[')) throw InputError("brackets do not match; a list is [a, b]");
-      in_list = !in_list;
-    } else if (c == ',') {
-      CLI::detail::rtrim(statement);  // CLI11 would read "1 ," as the text "1 "
-    }
-    statement += c;
-  }
-  if (quote != '\0') throw InputError(std::string("a text is not closed by ") + quote);
-  statement += ' ';
-}
-
-/// Names and values less all that stands between them.
-std::string content(std::string text) {
-  constexpr std::string_view between = " \t\r\f\v\"'[],=";
-  std::erase_if(text, [&](char c) { return between.find(c) != std::string_view::npos; });
-  return text;
-}
-
-/// Scene files: one flat list of `key = value` lines of TOML. CLI11's own reader, behind
-/// checks for what that reader takes without a word: lists that are not closed, tables, keys that
-/// are given twice or without a value, stray text. It is given one key at a time, lists on one
-/// line.
-class SceneFile : public CLI::ConfigTOML {
+/// Scene files for CLI11.
+class SceneFile : public CLI::Config {
  public:
-  SceneFile() {
-    comment('\n');  // CLI11 would cut a text in quotes at its #
-  }
-
-  /// Throws InputError naming the line.
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
-    std::string text{std::istreambuf_iterator<char>(input), std::istreambuf_iterator<char>()};
-    const auto is_binary = [](unsigned char c) { return std::iscntrl(c) && !std::isspace(c); };
-    if (std::any_of(text.begin(), text.end(), is_binary)) throw InputError("not a text file");
-    if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark
-
-    std::vector<CLI::ConfigItem> read;
-    std::set<std::string> names;
-    std::istringstream lines(text);
-    std::string line, statement;
-    bool in_list = false;
-    int number = 0;
-    try {
-      while (++number, std::getline(lines, line)) {
-        append(line, statement, in_list);
-        if (in_list || CLI::detail::trim(statement).empty()) continue;
-        read.push_back(item(std::exchange(statement, "")));
-        const std::string& name = read.back().name;
-        if (!names.insert(name).second) throw InputError(name + " is given twice");
-      }
-      if (in_list) throw InputError("the end comes before a list is closed by ]");
-    } catch (const InputError& error) {
-      throw InputError("line " + std::to_string(number) + ": " + error.what());
-    }
-    return read;
+    std::vector<CLI::ConfigItem> items;
+    for (auto& [key, values] : read_scene({std::istreambuf_iterator<char>(input), {}}))
+      items.push_back({{}, std::move(key), std::move(values)});
+    return items;
   }
-
- private:
-  CLI::ConfigItem item(const std::string& statement) const {
-    std::istringstream input(statement);
-    const auto read = CLI::ConfigTOML::from_config(input);
-    const bool one = read.size() == 1 && std::isalpha(static_cast<unsigned char>(read[0].name[0]));
-    if (!one || content(read[0].name + CLI::detail::join(read[0].inputs, "")) != content(statement))
-      throw InputError("expected key = value or key = [a, b], without [tables]");
-    const auto& values = read[0].inputs;
-    if (values.empty() || std::find(values.begin(), values.end(), "") != values.end() ||
-        (values.size() > 1 && statement.find('[') == std::string::npos))
-      throw InputError(read[0].name + ": must have one value or a list [a, b] of values");
-    return read[0];
-  }
+  /// Never asked for.
+  std::string to_config(const CLI::App*, bool, bool, std::string) const override { return ""; }
 };
 
 const std::map<std::string, double> sizes = {{"nm", 1e-9}, {"um", 1e-6}, {"mm", 1e-3},
@@ -432,9 +367,8 @@ std::string value_ahead(const std::string& key, const Arguments& arguments) {
 }
 
 std::string value_in(const std::string& key, const std::string& config) {
-  std::istringstream text(config);
-  for (const CLI::ConfigItem& item : SceneFile().from_config(text))
-    if (item.name == key && item.inputs.size() == 1) return item.inputs.front();
+  for (const auto& [name, values] : read_scene(config))
+    if (name == key && values.size() == 1) return values.front();
   return "";
 }
 

@@ -4,16 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/numbers/log_sinh.h"
+
 namespace flatspeckle::mc {
-
-namespace {
-
-/// log sinh(a), Re a >= 0, without overflow.
-Complex log_sinh(Complex a) {
-  return a.real() < 1 ? std::log(std::sinh(a)) : a + std::log((1.0 - std::exp(-2.0 * a)) / 2.0);
-}
-
-}  // namespace
 
 double extrapolation_length(const BulkMedium& medium) {
   return (medium.dimension == 3 ? 0.7104 : 0.818) * medium.transport_mean_free_path();

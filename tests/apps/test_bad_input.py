@@ -315,7 +315,7 @@ class Keys(RefusingTest):
         for line in ("width = 3", 'scatterer = "tm"', "seed = 1", "tilts = [0]"):
             with self.subTest(line=line):
                 self.write("scene.toml", toml(scene) + line)
-                self.assert_refused(["scene.toml", "line 7", line.split()[0], "twice"],
+                self.assert_refused(["scene.toml", "line 7", line, "redefine"],
                                     "covariance", config="scene.toml")
         self.write("scene.toml", toml({**BOX, "width": [3, 4]}))
         self.assert_refused(["width"], "covariance", config="scene.toml")
@@ -329,11 +329,9 @@ class SceneFile(RefusingTest):
             self.assert_refused(words, "covariance", config="scene.toml")
 
     def test_tables(self):
-        self.refused_text("[[medium]]\nalbedo = 0.9\n", ["scene.toml, line 4", "brackets"])
-        for text in ("[medium]\nalbedo = 0.9\n", "[medium]\n",
-                     "[covariance]\nalbedo = 0.9\n", "[default]\nalbedo = 0.9\n"):
-            self.refused_text(text, ["scene.toml, line 4", "without [tables]"])
-        self.refused_text("medium.albedo = 0.9\n", ["scene.toml, line 4", "key = value"])
+        for text in ("[[medium]]\nalbedo = 0.9\n", "[medium]\nalbedo = 0.9\n", "[medium]\n",
+                     "[covariance]\nalbedo = 0.9\n", "medium.albedo = 0.9\n", "medium = {albedo = 0.9}\n"):
+            self.refused_text(text, ["scene.toml, line 4", "no [tables]"])
 
     def test_what_is_no_key(self):
         self.refused_text('help = true\n', ["help"])
@@ -342,12 +340,12 @@ class SceneFile(RefusingTest):
         self.refused_text("print-config = true\n", ["print-config"])
 
     def test_what_is_no_line_of_a_scene(self):
-        for text in ("nonsense\n", "= 3\n", "g\n", "g=\n", "g 3\n", "g = 1 2\n", "g = 1, 2\n",
+        for text in ("nonsense\n", "= 3\n", "two words = 3\n", "tilts = [0 0.5]\n", "length_unit = um\n",
+                     "index = 1.5+0.1i\n", "light_angles = 30deg\n", "g\n", "g=\n", "g 3\n", "g = 1 2\n", "g = 1, 2\n",
                      "tilts = 0,5\n", "tilts = 0 5\n", "g = 0.5 albedo = 1\n", "g == 3\n", "; g\n",
                      "resume\n", "-- = 3\n", "++ = 3\n", "--g = 3\n", ".g = 3\n",
                      'tilts = ["0"5]\n', "tilts = [0] 5\n", 'tilts = ["0"] 5\n', "tilts = 0]\n"):
             self.refused_text(text, ["scene.toml, line 4: "])
-        self.refused_text("two words = 3\n", ["two words", "unknown key"])
 
     def test_what_is_not_closed(self):
         """It must not lose its last number or take in the keys below."""
@@ -355,7 +353,6 @@ class SceneFile(RefusingTest):
                      "tilts = [0, 0.5\ntilts = [1]\n", "tilts = [, 0.5]\n", "tilts = [0, , 0.5]\n",
                      "tilts = [[0, 0.5]]\n", 'index = "1.5\n', "index = '1.5"):
             self.refused_text(text, ["scene.toml, line "])
-        self.refused_text("tilts = [0 0.5]\n", ["tilts = 0 0.5", "must be a number"])
 
     def test_text_that_could_not_be_written_back(self):
         for text in ('index = "1.5\\n"\n', "index = '1\"5'\n"):

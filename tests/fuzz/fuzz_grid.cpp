@@ -9,13 +9,15 @@
 #include "grin/render/pictures/render_job.h"
 #include "grin/trace/ray_tracing.h"
 #include "tests/fuzz/input.h"
+#include "tests/fuzz/targets.h"
 
 // Grids of the index and of the density, of any numbers, and a few rays or flights through those
 // that load.
 
+namespace flatspeckle::fuzz_grid {
+
 namespace {
 
-using namespace flatspeckle;
 using namespace flatspeckle::grin;
 using fuzz::Bytes;
 using grin::Vec3;
@@ -145,11 +147,11 @@ constexpr Use uses[] = {{"excess", "sharma", trace_grid},
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t size) {
-  static const fuzz::Folder folder;
+void use_input(const std::uint8_t* input, std::size_t size) {
   Bytes bytes(input, size);
   const auto& [dataset, what, read] = uses[bytes.below(std::size(uses))];
   write_grid(dataset, bytes);
   fuzz::taken(what, read);
-  return 0;
 }
+
+}  // namespace flatspeckle::fuzz_grid

@@ -8,14 +8,16 @@
 #include "core/result/result_reader.h"
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/result_kinds.h"
+#include "tests/fuzz/targets.h"
 
 // Whole HDF5 files that hold what they should not: a valid file in which datasets and attributes
 // are taken away or replaced by others of any type, shape and values. (Of files that are damaged
 // below, see fuzz_result_bytes.cpp.)
 
+namespace flatspeckle::fuzz_result {
+
 namespace {
 
-using namespace flatspeckle;
 using fuzz::Bytes;
 
 const char* const path = "input.h5";
@@ -159,8 +161,7 @@ std::string bytes_of(const fuzz::ResultKind& kind) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t size) {
-  static const fuzz::Folder folder;
+void use_input(const std::uint8_t* input, std::size_t size) {
   const auto& kinds = fuzz::result_kinds();
   static std::vector<std::string> valid;
   if (valid.empty()) std::ranges::transform(kinds, std::back_inserter(valid), bytes_of);
@@ -176,5 +177,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
       edit(file.get(), stored[bytes.below(static_cast<unsigned>(stored.size()))], bytes);
   }
   fuzz::taken(path, kinds[kind].read);
-  return 0;
 }
+
+}  // namespace flatspeckle::fuzz_result

@@ -2,13 +2,14 @@
 #include "core/result/guarded_read.h"
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/result_kinds.h"
+#include "tests/fuzz/targets.h"
 
 // Damaged HDF5 files and journals. The first byte says what the rest is read as. HDF5 sees no
 // damaged file of a kind that is sealed, and others in a child process first.
 
-namespace {
+namespace flatspeckle::fuzz_result_bytes {
 
-using namespace flatspeckle;
+namespace {
 
 const char* const path = "input.h5";
 
@@ -21,8 +22,7 @@ void read_journal(const std::string& file) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t size) {
-  static const fuzz::Folder folder;
+void use_input(const std::uint8_t* input, std::size_t size) {
   fuzz::Bytes bytes(input, size);
   const auto& kinds = fuzz::result_kinds();
   const unsigned kind = bytes.below(static_cast<unsigned>(kinds.size()) + 1);
@@ -31,5 +31,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* input, std::size_t siz
     fuzz::taken(path, read_journal);
   else if (!kinds[kind].is_sealed || is_sealed(path))
     fuzz::taken(path, kinds[kind].read);
-  return 0;
 }
+
+}  // namespace flatspeckle::fuzz_result_bytes

@@ -16,14 +16,16 @@
 #include "grin/render/values/render_values.h"
 #include "grin/trace/trace_scene.h"
 #include "tests/fuzz/input.h"
+#include "tests/fuzz/targets.h"
 
 // Scene files. The first line says whose, and may go on with flags of the command line:
 // "# covariance --seed 2". With --print-config each subcommand checks all that it can and stops
 // before the work.
 
+namespace flatspeckle::fuzz_scene {
+
 namespace {
 
-using namespace flatspeckle;
 using namespace flatspeckle::apps;
 
 /// What `covariance` and `validate` make of a scene.
@@ -220,12 +222,12 @@ void read_scene(const std::string& text) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  static const fuzz::Folder folder;
+void use_input(const std::uint8_t* bytes, std::size_t size) {
   static const bool files_written = (write_files(), true);
   static_cast<void>(files_written);
   const std::string text(reinterpret_cast<const char*>(bytes), size);
   fuzz::write_file("scene.toml", text);
   fuzz::taken(text, read_scene);
-  return 0;
 }
+
+}  // namespace flatspeckle::fuzz_scene

@@ -7,12 +7,14 @@
 #include "grin/media/fields/scene_field.h"
 #include "grin/rays/marching/ray_starts.h"
 #include "tests/fuzz/input.h"
+#include "tests/fuzz/targets.h"
 
 // Tables. The first line, a comment, says what they hold: "# disks".
 
+namespace flatspeckle::fuzz_table {
+
 namespace {
 
-using namespace flatspeckle;
 using namespace flatspeckle::apps;
 
 const char* const path = "table.csv";
@@ -70,10 +72,10 @@ void read_table(const std::string& word) {
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  static const fuzz::Folder folder;
+void use_input(const std::uint8_t* bytes, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(bytes), size);
   fuzz::write_file(path, text);
   fuzz::taken(fuzz::first_line(text), read_table);
-  return 0;
 }
+
+}  // namespace flatspeckle::fuzz_table

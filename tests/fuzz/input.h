@@ -8,9 +8,7 @@
 #include <string>
 #include <string_view>
 
-// What every fuzz target has: a function that takes one input and returns 0. It ends the process
-// (abort, sanitizer) where the program does anything but use the input or refuse it.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size);
+// What fuzz targets share.
 
 namespace flatspeckle::fuzz {
 

@@ -6,11 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "tests/fuzz/input.h"
+#include "tests/fuzz/libfuzzer.h"
 
-// For builds without libFuzzer: gives every file of the folders named to the target, once. Flags,
-// which are libFuzzer's, are not looked at.
+// For builds without libFuzzer: gives every file of the folders named to the target, once. libFuzzer's
+// own flags are not looked at.
 int main(int argc, char** argv) {
+  LLVMFuzzerInitialize(&argc, &argv);
   std::vector<std::filesystem::path> files;
   for (const std::string& argument : std::vector<std::string>(argv + 1, argv + argc))
     if (!argument.starts_with('-'))
