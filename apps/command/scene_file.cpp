@@ -47,6 +47,8 @@ InputError explain(const std::string& text, const toml::parse_error& error) {
   std::istringstream lines(text);
   std::string line;
   for (auto left = error.source().begin.line; left > 0; --left) std::getline(lines, line);
+  const auto is_beyond_ascii = [](unsigned char c) { return c > 0x7F; };  // maybe no UTF-8 either
+  std::replace_if(line.begin(), line.end(), is_beyond_ascii, '?');
   const std::string_view why = error.description();  // "Error while parsing value: ..."
   return error_at(error.source(), line + ": " + std::string(why.substr(why.find(": ") + 2)) +
                                       "; expected key = value, texts in quotation marks");
