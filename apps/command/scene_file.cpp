@@ -5,7 +5,6 @@
 #include <sstream>
 #include <string_view>
 #include <toml++/toml.h>
-#include <utility>
 
 #include "core/error.h"
 #include "core/keys/number_text.h"

@@ -2,14 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 #include <utility>
 
 #include "core/error.h"
 #include "grin/design/adjoint/designed_field.h"
-#include "grin/design/system/vectors.h"
 
 namespace flatspeckle::grin::design {
+
+namespace {
+
+using Numbers = std::vector<double>;
+
+double dot(const Numbers& a, const Numbers& b) {
+  return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+void add(Numbers& a, double factor, const Numbers& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] += factor * b[i];
+}
+
+}  // namespace
 
 std::optional<std::vector<double>> Objective::residuals(
     std::span<const double> coefficients) const {

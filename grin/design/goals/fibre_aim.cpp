@@ -2,7 +2,6 @@
 
 #include "grin/design/goals/even_points.h"
 #include "grin/design/goals/goal.h"
-#include "grin/design/system/vectors.h"
 
 namespace flatspeckle::grin::design {
 

@@ -1,12 +1,17 @@
 #pragma once
 
 #include <memory>
+#include <numeric>
 #include <span>
 #include <vector>
 
 #include "grin/design/system/ray_system.h"
 
 namespace flatspeckle::grin::design {
+
+inline double mean(std::span<const double> a) {
+  return std::accumulate(a.begin(), a.end(), 0.0) / static_cast<double>(a.size());
+}
 
 /// What is asked of the readings of all rays: residuals whose squares are to be as small as can be,
 /// and their derivative by the readings where they were looked at last.

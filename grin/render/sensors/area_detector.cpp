@@ -152,4 +152,22 @@ AreaDetector make_sensor(const OneSensor& of, const AreaValues& values, const Pi
           of.number(values.acceptance)};
 }
 
+/// Of a tangent plane, or the sphere's in front of it.
+NearestPlace nearest_place(const AreaDetector& detector, const Surface& boundary) {
+  const Vec3 normal = grin::normal(boundary, detector.centre);
+  const Vec3 right = normal.cross(detector.up).normalized(), up = right.cross(normal);
+  const auto* sphere = std::get_if<Sphere>(&boundary);
+  return [=, centre = detector.centre, half_width = detector.width / 2,
+          half_height = detector.height / 2,
+          radius = sphere ? sphere->radius : 0](const Vec3& x) -> Vec3 {
+    const Vec3 away = x - centre;
+    const double u = std::clamp(away.dot(right), -half_width, half_width);
+    const double v = std::clamp(away.dot(up), -half_height, half_height);
+    const Vec3 flat = centre + u * right + v * up;
+    if (radius == 0) return flat;
+    const double height = std::max(0.0, radius * radius - u * u - v * v);
+    return flat - (radius - std::sqrt(height)) * normal;
+  };
+}
+
 }  // namespace flatspeckle::grin

@@ -27,6 +27,7 @@ inline const DatasetTable& table_of(const AreaDetector&) {
   return area_table;
 }
 PixelRectangle picture_of(const AreaDetector& detector);
+NearestPlace nearest_place(const AreaDetector& detector, const Surface& boundary);
 
 /// With u, v on the rectangle, W = (du dv / dA) / pixel area; du dv / dA is the cosine between the
 /// normals at the point and at the centre, 1 on a box.

@@ -25,6 +25,9 @@ inline const DatasetTable& table_of(const Camera&) {
   return camera_table;
 }
 PixelRectangle picture_of(const Camera& camera);
+inline NearestPlace nearest_place(const Camera& camera, const Surface&) {
+  return [x = camera.x](const Vec3&) { return x; };
+}
 
 /// The film is the plane of focus, seen from the camera's centre: u and v are tangents. A ray from
 /// x on the lens along d meets the plane at x + t d, t = F' / cos(theta), F' = F - (x - centre).

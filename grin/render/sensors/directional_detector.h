@@ -23,6 +23,9 @@ inline const DatasetTable& table_of(const DirectionalDetector&) {
   return directional_table;
 }
 PixelRectangle picture_of(const DirectionalDetector& detector);
+inline NearestPlace nearest_place(const DirectionalDetector& detector, const Surface& boundary) {
+  return in_front(detector.forward, boundary);
+}
 
 /// With u, v the components of the outward direction, du dv = cos(theta) dw, theta from forward:
 /// W = cos(theta) / pixel area. Pixels beyond the horizon, in the corners, stay dark.

@@ -23,6 +23,9 @@ inline const DatasetTable& table_of(const PolarDetector&) {
   return polar_table;
 }
 PixelRings picture_of(const PolarDetector& detector);
+inline NearestPlace nearest_place(const PolarDetector& detector, const Surface& boundary) {
+  return in_front(detector.axis, boundary);
+}
 
 /// W = 1 / ring's solid angle.
 class PolarDetectorEnd : public WholeBoundary {

@@ -30,6 +30,7 @@ inline const DatasetTable& table_of(const RadialDetector&) {
   return radial_table;
 }
 PixelRings picture_of(const RadialDetector& detector);
+NearestPlace nearest_place(const RadialDetector& detector, const Surface& boundary);
 
 /// W = 1 / ring's area.
 class RadialDetectorEnd {

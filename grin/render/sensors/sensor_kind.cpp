@@ -1,6 +1,37 @@
 #include "grin/render/sensors/sensor_kind.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 namespace flatspeckle::grin {
+
+namespace {
+
+/// On the faces that light of this direction leaves through.
+Vec3 nearest_on(const Box& box, const Vec3& forward, const Vec3& x) {
+  double least = std::numeric_limits<double>::infinity();
+  int nearest = 0;
+  const auto face = [&](int axis) { return forward[axis] > 0 ? box.high[axis] : box.low[axis]; };
+  for (int axis = 0; axis < 3; ++axis) {
+    const double way = std::abs(face(axis) - x[axis]);
+    if (forward[axis] == 0 || way >= least) continue;
+    least = way;
+    nearest = axis;
+  }
+  Vec3 found = x;
+  found[nearest] = face(nearest);
+  return found;
+}
+/// On the half that light of this direction leaves through.
+Vec3 nearest_on(const Sphere& sphere, const Vec3& forward, const Vec3& x) {
+  Vec3 away = x - sphere.centre;
+  away -= std::min(0.0, away.dot(forward)) * forward;
+  const double length = away.norm();
+  return sphere.centre + (length > 0 ? sphere.radius / length * away : sphere.radius * forward);
+}
+
+}  // namespace
 
 DatasetTable sensor_table(const SensorWords& words) {
   std::string axes;
@@ -30,6 +61,14 @@ DatasetTable sensor_table(const SensorWords& words) {
   add("mean_gradient", "parameter", "", "derivative of mean");
   if (has_total) add("total_gradient", "parameter", "", "derivative of total");
   return table;
+}
+
+NearestPlace in_front(const Vec3& forward, const Surface& boundary) {
+  if (const auto* box = std::get_if<Box>(&boundary))
+    return [box = *box, forward](const Vec3& x) { return nearest_on(box, forward, x); };
+  return [sphere = std::get<Sphere>(boundary), forward](const Vec3& x) {
+    return nearest_on(sphere, forward, x);
+  };
 }
 
 }  // namespace flatspeckle::grin

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -57,12 +58,12 @@ struct SensorWords {
 /// optical path and the mean of its square; derivatives by parameters of the medium.
 DatasetTable sensor_table(const SensorWords& words);
 
-// A kind of sensor is a file with: the sensor; table_of(sensor), what its result file has, and its
-// picture_of(sensor), its pixels; its End, an end of paths made
-// of (sensor, stage), which throws InputError naming the key where it does not fit the stage; its
-// values, with the word of the key `sensor` for it; add_keys(keys, values) and
-// make_sensor(of, values, picture), without the picture where its pixels are rings; `of` reads what
-// the values have for it. It is listed in sensor.h.
+// A kind of sensor is a file with: the sensor; table_of(sensor), what its result file has,
+// picture_of(sensor), its pixels, and nearest_place(sensor, boundary); its End, an end of paths
+// made of (sensor, stage), which throws InputError naming the key where it does not fit the stage;
+// its values, with the word of the key `sensor` for it; add_keys(keys, values) and make_sensor(of,
+// values, picture), without the picture where its pixels are rings; `of` reads what the values have
+// for it. It is listed in sensor.h.
 //
 // The end tells pixels(), has sample_position(stratum, random), sample_direction(at, stratum,
 // random) and towards(at, direction), and position_at(x) of a point on the boundary, if it can be
@@ -84,6 +85,11 @@ struct SensorPixels {
     return shares.empty() ? 1.0 / grid.count() : shares[pixel];
   }
 };
+
+/// Where straight light from a point in the stage gets to a sensor soonest.
+using NearestPlace = std::function<Vec3(const Vec3&)>;
+/// On the half of the boundary that light of this direction leaves through.
+NearestPlace in_front(const Vec3& forward, const Surface& boundary);
 
 /// All of the boundary, evenly, as the places of an end.
 class WholeBoundary {

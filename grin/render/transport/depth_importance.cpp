@@ -2,81 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
-#include "grin/media/geometry/frame.h"
 #include "grin/media/scattering/diffusion_rate.h"
 
 namespace flatspeckle::grin {
 
 namespace {
-
-NearestPlace nearest_place(const Camera& camera, const Surface&) {
-  return [x = camera.x](const Vec3&) { return x; };
-}
-
-/// Of a tangent plane, or the sphere's in front of it.
-NearestPlace nearest_place(const AreaDetector& detector, const Surface& boundary) {
-  const Vec3 normal = grin::normal(boundary, detector.centre);
-  const Vec3 right = normal.cross(detector.up).normalized(), up = right.cross(normal);
-  const auto* sphere = std::get_if<Sphere>(&boundary);
-  return [=, centre = detector.centre, half_width = detector.width / 2,
-          half_height = detector.height / 2,
-          radius = sphere ? sphere->radius : 0](const Vec3& x) -> Vec3 {
-    const Vec3 away = x - centre;
-    const double u = std::clamp(away.dot(right), -half_width, half_width);
-    const double v = std::clamp(away.dot(up), -half_height, half_height);
-    const Vec3 flat = centre + u * right + v * up;
-    if (radius == 0) return flat;
-    const double height = std::max(0.0, radius * radius - u * u - v * v);
-    return flat - (radius - std::sqrt(height)) * normal;
-  };
-}
-
-/// As of the square around it.
-NearestPlace nearest_place(const RadialDetector& detector, const Surface& boundary) {
-  const Vec3 normal = grin::normal(boundary, detector.centre);
-  const double side = 2 * detector.radius;
-  return nearest_place(
-      AreaDetector{detector.centre, frame_across(normal).col(0), side, side, {}, 0}, boundary);
-}
-
-/// On the faces that light of this direction leaves through.
-Vec3 nearest_on(const Box& box, const Vec3& forward, const Vec3& x) {
-  double least = std::numeric_limits<double>::infinity();
-  int nearest = 0;
-  const auto face = [&](int axis) { return forward[axis] > 0 ? box.high[axis] : box.low[axis]; };
-  for (int axis = 0; axis < 3; ++axis) {
-    const double way = std::abs(face(axis) - x[axis]);
-    if (forward[axis] == 0 || way >= least) continue;
-    least = way;
-    nearest = axis;
-  }
-  Vec3 found = x;
-  found[nearest] = face(nearest);
-  return found;
-}
-/// On the half that light of this direction leaves through.
-Vec3 nearest_on(const Sphere& sphere, const Vec3& forward, const Vec3& x) {
-  Vec3 away = x - sphere.centre;
-  away -= std::min(0.0, away.dot(forward)) * forward;
-  const double length = away.norm();
-  return sphere.centre + (length > 0 ? sphere.radius / length * away : sphere.radius * forward);
-}
-NearestPlace in_front(const Vec3& forward, const Surface& boundary) {
-  if (const auto* box = std::get_if<Box>(&boundary))
-    return [box = *box, forward](const Vec3& x) { return nearest_on(box, forward, x); };
-  return [sphere = std::get<Sphere>(boundary), forward](const Vec3& x) {
-    return nearest_on(sphere, forward, x);
-  };
-}
-NearestPlace nearest_place(const DirectionalDetector& detector, const Surface& boundary) {
-  return in_front(detector.forward, boundary);
-}
-NearestPlace nearest_place(const PolarDetector& detector, const Surface& boundary) {
-  return in_front(detector.axis, boundary);
-}
 
 using std::numbers::pi;
 

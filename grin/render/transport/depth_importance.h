@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -11,9 +10,6 @@
 #include "grin/render/stage/straight_stage.h"
 
 namespace flatspeckle::grin {
-
-/// Where light from a point in the stage gets to a sensor soonest, if straight.
-using NearestPlace = std::function<Vec3(const Vec3&)>;
 
 /// What light at a place is worth to the sensors, where little of it comes to them: it grows along
 /// the straight way to a sensor as diffuse light dies out, exp(kappa s), from where only a small
