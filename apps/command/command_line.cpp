@@ -33,10 +33,10 @@ namespace {
 class SceneFile : public CLI::Config {
  public:
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
-    std::vector<CLI::ConfigItem> items;
+    std::vector<CLI::ConfigItem> found;
     for (auto& [key, values] : read_scene({std::istreambuf_iterator<char>(input), {}}))
-      items.push_back({{}, std::move(key), std::move(values)});
-    return items;
+      found.push_back({{}, std::move(key), std::move(values)});
+    return found;
   }
   /// Never asked for.
   std::string to_config(const CLI::App*, bool, bool, std::string) const override { return ""; }
