@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "core/keys/number_text.h"
+#include "grin/media/geometry/frame.h"
+#include "grin/render/sensors/area_detector.h"
 #include "grin/render/sensors/sensor_kind.h"
 
 namespace flatspeckle::grin {
