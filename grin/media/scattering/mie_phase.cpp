@@ -150,14 +150,14 @@ void MieSphere::sum() {
 
 MieSphere::Amplitudes MieSphere::amplitudes(double cosine) const {
   Amplitudes found{};
-  double before = 0, pi = 1;  // of P_n^1 / sin: n - 1, n
+  double before = 0, pi_n = 1;  // of P_n^1 / sin: n - 1, n
   for (std::size_t i = 0; i < coefficients_.size(); ++i) {
     const auto& [a, b] = coefficients_[i];
-    const double n = static_cast<double>(i + 1), tau = n * cosine * pi - (n + 1) * before,
+    const double n = static_cast<double>(i + 1), tau = n * cosine * pi_n - (n + 1) * before,
                  share = (2 * n + 1) / (n * (n + 1));
-    found.s1 += share * (a * pi + b * tau);
-    found.s2 += share * (a * tau + b * pi);
-    before = std::exchange(pi, ((2 * n + 1) * cosine * pi - (n + 1) * before) / n);
+    found.s1 += share * (a * pi_n + b * tau);
+    found.s2 += share * (a * tau + b * pi_n);
+    before = std::exchange(pi_n, ((2 * n + 1) * cosine * pi_n - (n + 1) * before) / n);
   }
   return found;
 }
