@@ -164,8 +164,8 @@ void WaveEquations::point_columns(Complex* matrix) const {
     hankel0(std::span(distance).subspan(1), {column + 1, distance.size() - 1});
     for (std::size_t i = 1; i < distance.size(); ++i) column[i] *= strength[j] * strength[j + i];
   };
-  parallel_for((size + tile - 1) / tile, size > worth_threads, [&](std::size_t part) {
-    const std::size_t begin = part * tile, end = std::min(begin + tile, size);
+  parallel_for((size + tile_side - 1) / tile_side, size > worth_threads, [&](std::size_t part) {
+    const std::size_t begin = part * tile_side, end = std::min(begin + tile_side, size);
     for (std::size_t j = begin; j < end; ++j) fill(j);
     mirror_columns(matrix, size, begin, end);
   });

@@ -144,15 +144,15 @@ class RaySystemOf : public RaySystem {
     return rows;
   }
 
-  /// Of shares of the rays in turn, then of the shares: the same for any number of threads.
+  /// Of parts of the rays in turn, then of the parts: the same for any number of threads.
   template <class F>
   std::vector<double> gradient_in(const F& field, std::span<const double> weights) const {
-    constexpr std::size_t shares = 16;
+    constexpr std::size_t parts = 16;
     const CoefficientShape shape = shape_of(field);
-    std::vector<std::vector<double>> of_share(shares);
-    parallel_for(shares, [&](std::size_t s) {
+    std::vector<std::vector<double>> of_share(parts);
+    parallel_for(parts, [&](std::size_t s) {
       CoefficientSums<1> sums(shape);
-      for (std::size_t i = s * rays() / shares; i < (s + 1) * rays() / shares; ++i) {
+      for (std::size_t i = s * rays() / parts; i < (s + 1) * rays() / parts; ++i) {
         stop_if_interrupted();
         pull_back<Pefrl>(field, rays_[i], walk_, ends_[i], weighted(i, &weights[K * i]), sums);
       }
