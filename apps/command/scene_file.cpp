@@ -17,7 +17,7 @@ InputError error_at(const toml::source_region& source, const std::string& what) 
   return InputError("line " + std::to_string(source.begin.line) + ": " + what);
 }
 
-/// Of a value that is no list.
+/// Writes a value that is no list.
 std::string text_of(const std::string& key, const toml::node& value) {
   if (const auto* text = value.as_string()) return text->get();
   if (const auto* whole = value.as_integer()) return std::to_string(whole->get());

@@ -10,7 +10,7 @@ inline double log_sinh(double a) {
   return a + std::log(-std::expm1(-2 * a) / 2);
 }
 
-/// The same of a complex a, Re a >= 0.
+/// log sinh(a) of a complex a, Re a >= 0, without overflow.
 inline Complex log_sinh(Complex a) {
   return a.real() < 1 ? std::log(std::sinh(a)) : a + std::log((1.0 - std::exp(-2.0 * a)) / 2.0);
 }

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-// What fuzz targets share.
+// Fuzz targets share these.
 
 namespace flatspeckle::fuzz {
 

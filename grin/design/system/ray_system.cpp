@@ -144,7 +144,8 @@ class RaySystemOf : public RaySystem {
     return rows;
   }
 
-  /// Of parts of the rays in turn, then of the parts: the same for any number of threads.
+  /// Adds up parts of the rays, then the parts in turn: the sum is the same for any number of
+  /// threads.
   template <class F>
   std::vector<double> gradient_in(const F& field, std::span<const double> weights) const {
     constexpr std::size_t parts = 16;

@@ -152,7 +152,7 @@ AreaDetector make_sensor(const OneSensor& of, const AreaValues& values, const Pi
           of.number(values.acceptance)};
 }
 
-/// Of a tangent plane, or the sphere's in front of it.
+/// Returns a place of the tangent plane, or of the sphere in front of it.
 NearestPlace nearest_place(const AreaDetector& detector, const Surface& boundary) {
   const Vec3 normal = grin::normal(boundary, detector.centre);
   const Vec3 right = normal.cross(detector.up).normalized(), up = right.cross(normal);

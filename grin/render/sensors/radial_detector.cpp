@@ -98,7 +98,7 @@ RadialDetector make_sensor(const OneSensor& of, const RadialValues& values) {
           static_cast<int>(of.part(values.rings, 1)[0]), of.number(values.acceptance)};
 }
 
-/// As of the square around it.
+/// Takes the square around the disk for it.
 NearestPlace nearest_place(const RadialDetector& detector, const Surface& boundary) {
   const Vec3 normal = grin::normal(boundary, detector.centre);
   const double side = 2 * detector.radius;
