@@ -144,8 +144,7 @@ class RaySystemOf : public RaySystem {
     return rows;
   }
 
-  /// Adds up parts of the rays, then the parts in turn: the sum is the same for any number of
-  /// threads.
+  /// Adds up parts of the rays, then these in turn: the same sum for any number of threads.
   template <class F>
   std::vector<double> gradient_in(const F& field, std::span<const double> weights) const {
     constexpr std::size_t parts = 16;
