@@ -330,7 +330,8 @@ class SceneFile(RefusingTest):
 
     def test_tables(self):
         for text in ("[[medium]]\nalbedo = 0.9\n", "[medium]\nalbedo = 0.9\n", "[medium]\n",
-                     "[covariance]\nalbedo = 0.9\n", "medium.albedo = 0.9\n", "medium = {albedo = 0.9}\n"):
+                     "[covariance]\nalbedo = 0.9\n", "[default]\nalbedo = 0.9\n",
+                     "medium.albedo = 0.9\n", "medium = {albedo = 0.9}\n"):
             self.refused_text(text, ["scene.toml, line 4", "no [tables]"])
 
     def test_what_is_no_key(self):

@@ -12,29 +12,27 @@ namespace {
 using namespace flatspeckle;
 
 struct NamedTarget {
-  std::string_view name;
+  const char* flag;
   fuzz::Target* use;
 };
-constexpr NamedTarget targets[] = {{"scene", fuzz_scene::use_input},
-                                   {"table", fuzz_table::use_input},
-                                   {"result", fuzz_result::use_input},
-                                   {"result_bytes", fuzz_result_bytes::use_input},
-                                   {"grid", fuzz_grid::use_input}};
+constexpr NamedTarget targets[] = {{"--target=scene", fuzz_scene::use_input},
+                                   {"--target=table", fuzz_table::use_input},
+                                   {"--target=result", fuzz_result::use_input},
+                                   {"--target=result_bytes", fuzz_result_bytes::use_input},
+                                   {"--target=grid", fuzz_grid::use_input}};
 
 fuzz::Target* chosen = nullptr;
 
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
-  constexpr std::string_view flag = "--target=";
   for (int i = 1; i < *argc; ++i)
-    for (const NamedTarget& target : targets) {
-      const std::string_view argument = (*argv)[i];
-      if (argument.starts_with(flag) && argument.substr(flag.size()) == target.name)
-        chosen = target.use;
-    }
+    for (const NamedTarget& target : targets)
+      if (std::string_view((*argv)[i]) == target.flag) chosen = target.use;
   if (!chosen) {
-    std::fputs("fuzz: needs --target=scene, table, result, result_bytes or grid\n", stderr);
+    std::fputs("fuzz: needs one of", stderr);
+    for (const NamedTarget& target : targets) std::fprintf(stderr, " %s", target.flag);
+    std::fputs("\n", stderr);
     std::exit(2);
   }
   static const fuzz::Folder folder;

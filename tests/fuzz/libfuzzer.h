@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// What libFuzzer calls.
+// libFuzzer calls these.
 
 /// Reads --target=NAME, which libFuzzer itself, as all flags of two dashes, does not look at.
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv);
