@@ -104,20 +104,20 @@ std::optional<double> metres_of(const std::string& text) {
   return found->number * found->unit;
 }
 
-/// What is given of a key with "532nm" as numbers of the scene's unit of length, which has so many
-/// metres; likewise "10/mm" and "0.05/um^2" of keys whose unit is the inverse of a length or of its
-/// square. Other texts as they are. Throws InputError where the unit of length is not given.
+/// What is given of a key with "532nm", "10/mm" or "0.05/um^2" as numbers of the scene's unit of
+/// length, which has so many metres; other texts as they are. Throws InputError where it has none.
 std::string in_unit_of_length(const Key& key, const std::string& text,
                               const std::optional<double>& metres) {
   std::string numbers;
   std::size_t done = 0;
-  for (; const auto found = next_length(text, done); done = found->end) {
+  while (const auto found = next_length(text, done)) {
     if (!may_have(key, found->power)) return text;
     if (!metres)
       throw InputError(key.name(), text,
                        "has a unit; say too what lengths without one are in: length_unit = um");
     numbers += text.substr(done, found->begin - done) +
                to_15_digits(found->number * std::pow(found->unit / *metres, found->power));
+    done = found->end;
   }
   return numbers + text.substr(done);
 }
