@@ -11,7 +11,7 @@ set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 
 without_warnings() {  # PRESET
-  cmake --preset "$1" -DCMAKE_CXX_FLAGS=-Werror
+  cmake --preset "$1" -DCMAKE_CXX_FLAGS=-Werror -DFLATSPECKLE_BENCH=ON
   cmake --build --preset "$1" --parallel "$jobs"
 }
 
@@ -51,7 +51,7 @@ nightly() {
 
 install_build_packages
 install_test_packages
-install_missing clang clang-tidy libomp-dev
+install_missing clang clang-tidy libomp-dev libbenchmark-dev
 [[ $# -gt 0 ]] || set -- gcc clang asan tsan tidy fuzz nightly
 for part in "$@"; do
   printf '\n== %s\n' "$part"
