@@ -104,8 +104,8 @@ std::optional<double> metres_of(const std::string& text) {
   return found->number * found->unit;
 }
 
-/// What is given of a key with "532nm", "10/mm" or "0.05/um^2" as numbers of the scene's unit of
-/// length, which has so many metres; other texts as they are. Throws InputError where it has none.
+/// Writes "532nm", "10/mm" or "0.05/um^2" of a key in the scene's unit of length, which has so many
+/// metres, and leaves other texts as they are. Throws InputError where the scene has no such unit.
 std::string in_unit_of_length(const Key& key, const std::string& text,
                               const std::optional<double>& metres) {
   std::string numbers;
