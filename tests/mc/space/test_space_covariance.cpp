@@ -19,7 +19,7 @@ using tests::SpaceRequest;
 using tests::SpaceSlab;
 using tests::spherical;
 
-constexpr double depth = 2000;
+constexpr double usual_depth = 2000;
 
 /// Light and view along the normal: the intensity, then C_I at tilts of q L.
 std::vector<double> memory_effect(const SpaceSlab& slab, const std::vector<double>& turns,
@@ -66,7 +66,7 @@ Tilted tilted(const SpaceSlab& slab, const Vector3d& view, double q1, double q2)
 
 TEST_CASE("slabs in space: known intensities, correlations and ranges") {
   const auto check = [](double g, const std::array<double, 4>& known, double range) {
-    const auto found = memory_effect(hg_space(depth, 10, g, 1), {1.2, 1.4, 1.6, range}, 1e-5);
+    const auto found = memory_effect(hg_space(usual_depth, 10, g, 1), {1.2, 1.4, 1.6, range}, 1e-5);
     CHECK(std::abs(found[0] / known[0] - 1) < 5e-5);
     for (std::size_t i = 1; i < 4; ++i) CHECK(std::abs(found[i] - known[i]) < 0.6e-4);
     CHECK(std::abs(found[4] - 0.5) < 1e-4);  // 2e-4 of the range
@@ -95,7 +95,7 @@ TEST_CASE("slabs in space: the difference is more than the error") {
 }
 
 TEST_CASE("slabs in space: nine digits") {
-  const auto slab = hg_space(depth, 10, 0.5, 1);
+  const auto slab = hg_space(usual_depth, 10, 0.5, 1);
   const auto rough = memory_effect(slab, {1.4}, 1e-6), exact = memory_effect(slab, {1.4}, 1e-9);
   for (std::size_t i = 0; i < 2; ++i) CHECK(std::abs(rough[i] / exact[i] - 1) < 1e-9);
 }
