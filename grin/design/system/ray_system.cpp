@@ -149,20 +149,20 @@ class RaySystemOf : public RaySystem {
   std::vector<double> gradient_in(const F& field, std::span<const double> weights) const {
     constexpr std::size_t parts = 16;
     const CoefficientShape shape = shape_of(field);
-    std::vector<std::vector<double>> of_share(parts);
-    parallel_for(parts, [&](std::size_t s) {
+    std::vector<std::vector<double>> of_part(parts);
+    parallel_for(parts, [&](std::size_t p) {
       CoefficientSums<1> sums(shape);
-      for (std::size_t i = s * rays() / parts; i < (s + 1) * rays() / parts; ++i) {
+      for (std::size_t i = p * rays() / parts; i < (p + 1) * rays() / parts; ++i) {
         stop_if_interrupted();
         pull_back<Pefrl>(field, rays_[i], walk_, ends_[i], weighted(i, &weights[K * i]), sums);
       }
-      of_share[s].assign(shape.size(), 0.0);
+      of_part[p].assign(shape.size(), 0.0);
       sums.take(
-          [&](std::size_t number, const std::array<double, 1>& d) { of_share[s][number] = d[0]; });
+          [&](std::size_t number, const std::array<double, 1>& d) { of_part[p][number] = d[0]; });
     });
     std::vector<double> gradient(shape.size(), 0.0);
-    for (const auto& share : of_share)
-      for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] += share[i];
+    for (const auto& part : of_part)
+      for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] += part[i];
     return gradient;
   }
   /// Derivatives by the end of a ray of the weighted sum of its readings.
