@@ -4,6 +4,7 @@
 #include "apps/results/extras.h"
 #include "apps/results/moments_table.h"
 #include "apps/results/tilt_search.h"
+#include "apps/results/view_power.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/paths/estimators/reflection_theory.h"
@@ -107,6 +108,7 @@ class CovarianceExperiment : public Experiment {
     mc::write_reflection_theory(file, *scene_);
     if (estimation_.write) estimation_.write(file, sums);
     if (method_ == "transport") mc::write_numerical(file);
+    check_power(file, "", *scene_, {method_, sums.total_samples(), methods_.tolerance, seed()});
   }
 
   SceneSpec spec_;

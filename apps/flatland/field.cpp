@@ -5,6 +5,7 @@
 
 #include "apps/command/experiment.h"
 #include "apps/results/estimation.h"
+#include "apps/results/view_power.h"
 #include "core/error.h"
 #include "core/numbers/address_space.h"
 #include "core/numbers/blas.h"
@@ -160,6 +161,10 @@ class FieldExperiment : public OneShot {
     if (!drawn) return std::nullopt;
     write_medium(file, *scene_);
     const auto summary = mc::write_fields(file, *scene_, values_.spec.tilts, *drawn);
+    const double paths = drawn->plan.method == mc::FieldMethod::covariance
+                             ? static_cast<double>(drawn->plan.covariance_paths)
+                             : static_cast<double>(drawn->plan.paths_per_field * demand_.fields);
+    check_power(file, "", *scene_, {"mc", paths, 0, seed()});
     if (tells) print_summary(*drawn, summary);
     return Made{"mc: " + mc::make_plan(*scene_, settings_.reversed).describe() + "; " +
                     drawn->plan.describe(),

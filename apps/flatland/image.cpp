@@ -8,6 +8,7 @@
 
 #include "apps/command/experiment.h"
 #include "apps/results/estimation.h"
+#include "apps/results/view_power.h"
 #include "core/error.h"
 #include "core/numbers/address_space.h"
 #include "core/run/interrupt.h"
@@ -455,6 +456,8 @@ class ImageExperiment : public OneShot {
     if (!media) return std::nullopt;
     write_medium(file, line_->scene);
     mc::write_imaging(file, *line_, task, *media, *prediction);
+    check_power(file, "", line_->scene,
+                {"mc", static_cast<double>(values_.prediction_paths), 0, task_.seed});
     if (tells) print_summary(*line_, task, *media, *prediction);
     return Made{fields->how, static_cast<double>(task_.repeats * task_.average)};
   }

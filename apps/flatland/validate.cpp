@@ -14,6 +14,7 @@
 #include "apps/results/extras.h"
 #include "apps/results/moments_table.h"
 #include "apps/results/tilt_search.h"
+#include "apps/results/view_power.h"
 #include "core/error.h"
 #include "core/numbers/statistics.h"
 #include "core/result/result_group.h"
@@ -369,6 +370,8 @@ int compare_methods(const Subcommand& command, ValidateKeys& values) {
         print_ranges(name, mc::write_moments(file, name, reference.job.field, scene, reference_sums,
                                              reference_moments));
         if (name == "transport") mc::write_numerical(file, name);
+        check_power(file, "mc", scene, {"mc", mc_sums.total_samples(), 0, session.seed()});
+        check_power(file, name, scene, {name, 0, methods.tolerance, session.seed()});
         mc::write_reflection_theory(file, scene);
         write_comparison(file, comparison);
         if (shifts.empty()) return;

@@ -6,6 +6,7 @@
 
 #include "apps/command/experiment.h"
 #include "core/keys/number_text.h"
+#include "core/result/result_group.h"
 #include "core/session/session.h"
 #include "grin/render/pictures/map_datasets.h"
 #include "grin/render/pictures/render_datasets.h"
@@ -213,6 +214,7 @@ class RenderExperiment : public Experiment {
     if (const auto energy = energy_result(job, sums)) {
       if (tells) print_energy(*energy);
       write_energy(file, *scene_, request_, *energy);
+      ResultGroup(file, grin::energy_table).check("invariants/power", power_balance(job, sums));
     }
     if (scene_->map) write_map(file, *scene_, job, sums);
   }

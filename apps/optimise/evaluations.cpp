@@ -82,6 +82,7 @@ double value_at(const SearchAxis& axis, double share) {
 
 bool is_plain(const CollectedDataset& set) {
   return !set.is_scale && !set.name.ends_with("_error") && !set.name.ends_with("_rare") &&
+         !set.name.starts_with("invariants/") &&
          std::holds_alternative<std::vector<double>>(set.values);
 }
 

@@ -425,19 +425,21 @@ int Optimisation::write(const Session& session, const Evaluations& evaluations,
     made.cpu_s += one.cpu_s;
     made.samples += one.samples;
   }
-  made.converged = optimum.finished && optimum.winner.reached;
+  const CollectedResult best = evaluations.result(optimum.best, optimum.winner.best.samples);
+  made.converged = optimum.finished && optimum.winner.reached && best.keeps_invariants();
   made.plan = std::to_string(evaluations.all().size()) + " evaluations";
   ResultFile file(values_.run.out);
   const ResultGroup root(file, optimum_table);
   root.attribute("of", family_.of());
   root.attribute("objective", objective_->text());
   root.attribute("complete", optimum.finished);
-  put(file, evaluations.result(optimum.best, optimum.winner.best.samples));
+  put(file, best);
   write_optimum(file, optimum, evaluations, settings_, scene_keys_);
   Session::commit(file, made);
   if (made.converged) return ExitStatus::done;
-  std::cout << (optimum.finished ? "the target error was not reached\n"
-                                 : "the time was up; --resume goes on\n");
+  std::cout << (!optimum.finished          ? "the time was up; --resume goes on\n"
+                : !best.keeps_invariants() ? "the best point's result fails its invariants\n"
+                                           : "the target error was not reached\n");
   return ExitStatus::error_not_reached;
 }
 

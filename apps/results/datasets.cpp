@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "apps/command/subcommands.h"
+#include "apps/results/view_power.h"
 
 // The tables are declared here without the code beside which they stand: what is listed below must
 // not wait for all of it to be compiled.
@@ -56,14 +57,18 @@ std::string axes_of(const DatasetRow& row) {
   return row.axes.empty() ? "scalar" : code(row.axes);
 }
 
+/// Marks what has standard errors, or limits, beside it.
+const char* mark(Data data) {
+  return has_error(data) ? " ±" : data == Data::invariant ? " ≤" : "";
+}
+
 void print(const DatasetTable& table) {
   std::cout << "<!-- datasets: " << table.name << " -->\n";
   if (!table.rows.empty())
     std::cout << "| dataset | type | axes | units | long name |\n|---|---|---|---|---|\n";
   for (const DatasetRow& row : table.rows)
-    std::cout << "| " << code(row.path) << (has_error(row.data) ? " ±" : "") << " | "
-              << type_name(row.data) << " | " << axes_of(row) << " | " << code(row.unit) << " | "
-              << cell(row.long_name) << " |\n";
+    std::cout << "| " << code(row.path) << mark(row.data) << " | " << type_name(row.data) << " | "
+              << axes_of(row) << " | " << code(row.unit) << " | " << cell(row.long_name) << " |\n";
   if (!table.rows.empty() && !table.attributes.empty()) std::cout << '\n';
   if (!table.attributes.empty())
     std::cout << "| attribute | of | type | meaning |\n|---|---|---|---|\n";
@@ -106,6 +111,7 @@ std::vector<const DatasetTable*> all_tables() {
                                              &mc::contrast_table,
                                              &mc::frequency_table,
                                              &mc::numerical_table,
+                                             &power_table,
                                              &validate_table,
                                              &own_places_table,
                                              &wave::solution_table,

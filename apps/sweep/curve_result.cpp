@@ -55,6 +55,9 @@ const DatasetTable sweep_table{
               "step, an upper bound"},
              {"range_steps", Data::count, "GRID", "1",
               "tilts between 0 and the range: fewer than 4 are too few to trust its error"},
+             {"invariants/power", Data::invariant, "GRID", "1",
+              "difference between the power scattered into all directions and what neither passes "
+              "nor is absorbed, relative"},
              {"relative_error", Data::real, "GRID", "1",
               "RMS standard error of the covariances relative to their RMS magnitude"},
              {"samples", Data::real, "GRID", "1", "samples"},
@@ -81,6 +84,7 @@ struct PointResult {
   double range = 0, range_error = 0;                   ///< q L at C_I = 1/2
   std::uint64_t range_rare = 0;                        ///< see Estimate
   std::uint64_t range_censored = 0;                    ///< mc::Range::Censoring
+  Invariant power;                                     ///< 0 where it does not apply
   Trace trace;                                         ///< where it has an error
   double relative_error = 0, samples = 0, cpu_s = 0, wall_s = 0;
 };
@@ -269,6 +273,7 @@ class SweepWriter {
     out.put("range_censored", column(points, &PointResult::range_censored));
     out.put("range_steps", column(points, steps));
     write_angles(out, points);
+    write_power(out, points);
     out.put("relative_error", column(points, &PointResult::relative_error));
     out.put("samples", column(points, &PointResult::samples));
     out.put("cpu_s", column(points, &PointResult::cpu_s));
@@ -277,6 +282,13 @@ class SweepWriter {
       out.attribute("target_error", *target);
     if (sweep_.method_words[method] == "transport") mc::write_numerical(file_, group);
     write_traces(out, points, group);
+  }
+
+  static void write_power(const ResultGroup& out, const Points& points) {
+    std::vector<Invariant> power;
+    for (const PointResult& point : points) power.push_back(point.power);
+    const auto is_checked = [](const Invariant& each) { return each.limit > 0; };
+    if (std::ranges::any_of(power, is_checked)) out.check("invariants/power", power);
   }
 
   /// The ranges as rotations of the light, to the side on which they were read off.
@@ -408,6 +420,7 @@ PointResult curve_of(const FinishedPoint& finished) {
                     .range_error = range.at(1),
                     .range_rare = marks.at(0),
                     .range_censored = marks.at(1),
+                    .power = {},
                     .trace = {},
                     .relative_error = finished.relative_error,
                     .samples = finished.samples,
@@ -416,6 +429,8 @@ PointResult curve_of(const FinishedPoint& finished) {
   point.correlation_rare.resize(point.correlation.size());  // none where nothing is marked
   for (const auto& [name, values] : trace_columns)
     point.trace.*values = numbers(std::string("trace/") + name);
+  if (finished.result.find("invariants/power") != nullptr)
+    point.power = {numbers("invariants/power").front(), numbers("invariants/power_limit").front()};
   return point;
 }
 

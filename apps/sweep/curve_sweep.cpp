@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "apps/results/tilt_search.h"
+#include "apps/results/view_power.h"
 #include "apps/sweep/point_store.h"
 #include "core/error.h"
 #include "core/result/version.h"
@@ -181,9 +182,13 @@ std::optional<std::size_t> CurveSweep::find(const std::string& name,
 SweepRun CurveSweep::open(std::size_t run) const {
   const auto scene = std::make_shared<const Scene>(this->scene(run));
   const Estimation planned = estimation(run, *scene);
+  const DoneWork work{method(run), 0, methods.tolerance, session().seed()};
   return {planned.plan, planned.job.batches, stop(run),
-          [scene, job = planned.job](ResultFile& file, const RunState& state) {
+          [scene, work, job = planned.job](ResultFile& file, const RunState& state) {
             write_curve(file, *scene, job, state);
+            DoneWork done = work;
+            done.samples = state.sums.total_samples();
+            check_power(file, "", *scene, done);
           }};
 }
 

@@ -15,7 +15,7 @@ namespace flatspeckle::apps {
 struct FinishedPoint {
   std::string plan, started;
   double samples = 0, cpu_s = 0, wall_s = 0, relative_error = 0;
-  bool reached = true;  ///< the target error, if there was one
+  bool reached = true;  ///< the target error, if there was one, and keeps its invariants
   CollectedResult result;
 };
 

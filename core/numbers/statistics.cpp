@@ -139,6 +139,11 @@ std::vector<Complex> sample_mean(double samples, std::span<const Complex> sums) 
   return mean;
 }
 
+double outlier_errors(std::size_t groups) {
+  const double freedom = static_cast<double>(groups) - 1;
+  return 4.42 * std::exp((5.4 + 4.2 / freedom) / freedom);
+}
+
 std::vector<double> real_parts(std::span<const Complex> values) {
   std::vector<double> real;
   for (const Complex value : values) real.push_back(value.real());

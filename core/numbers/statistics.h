@@ -58,6 +58,10 @@ struct Estimate {
   std::vector<std::uint64_t> rare = {};
 };
 
+/// Standard errors beyond which a normal value lies with a probability of about 1e-5, where its
+/// error is taken from this number of groups, two or more: Student's quantile, within a fifth.
+double outlier_errors(std::size_t groups);
+
 std::vector<double> real_parts(std::span<const Complex> values);
 /// Entries [first, first + count).
 Estimate part(const Estimate& all, std::size_t first, std::size_t count);

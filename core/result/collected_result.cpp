@@ -1,6 +1,7 @@
 #include "core/result/collected_result.h"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 
 #include "core/byte_stream.h"
@@ -142,6 +143,16 @@ void CollectedResult::put_block(const std::string& name, const Values& values,
 bool CollectedResult::has_group(const std::string& name) const {
   return std::ranges::any_of(datasets, [group = name + '/'](const CollectedDataset& set) {
     return set.name.starts_with(group);
+  });
+}
+
+bool CollectedResult::keeps_invariants() const {
+  return std::ranges::all_of(datasets, [this](const CollectedDataset& set) {
+    const CollectedDataset* const limit = find(set.name + "_limit");
+    const bool is_invariant = set.name.find("invariants/") != std::string::npos;
+    return !is_invariant || limit == nullptr ||
+           std::ranges::equal(std::get<std::vector<double>>(set.values),
+                              std::get<std::vector<double>>(limit->values), std::less_equal());
   });
 }
 

@@ -45,6 +45,8 @@ struct CollectedResult {
   void put_block(const std::string& name, const Values& values, std::vector<std::size_t> start,
                  std::vector<std::size_t> count);
   bool has_group(const std::string& name) const;
+  /// Whether no invariant among the datasets exceeds its limit (ResultGroup::check).
+  bool keeps_invariants() const;
 
  private:
   std::vector<std::size_t> extents(const CollectedDataset& set) const;

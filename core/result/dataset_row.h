@@ -8,8 +8,19 @@ namespace flatspeckle {
 class ResultFile;
 
 /// What a dataset holds: an axis (numbers: one that only counts, 0, 1, ...), values, or estimates,
-/// whose standard errors stand beside them under the name with _error.
-enum class Data { scale, numbers, real, complex, count, text, estimate, complex_estimate };
+/// whose standard errors stand beside them under the name with _error, or invariants, whose limits
+/// do so under the name with _limit.
+enum class Data {
+  scale,
+  numbers,
+  real,
+  complex,
+  count,
+  text,
+  estimate,
+  complex_estimate,
+  invariant
+};
 
 /// As docs/format.md calls it: float64, complex, uint64, texts.
 std::string type_name(Data data);

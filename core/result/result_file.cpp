@@ -421,6 +421,10 @@ void ResultFile::write_block(const std::string& name, const Values& values,
   Writer(file_.get(), path_.string(), name).block(raw(name, values), start, count);
 }
 
+bool ResultFile::keeps_invariants() const {
+  return std::ranges::all_of(invariants_, [](const auto& each) { return each.second.holds(); });
+}
+
 void ResultFile::commit() {
   if (!beside_) return replace_file(path_, image());
   if (!file_) throw std::logic_error(path_.string() + ": finished twice");

@@ -7,11 +7,13 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
 #include "core/numbers/complex.h"
 #include "core/result/atomic_file.h"
+#include "core/result/invariant.h"
 
 namespace flatspeckle {
 
@@ -89,6 +91,13 @@ class ResultFile {
   void note_rare(const std::string& estimates) { rare_.push_back(estimates); }
   const std::vector<std::string>& rare() const { return rare_; }
 
+  /// Remembers an invariant of the result by the name of its dataset; of several values, the worst.
+  void note_invariant(const std::string& name, const Invariant& worst) {
+    invariants_.emplace_back(name, worst);
+  }
+  const std::vector<std::pair<std::string, Invariant>>& invariants() const { return invariants_; }
+  bool keeps_invariants() const;
+
   /// Puts the file at its path, replacing what is there. Throws IoError. Nothing can be written
   /// afterwards.
   void commit();
@@ -105,6 +114,7 @@ class ResultFile {
   CollectedResult* collected_ = nullptr;  ///< in place of a file
   std::map<std::string, std::vector<Axis>> roles_;
   std::vector<std::string> rare_;
+  std::vector<std::pair<std::string, Invariant>> invariants_;
 };
 
 /// check_writable, and throws InputError where another kind of file is, which would be lost.

@@ -22,8 +22,8 @@ bool is_role(const std::string& word) {
 }  // namespace
 
 std::string type_name(Data data) {
-  static constexpr const char* names[] = {"float64", "float64", "float64", "complex",
-                                          "uint64",  "texts",   "float64", "complex"};
+  static constexpr const char* names[] = {"float64", "float64", "float64", "complex", "uint64",
+                                          "texts",   "float64", "complex", "float64"};
   return names[static_cast<std::size_t>(data)];
 }
 
@@ -46,8 +46,8 @@ ResultGroup::ResultGroup(ResultFile& file, const DatasetTable& table, const std:
     : file_(file), table_(table), prefix_(group.empty() ? "" : group + '/') {}
 
 void ResultGroup::put(const std::string& path, const Values& values) const {
-  if (has_error(row(path).data))
-    throw std::logic_error(path + ": its standard errors are not given");
+  if (has_error(row(path).data) || row(path).data == Data::invariant)
+    throw std::logic_error(path + ": its standard errors or limits are not given");
   write(row(path), values);
 }
 
@@ -75,6 +75,23 @@ void ResultGroup::put(const std::string& path, const Estimate& estimate) const {
     put(path, estimate.value, estimate.error, estimate.rare);
   else
     put(path, real_parts(estimate.value), estimate.error, estimate.rare);
+}
+
+void ResultGroup::check(const std::string& path, std::span<const Invariant> invariants) const {
+  const DatasetRow& found = row(path);
+  if (found.data != Data::invariant) throw std::logic_error(path + ": its row is no invariant");
+  std::vector<double> off, limits;
+  const Invariant* worst = &invariants.front();
+  for (const Invariant& each : invariants) {
+    off.push_back(each.off);
+    limits.push_back(each.limit);
+    if (each.is_worse_than(*worst)) worst = &each;
+  }
+  write(found, std::span<const double>(off));
+  write(
+      {path + "_limit", Data::real, found.axes, found.unit, "largest allowed: " + found.long_name},
+      std::span<const double>(limits));
+  file_.note_invariant(prefix_ + path, *worst);
 }
 
 void ResultGroup::number(const std::string& path, std::size_t count) const {

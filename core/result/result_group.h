@@ -9,6 +9,7 @@
 
 #include "core/numbers/statistics.h"
 #include "core/result/dataset_row.h"
+#include "core/result/invariant.h"
 #include "core/result/result_file.h"
 
 namespace flatspeckle {
@@ -34,6 +35,12 @@ class ResultGroup {
   }
   /// Of an estimate that is real: the real parts.
   void put(const std::string& path, const Estimate& estimate) const;
+  /// Writes an invariant, or one of each thing along an axis, with its limit. Where one fails, the
+  /// result has not converged.
+  void check(const std::string& path, std::span<const Invariant> invariants) const;
+  void check(const std::string& path, const Invariant& invariant) const {
+    check(path, std::span(&invariant, 1));
+  }
   /// An axis 0, 1, ..., count - 1.
   void number(const std::string& path, std::size_t count) const;
   /// For blocks that follow (ResultFile::write_block).

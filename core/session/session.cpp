@@ -154,6 +154,13 @@ void tell_rare(const std::vector<std::string>& estimates) {
   std::cerr << " (NAME_rare marks them; more samples tell)\n";
 }
 
+/// Prints the invariants that the result was checked by.
+void print_invariants(const ResultFile& file) {
+  for (const auto& [name, worst] : file.invariants())
+    std::cout << name << ": off by " << worst.off << ", at most " << worst.limit << " allowed"
+              << (worst.holds() ? "" : ": FAILS, so that the result has not converged") << '\n';
+}
+
 }  // namespace
 
 OutputLock::OutputLock(const std::filesystem::path& out) : path_(lock_beside(out)) {
@@ -252,9 +259,11 @@ int Session::once(ResultFile file,
   provenance.samples = made->samples;
   provenance.wall_s = clock_.seconds();
   provenance.cpu_s = process_cpu_seconds() - cpu_before_;
-  provenance.converged = made->status == ExitStatus::done;
+  const bool holds = file.keeps_invariants();
+  provenance.converged = holds && made->status == ExitStatus::done;
+  print_invariants(file);
   commit(file, provenance);
-  return made->status;
+  return holds ? made->status : ExitStatus::error_not_reached;
 }
 
 bool Session::is_complete(const std::string& identity, bool has_begun) const {
@@ -370,9 +379,12 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
     return ExitStatus::interrupted_resumable;
   }
   ResultFile file(settings_.out);
-  write_common(file, converged_);
   for (const auto& [name, state] : states_) write_trace(file, name, state.trace);
   contents(file);
+  const bool holds = file.keeps_invariants(),
+             reached = std::exchange(converged_, converged_ && holds);
+  write_common(file, converged_);
+  print_invariants(file);
   const bool keeps_state = !converged_ || settings_.keep_state || state_bytes() <= small_state;
   if (keeps_state) write_states(file);
   set_strangers_aside();
@@ -386,7 +398,7 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
               << " MB of sums that extend it (--keep_state)";
   std::cout << '\n';
   if (converged_) return ExitStatus::done;
-  std::cout << "stopped before the target error was reached; --resume goes on\n";
+  if (!reached) std::cout << "stopped before the target error was reached; --resume goes on\n";
   return ExitStatus::error_not_reached;
 }
 

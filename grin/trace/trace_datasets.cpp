@@ -41,7 +41,7 @@ const DatasetTable rays_table{
           "part of unpolarised light's power that is left by reflection at bodies and by their "
           "media"},
          {"steps", Data::count, "ray", "1", "steps of the integrator"},
-         {"invariants/index_mismatch", Data::real, "ray", "1",
+         {"invariants/index_mismatch", Data::invariant, "ray", "1",
           "largest difference of |v| and the index at the end of every fourth step, and of all"},
          {"invariants/angular_momentum", Data::real, "ray", "length",
           "length of (x - centre) cross v, at the start"},
@@ -113,11 +113,11 @@ void put_vectors(const ResultGroup& root, const std::string& name, const Things&
              column(things, [&](const auto& thing) { return Vec3(value(thing))[i]; }));
 }
 
-using Invariant = Vec3 (*)(const RayInvariants&);
+using Momentum = Vec3 (*)(const RayInvariants&);
 
 /// An invariant at the start, and how far the end is off it.
 void put_invariant(const ResultGroup& root, const std::vector<TracedRay>& rays,
-                   const std::string& name, Invariant value) {
+                   const std::string& name, Momentum value) {
   root.put("invariants/" + name,
            column(rays, [&](const TracedRay& ray) { return value(ray.first).norm(); }));
   root.put("invariants/" + name + "_change", column(rays, [&](const TracedRay& ray) {
@@ -125,10 +125,20 @@ void put_invariant(const ResultGroup& root, const std::vector<TracedRay>& rays,
            }));
 }
 
-void write_invariants(const ResultGroup& root, Symmetry symmetry,
+/// Each ray must keep |v| = n. Errors of steps add up along it; of fixed steps none are known.
+std::vector<Invariant> index_mismatches(const RaySteps& steps, const std::vector<TracedRay>& rays) {
+  constexpr double accumulated = 1000, of_fixed_steps = 1e-3;
+  const double limit = steps.tolerance ? accumulated * *steps.tolerance : of_fixed_steps;
+  std::vector<Invariant> mismatches;
+  for (const TracedRay& ray : rays) mismatches.push_back({ray.index_mismatch, limit});
+  return mismatches;
+}
+
+void write_invariants(const ResultGroup& root, const TraceScene& scene,
                       const std::vector<TracedRay>& rays) {
   using Invariants = RayInvariants;
-  root.put("invariants/index_mismatch", column(rays, &TracedRay::index_mismatch));
+  const Symmetry symmetry = scene.field.symmetry;
+  root.check("invariants/index_mismatch", index_mismatches(scene.steps, rays));
   if (symmetry == Symmetry::sphere)
     put_invariant(root, rays, "angular_momentum",
                   [](const Invariants& i) -> Vec3 { return i.angular_momentum; });
@@ -251,7 +261,7 @@ void write_rays(ResultFile& file, const TraceScene& scene, const std::vector<Tra
   if (!scene.stage.bodies.empty())
     root.put("transmittance", column(rays, &TracedRay::transmittance));
   root.put("steps", column(rays, &TracedRay::steps));
-  write_invariants(root, scene.field.symmetry, rays);
+  write_invariants(root, scene, rays);
 }
 
 void write_image(ResultFile& file, const RayImage& image) {

@@ -69,7 +69,9 @@ def expected_datasets():
     found = {}
     for number, (name, kind, axes, units, long_name) in enumerate(CELLS["dataset"]):
         for both in itertools.product(meanings(axes), meanings(units)):
-            found[name.removesuffix(" ±"), kind, *both, long_name] = number
+            found[name.rstrip(" ±≤"), kind, *both, long_name] = number
+            if name.endswith(" ≤"):
+                found[name[:-2] + "_limit", "float64", *both, "largest allowed: " + long_name] = number
             if name.endswith(" ±"):
                 found[name[:-2] + "_error", "float64", *both, "standard error: " + long_name] = number
                 found[name[:-2] + "_rare", "uint64", both[0], "1",

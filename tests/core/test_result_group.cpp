@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include "core/result/collected_result.h"
 #include "core/result/result_group.h"
 #include "core/result/result_reader.h"
 
@@ -23,7 +24,8 @@ const DatasetTable table{
              {"trace/count", Data::count, "trace/row", "1", "counts"},
              {"method", Data::text, "VIEW", "", "what estimates"},
              {"range", Data::real, "", "1", "a scalar"},
-             {"sums", Data::complex, "PLAIN", "", "sums"}},
+             {"sums", Data::complex, "PLAIN", "", "sums"},
+             {"invariants/power", Data::invariant, "VIEW", "1", "imbalance"}},
     .attributes = {{"", "depth", "float64", "of the medium"},
                    {"range", "censored", "uint64", "0: read off"}}};
 
@@ -111,6 +113,36 @@ TEST_CASE("a role must be bound") {
   root.put("tilt", tilts);
   CHECK_THROWS_WITH_AS(root.put("intensity", estimate), "VIEW: stands for nothing here",
                        std::logic_error);
+}
+
+TEST_CASE("invariants stand in the file beside their limits, and the worst one is remembered") {
+  Written out;
+  const std::vector<Invariant> kept{{0.5, 1}, {0, 0}}, broken{{2, 4}, {0.2, 0.1}};
+  out.root.check("invariants/power", kept);
+  CHECK(out.file.keeps_invariants());
+  out.mc.check("invariants/power", broken);
+  CHECK(!out.file.keeps_invariants());
+  CHECK(out.file.invariants().at(1).first == "mc/invariants/power");
+  CHECK(out.file.invariants().at(1).second.off == 0.2);
+  CHECK_THROWS_AS(out.root.put("invariants/power", tilts), std::logic_error);
+  CHECK_THROWS_AS(out.root.check("range", kept), std::logic_error);
+  out.file.commit();
+  const ResultReader file(out.folder / "a.h5");
+  CHECK(file.dataset<double>("mc/invariants/power") == std::vector<double>{2, 0.2});
+  CHECK(file.dataset<double>("mc/invariants/power_limit") == std::vector<double>{4, 0.1});
+}
+
+TEST_CASE("a collected result keeps its invariants or does not") {
+  CollectedResult kept;
+  ResultFile(kept).dataset("range", std::span<const double>(two).first(1), {}, "", "");
+  CHECK(kept.keeps_invariants());
+  for (const double off : {0.5, 2.0}) {
+    CollectedResult result;
+    ResultFile file(result);
+    file.bind("VIEW", {std::size_t{1}});
+    ResultGroup(file, table, "mc").check("invariants/power", Invariant{off, 1});
+    CHECK(result.keeps_invariants() == (off < 1));
+  }
 }
 
 }  // namespace flatspeckle::test_result_group

@@ -30,6 +30,9 @@ const DatasetTable design_table{
          {"throughput", Data::real, "", "1",
           "share of the rays that the search has not seen that pass through the aperture, by steps "
           "of half the length"},
+         {"invariants/derivatives", Data::invariant, "", "1",
+          "difference between derivatives of the readings by reversed rays and by finite "
+          "differences, along one direction, relative"},
          {"at_bounds", Data::count, "", "1", "coefficients that stand at a bound"},
          {"unseen", Data::count, "", "1",
           "coefficients within the field that no ray of the search depends on"},
@@ -163,6 +166,7 @@ void write_check(const ResultGroup& root, const DesignCheck& check) {
   put("rms/held_out", check.held_out);
   put("rms/held_out_half_step", check.held_out_half_step);
   put("rms/start_held_out", check.start_held_out);
+  if (check.derivatives) root.check("invariants/derivatives", *check.derivatives);
 }
 
 /// Mean over directions all around, of a guide those across it, and the largest difference.

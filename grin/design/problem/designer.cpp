@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
+
+#include <Eigen/Core>
 
 #include "core/run/stopwatch.h"
 #include "core/session/journal.h"
@@ -28,6 +31,10 @@ void each_member(State& state, const Use& use) {
   use(state.history.traces);
   use(state.history.cpu_s);
   use(state.history.coefficients);
+}
+
+Eigen::Map<const Eigen::VectorXd> vector_of(const std::vector<double>& values) {
+  return {values.data(), std::ssize(values)};
 }
 
 double share_of_zeros(const std::vector<double>& residuals) {
@@ -180,6 +187,7 @@ DesignCheck Designer::check(const DesignState& state) {
   DesignCheck check;
   check.seen = rms_by(seen_, 1);
   check.unseen = unseen(state);
+  check.derivatives = derivatives(state);
   check.seen_half_step = rms_by(seen_, 2);
   check.held_out = rms_by(held_out_, 1);
   check.start_held_out =
@@ -216,6 +224,42 @@ std::size_t Designer::unseen(const DesignState& state) {
   std::vector<double> squares(values.size());
   seen_.rays->linearised().squares(std::vector<double>(readings->size(), 1.0), squares);
   return count_free(state, [&](std::size_t i, const Bounds&) { return squares[i] == 0; });
+}
+
+/// Compares along the direction that moves the readings most, if all coefficients are moved alike.
+/// Differences are extrapolated from two distances; how far these are apart tells their own error.
+/// Returns nullopt where a ray is lost or none depends on the coefficients.
+std::optional<Invariant> Designer::derivatives(const DesignState& state) {
+  constexpr double distance = 1e-4, of_rounded_rows = 1e-3;
+  const FieldForm form = this->form(state);
+  const std::vector<double>& at = state.search.coefficients;
+  const auto there = seen_.rays->trace(form, at);
+  if (!there) return std::nullopt;
+  const RayRows rows = seen_.rays->linearised();
+  std::vector<double> along(at.size()), change(there->size());
+  rows.transposed(std::vector<double>(there->size(), 1.0), along);
+  double largest = 0;
+  for (const double each : along) largest = std::max(largest, std::abs(each));
+  if (!(largest > 0)) return std::nullopt;
+  for (double& each : along) each /= largest;
+  rows.times(along, change);
+  const auto slope = [&](double h) -> std::optional<Eigen::VectorXd> {
+    std::vector<double> ahead = at, behind = at;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      ahead[i] += h * along[i];
+      behind[i] -= h * along[i];
+    }
+    const auto after = seen_.rays->trace(form, ahead), before = seen_.rays->trace(form, behind);
+    if (!after || !before) return std::nullopt;
+    return (vector_of(*after) - vector_of(*before)) / (2 * h);
+  };
+  const auto coarse = slope(2 * distance), fine = slope(distance);
+  if (!coarse || !fine) return std::nullopt;
+  const Eigen::VectorXd found = *fine + (*fine - *coarse) / 3;
+  const double size = found.norm();
+  if (!(size > 0)) return std::nullopt;
+  return Invariant{(vector_of(change) - found).norm() / size,
+                   of_rounded_rows + (*fine - *coarse).norm() / size};
 }
 
 }  // namespace flatspeckle::grin::design

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "core/result/invariant.h"
 #include "grin/design/problem/design_scene.h"
 
 namespace flatspeckle::grin::design {
@@ -35,6 +36,8 @@ struct DesignCheck {
   std::size_t unseen = 0;  ///< coefficients within the field that no ray of the search depends on
   std::optional<std::vector<double>> readings = {};  ///< of the held-out rays, by the half steps
   double in_place = 0;                               ///< share of these that miss by nothing
+  /// Relative difference between derivatives of the readings by reversed rays and by differences.
+  std::optional<Invariant> derivatives = {};
 };
 
 /// Level after level, step after step.
@@ -54,6 +57,7 @@ class Designer {
   template <class Is>
   std::size_t count_free(const DesignState& state, const Is& is) const;
   std::size_t unseen(const DesignState& state);
+  std::optional<Invariant> derivatives(const DesignState& state);
   Search search_in(const FieldForm& form) const;
   void note(DesignState& state) const;
   void refine(DesignState& state);

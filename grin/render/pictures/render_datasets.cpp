@@ -348,13 +348,26 @@ const DatasetTable energy_table{
       "the same, reflected at the surface of a body without having entered"},
      {"energy/scattered", Data::estimate, "", "1", "left the stage after a scattering or more"},
      {"energy/lost", Data::estimate, "", "1", "in flights that were lost (transport/lost_flights)"},
-     {"energy/cut", Data::estimate, "", "1", "of paths that were cut by max_scatterings"}}};
+     {"energy/cut", Data::estimate, "", "1", "of paths that were cut by max_scatterings"},
+     {"invariants/power", Data::invariant, "", "1",
+      "difference between the power that ended in any way and the emitted one, relative"}}};
 
 std::optional<Estimate> energy_result(const RenderJob& job, const GroupedSums& sums) {
   if (!job.has_energy) return std::nullopt;
   return jackknife(sums, [first = job.pictures](double samples, std::span<const Complex> all) {
     return sample_mean(samples, all.subspan(first, EnergyBalance::size));
   });
+}
+
+Invariant power_balance(const RenderJob& job, const GroupedSums& sums) {
+  constexpr double rounding = 1e-9;
+  const Estimate ended =
+      jackknife(sums, [first = job.pictures](double, std::span<const Complex> all) {
+        const auto energy = all.subspan(first, EnergyBalance::size);
+        const Complex all_fates = std::reduce(energy.begin() + 1, energy.end());
+        return std::vector<Complex>{energy[0] == 0.0 ? 0.0 : all_fates / energy[0] - 1.0};
+      });
+  return {std::abs(ended.value[0]), outlier_errors(sums.groups()) * ended.error[0] + rounding};
 }
 
 void write_energy(ResultFile& file, const RenderScene& scene, const RenderRequest& request,

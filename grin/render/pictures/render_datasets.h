@@ -6,6 +6,7 @@
 
 #include "core/numbers/statistics.h"
 #include "core/result/dataset_row.h"
+#include "core/result/invariant.h"
 #include "grin/render/methods/render_scene.h"
 #include "grin/render/pictures/powers_within.h"
 #include "grin/render/pictures/render_job.h"
@@ -31,6 +32,10 @@ extern const DatasetTable energy_table;
 
 /// By Fate; nothing where the method walks no light path to its end.
 std::optional<Estimate> energy_result(const RenderJob& job, const GroupedSums& sums);
+
+/// Whether the power that ended in all fates together is the emitted one, where a light path is
+/// walked to its end.
+Invariant power_balance(const RenderJob& job, const GroupedSums& sums);
 
 /// Those fates that the scene has.
 void write_energy(ResultFile& file, const RenderScene& scene, const RenderRequest& request,

@@ -254,15 +254,19 @@ FrameStatistics frame_statistics(std::span<const std::vector<double>> frames, st
   const Autocorrelation autocorrelation(pixels);
   std::vector<double> values(pixels);
   FrameStatistics found;
-  double white = 0;
+  double white = 0, variance = 0;
   for (const auto& frame : frames) {
     const auto envelope = positive_envelope(frame, envelope_width(pixels, lags));
-    const auto own = autocorrelation(over(frame, envelope));
+    const auto fluctuation = over(frame, envelope);
+    const auto own = autocorrelation(fluctuation);
+    variance += std::pow(rms(fluctuation), 2) / count;
     for (std::size_t lag = 0; lag < pixels; ++lag) values[lag] += own[lag] / count;
     white += mean_noise(envelope, mean_of(frame), noise) / count;
     found.square += squared_contrast(frame, lags, noise) / count;
   }
   found.noise = standard_deviation(std::span(values).subspan(lags, std::min(lags, pixels - lags)));
+  constexpr double rounding = 1e-10;
+  if (variance > 0) found.variance = {std::abs(values[0] / variance - 1), rounding};
   values[0] -= white;
   found.contrast = std::sqrt(std::max(found.square, 0.0));
   const double band = fitted_band(std::span(values).first(lags), found.noise, white);

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "core/result/invariant.h"
 #include "mc/imaging/recovery/camera_noise.h"
 
 namespace flatspeckle::mc {
@@ -60,6 +61,8 @@ struct FrameStatistics {
   double noise = 0;   ///< standard deviation of the autocorrelation where nothing is expected
   std::vector<double> autocorrelation;  ///< by lag in pixels, from 0
   PairPeaks peaks;
+  /// Relative difference between the autocorrelation at lag 0 and the variance of the pixels.
+  Invariant variance;
 };
 
 /// The frame over its smooth envelope, less 1: what varies within `width` pixels (standard

@@ -19,6 +19,9 @@ const DatasetTable recovery_table{
          "relative, mean 1; 0 where nothing was found"},
         {"explained", Data::real, "frame", "1",
          "how well the brightness fits the peaks of all pairs, at most 1"},
+        {"invariants/variance", Data::invariant, "frame", "1",
+         "difference between the autocorrelation at lag 0, camera noise included, and the variance "
+         "of the pixels, relative"},
         {"shift", Data::scale, "", "1", "pixels from the reference"},
         {"picture", Data::real, "frame shift", "1", "frames divided by their reference"},
         {"iteration", Data::numbers, "", "1", "number of the step (richardson_lucy)"},
@@ -40,6 +43,9 @@ void write_recovery(ResultFile& file, const std::vector<std::string>& names,
   constexpr double in_pixels = 1;
   write_points(root, all, task.points, in_pixels);
   root.put("explained", column(all, [](const Recovered& one) { return one.fit.explained; }));
+  std::vector<Invariant> variances;
+  for (const Recovered& one : all) variances.push_back(one.statistics.variance);
+  root.check("invariants/variance", variances);
 }
 
 void write_deconvolved(ResultFile& file, const RecoveryTask& task,

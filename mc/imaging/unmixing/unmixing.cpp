@@ -26,6 +26,8 @@ const DatasetTable unmixing_table{
         {"noise_level", Data::real, "", "1", "singular values above it are sources"},
         {"source_count", Data::count, "", "1", "sources that the singular values tell"},
         {"factor_residual", Data::real, "", "1", "rms of what the factors leave, over the light's"},
+        {"invariants/scale", Data::invariant, "", "1",
+         "relative change of all brightnesses that would fit the frames best"},
         {"source_pattern", Data::real, "source pixel", "1", "of each source alone, mean 1"},
         {"source_brightness", Data::real, "frame source", "1", "in units of all frames' mean"},
         {"source_x", Data::real, "source", "1", "pixels from the first of its group, not mirrored"},
@@ -43,6 +45,7 @@ void write_unmixed(ResultFile& file, const std::vector<std::string>& names, cons
   root.number("pixel", static_cast<std::size_t>(found.factors.pattern.rows()));
   root.number("source", found.places.x.size());
   root.put("factor_residual", found.factors.residual);
+  root.check("invariants/scale", found.factors.scale);
   root.put("source_pattern", row_major(found.factors.pattern.transpose()));
   root.put("source_brightness", row_major(found.factors.brightness));
   root.put("source_x", found.places.x);

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "core/result/dataset_row.h"
+#include "core/result/invariant.h"
 #include "core/result/result_file.h"
 #include "mc/imaging/recovery/camera_noise.h"
 #include "mc/imaging/recovery/line_object.h"
@@ -20,6 +21,8 @@ struct NonnegativeFactors {
   Eigen::MatrixXd pattern;     ///< [pixel][source], the mean over the pixels 1
   Eigen::MatrixXd brightness;  ///< [frame][source]
   double residual = 0;  ///< rms of what the frames differ by from the product, over their rms
+  /// By what part one factor common to all of the product would have to change for least squares.
+  Invariant scale;
 };
 
 /// How the factors are improved.

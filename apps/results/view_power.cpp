@@ -1,0 +1,160 @@
+#include "apps/results/view_power.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "core/numbers/gauss.h"
+#include "core/numbers/random.h"
+#include "core/result/result_group.h"
+#include "core/run/parallel.h"
+#include "mc/paths/estimators/covariance_estimator.h"
+#include "mc/paths/estimators/flux.h"
+#include "mc/slab/slab_flux.h"
+#include "mc/slab/slab_jobs.h"
+
+namespace flatspeckle::apps {
+
+const DatasetTable power_table{
+    .name = "power",
+    .rows = {{"invariants/power", Data::invariant, "", "1",
+              "difference between the power scattered into all directions and what neither passes "
+              "nor is absorbed, relative"}}};
+
+namespace {
+
+using std::numbers::pi;
+
+/// The scene with the intensities of its first light alone, seen from far away.
+Scene seen_from(const Scene& scene, const std::vector<double>& angles) {
+  const Light& first = scene.request.lights.front();
+  Scene lit = scene;
+  lit.request = intensity_request(Lights({first.kind == Light::Kind::plane ? first.angle : 0.0}),
+                                  far_views(angles));
+  return lit;
+}
+
+GroupedSums sums_of(const BatchJob& job, double samples) {
+  GroupedSums sums(job.size);
+  const double batches = std::max(1.0, std::round(samples / job.samples_per_batch));
+  for (std::uint64_t number = 0; static_cast<double>(number) < batches; ++number) {
+    std::vector<Complex> batch(job.size);
+    job.run(number, batch);
+    sums.add(job.samples_per_batch, batch);
+  }
+  return sums;
+}
+
+/// The width across the light through which it enters; of a slab per unit length.
+double aperture(const Scene& scene) {
+  const double angle = scene.request.lights.front().angle;
+  const mc::LightAperture entered(scene.domain, {std::sin(angle), std::cos(angle)});
+  return entered.face() + entered.side();
+}
+
+struct Share {
+  double value = 0, error = 0;
+};
+
+/// The share of the light that is scattered and leaves. Without absorption its error is 0.
+Share scattered_out(const Scene& lit, double samples, std::uint64_t seed) {
+  const double scattered = 1 - mc::direct_transmittances(lit).front();
+  const bool absorbs = lit.profile || lit.medium.albedo < 1;
+  if (!absorbs) return {scattered, 0};
+  const auto job = mc::flux_job(lit, 1, seed);
+  const Estimate absorbed =
+      mc::flux_estimates(job,
+                         sums_of(job.batches, std::max(samples, 2 * job.batches.samples_per_batch)))
+          .absorptance;
+  return {scattered - absorbed.value[0].real(), absorbed.error[0]};
+}
+
+/// The share that far views evenly spaced from a random one see, averaged over the circle.
+double seen_share(const Scene& scene, double samples, std::uint64_t seed, std::uint64_t group) {
+  constexpr int views = 48;
+  RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), group);
+  const double first = random.uniform();
+  std::vector<double> angles;
+  for (int view = 0; view < views; ++view) angles.push_back(2 * pi * (view + first) / views - pi);
+  const Scene lit = seen_from(scene, angles);
+  const FieldJob job =
+      mc::covariance_job(lit, mc::make_plan(lit, mc::ReversedPaths::no), seed + group);
+  const GroupedSums sums = sums_of(job.batches, samples);
+  double power = 0;
+  for (const Complex intensity : job.covariance(sums.total_samples(), sums.total()))
+    power += intensity.real() * 2 * pi / views;
+  return power / aperture(lit);
+}
+
+}  // namespace
+
+std::optional<Invariant> paths_power(const Scene& scene, double samples, std::uint64_t seed) {
+  constexpr std::size_t groups = 16;
+  constexpr double least_samples = 1024, most_samples = 1 << 22, rounding = 1e-9;
+  if (scene.index || scene.medium.dimension == 3 || !(scene.medium.mu_s > 0)) return std::nullopt;
+  const double used = std::clamp(samples, least_samples, most_samples);
+  const std::uint64_t apart = ~seed;  // random numbers that the result has not used
+  std::array<double, groups> shares{};
+  parallel_for(groups, [&](std::size_t group) {
+    shares[group] = seen_share(scene, used / groups, apart, group);
+  });
+  double mean = 0, square = 0;
+  for (const double share : shares) mean += share / groups;
+  for (const double share : shares) square += std::pow(share - mean, 2);
+  const double error = std::sqrt(square / (groups * (groups - 1)));
+  const Share expected = scattered_out(seen_from(scene, {0}), used, apart);
+  if (!(expected.value > 0)) return std::nullopt;
+  return Invariant{
+      std::abs(mean / expected.value - 1),
+      outlier_errors(groups) * std::hypot(error, expected.error) / expected.value + rounding};
+}
+
+std::optional<Invariant> transport_power(const Scene& slab, double tolerance) {
+  constexpr int nodes = 32;  // of a quadrant
+  constexpr int most_ordinates = 200;
+  if (slab.profile || slab.medium.dimension == 3 || !(slab.medium.mu_s > 0)) return std::nullopt;
+  const mc::Refinement refinement{.tolerance = tolerance, .most_ordinates = most_ordinates};
+  Scene lit = seen_from(slab, {0});
+  const auto power = [&](int count) -> Share {
+    const QuadratureRule rule = gauss_legendre(count);
+    std::vector<double> angles;
+    for (const double quadrant : {-pi, -pi / 2, 0.0, pi / 2})
+      for (const double node : rule.node) angles.push_back(quadrant + node * pi / 2);
+    lit = seen_from(slab, angles);
+    const FieldJob job = mc::slab_covariance_job(lit, false, refinement);
+    const Estimate found = jackknife(sums_of(job.batches, 2), job.covariance);
+    Share share;
+    for (std::size_t view = 0; view < angles.size(); ++view) {
+      const double weight = rule.weight[view % rule.weight.size()] * pi / 2 / aperture(lit);
+      share.value += weight * found.value[view].real();
+      share.error += weight * found.error[view];
+    }
+    return share;
+  };
+  const Share coarse = power(nodes / 2), fine = power(nodes);
+  const auto job = mc::slab_flux_job(lit, 1, refinement);
+  const auto flux = mc::flux_estimates(job, sums_of(job.batches, 2));
+  const double left = flux.reflectance.value[0].real() + flux.transmittance.value[0].real(),
+               error = flux.reflectance.error[0] + flux.transmittance.error[0];
+  if (!(left > 0)) return std::nullopt;
+  constexpr double rounding = 1e-9;
+  return Invariant{std::abs(fine.value - left) / left,
+                   (std::abs(fine.value - coarse.value) + fine.error + error) / left + rounding};
+}
+
+std::optional<Invariant> view_power(const Scene& scene, const DoneWork& work) {
+  constexpr double part = 1.0 / 64;
+  if (work.method == "mc") return paths_power(scene, part * work.samples, work.seed);
+  if (work.method == "transport") return transport_power(scene, work.tolerance);
+  return std::nullopt;
+}
+
+void check_power(ResultFile& file, const std::string& group, const Scene& scene,
+                 const DoneWork& work) {
+  if (const auto power = view_power(scene, work))
+    ResultGroup(file, power_table, group).check("invariants/power", *power);
+}
+
+}  // namespace flatspeckle::apps
