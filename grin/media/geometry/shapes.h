@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "grin/media/geometry/vec3.h"
 
@@ -13,11 +14,37 @@ namespace flatspeckle::grin {
 
 struct Box;
 
+/// Whether the rounding of a difference from the centre loses digits that x has.
+inline bool is_wide(double radius, const Vec3& x) {
+  return radius > 8 * x.cwiseAbs().maxCoeff();
+}
+/// Returns |x - centre|^2 - radius^2. Beside a wide surface the constant terms are summed with
+/// their rounding errors, so that the result is as exact as x is.
+inline double power_of_point(const Vec3& x, const Vec3& centre, double radius) {
+  if (!is_wide(radius, x)) return (x - centre).squaredNorm() - radius * radius;
+  double sum = 0, rest = 0;
+  const auto add_product = [&](double a, double b) {
+    const double product = a * b, before = sum;
+    sum += product;
+    const double added = sum - before;
+    rest += (before - (sum - added)) + (product - added) + std::fma(a, b, -product);
+  };
+  for (int i = 0; i < 3; ++i) add_product(centre[i], centre[i]);
+  add_product(-radius, radius);
+  return sum + (rest + x.dot(x - 2 * centre));
+}
+/// Returns the signed distance from a sphere, without cancellation.
+inline double distance_from_sphere(const Vec3& x, const Vec3& centre, double radius) {
+  const double r = (x - centre).norm();
+  return is_wide(radius, x) ? power_of_point(x, centre, radius) / (r + radius) : r - radius;
+}
+
 struct Sphere {
   Vec3 centre = Vec3::Zero();
   double radius = 1;
 
-  double distance(const Vec3& x) const { return (x - centre).norm() - radius; }
+  double power(const Vec3& x) const { return power_of_point(x, centre, radius); }
+  double distance(const Vec3& x) const { return distance_from_sphere(x, centre, radius); }
   Vec3 normal(const Vec3& x) const { return (x - centre).normalized(); }
   Mat3 curvature(const Vec3& x) const {
     const Vec3 n = normal(x);

@@ -31,17 +31,11 @@ std::vector<Surface> surfaces_of(const Keys& keys, const RayStopValues& values) 
   return surfaces;
 }
 
-/// The largest number that distances from it are differences of.
+/// The largest coordinate of a surface.
 double size(const Surface& surface) {
-  const auto of_box = [](const Box& box) {
-    return box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
-  };
   if (const auto* plane = std::get_if<Plane>(&surface)) return plane->point.cwiseAbs().maxCoeff();
-  double most = of_box(bounds(surface));
-  if (const auto* lens = std::get_if<Lens>(&surface))
-    for (const LensFace& face : lens->faces())
-      most = std::max(most, of_box(face.sphere().bounds()));
-  return most;
+  const Box box = bounds(surface);
+  return box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
 }
 
 }  // namespace
@@ -81,8 +75,10 @@ RayStops make_ray_stops(const Keys& keys, const RayStopValues& values, double sc
   if (stops.surfaces.size() + others.size() > most)
     throw InputError("stop surfaces and bodies", stops.surfaces.size() + others.size(),
                      "must be at most " + std::to_string(most));
+  const double within_reach = farthest + stops.max_length;
   for (const std::span<const Surface> surfaces : {std::span<const Surface>(stops.surfaces), others})
-    for (const auto& surface : surfaces) farthest = std::max(farthest, size(surface));
+    for (const auto& surface : surfaces)
+      farthest = std::max(farthest, std::min(size(surface), within_reach));
   const double rounding = std::max(1e-14 * stops.max_length, 4e-15 * farthest);
   stops.location = std::max(1e-10 * std::min(scale, stops.max_length), rounding);
   return stops;

@@ -1,24 +1,27 @@
 #include "grin/rays/surfaces/lens.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace flatspeckle::grin {
 
 namespace {
 
-/// How far a face of this radius of curvature is off its vertex at the edge.
+/// How far a face of this curvature is off its vertex at the edge.
 double sag(double curvature, double radius) {
-  if (curvature == 0) return 0;
-  const double rest = std::sqrt(curvature * curvature - radius * radius);
-  return radius * radius / std::copysign(std::abs(curvature) + rest, curvature);
+  const double ratio = curvature * radius;
+  return ratio * radius / (1 + std::sqrt(std::max(0.0, (1 - ratio) * (1 + ratio))));
 }
 
-LensFace face_of(const Vec3& vertex, double outwards, double curvature, double radius) {
+/// radius_of_curvature: 0 of a plane.
+LensFace face_of(const Vec3& vertex, double outwards, double radius_of_curvature, double radius) {
+  const double curvature = radius_of_curvature == 0 ? 0 : 1 / radius_of_curvature;
   return {vertex, outwards, curvature, vertex[2] + sag(curvature, radius)};
 }
 
-bool is_wide_enough(double curvature, double radius) {
-  return curvature == 0 || std::abs(curvature) >= radius;
+bool is_wide_enough(double radius_of_curvature, double radius) {
+  return radius_of_curvature == 0 || std::abs(radius_of_curvature) >= radius;
 }
 
 }  // namespace
@@ -36,16 +39,25 @@ std::optional<Lens> Lens::make(const Vec3& vertex, double radius, double front, 
 
 const LensFace* Lens::face_at(const Vec3& x) const {
   const double front = faces_[0].distance(x), back = faces_[1].distance(x);
-  if (across(x).norm() - radius_ > std::max(front, back)) return nullptr;
+  if (barrel_distance(x) > std::max(front, back)) return nullptr;
   return &faces_[front < back];
 }
 
 Mat3 Lens::curvature(const Vec3& x) const {
   const LensFace* const face = face_at(x);
-  if (face && face->is_plane()) return Mat3::Zero();
   const Vec3 n = normal(x), flat = face ? Vec3(Vec3::Zero()) : Vec3(Vec3::UnitZ());
-  const double radius = face ? -face->outwards * face->curvature : radius_;
-  return (Mat3::Identity() - n * n.transpose() - flat * flat.transpose()) / radius;
+  const double bend = face ? -face->outwards * face->curvature : 1 / radius_;
+  return bend * (Mat3::Identity() - n * n.transpose() - flat * flat.transpose());
+}
+
+/// Of the cylinder between the edges, and of the caps of height h, pi h (3 radius^2 + h^2) / 6.
+double Lens::volume() const {
+  double volume = radius_ * radius_ * (faces_[1].edge - faces_[0].edge);
+  for (const LensFace& face : faces_) {
+    const double h = face.outwards * (face.vertex[2] - face.edge);
+    volume += h * (3 * radius_ * radius_ + h * h) / 6;
+  }
+  return std::numbers::pi * volume;
 }
 
 Box Lens::bounds() const {

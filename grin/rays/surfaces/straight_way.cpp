@@ -19,22 +19,17 @@ struct Stretch {
 };
 constexpr Stretch whole{-no_way, no_way}, none{no_way, -no_way};
 
-/// Where t^2 a + 2 t b + c < 0.
-Stretch between_roots(double a, double b, double c) {
-  if (a == 0) return c < 0 ? whole : none;
-  const double under = b * b - a * c;
-  if (under <= 0) return none;
+/// Where t^2 a + 2 t b + c < 0, a > 0; under: b^2 - a c.
+Stretch between_roots(double a, double b, double c, double under) {
+  if (!(under > 0)) return none;
   const double far = -(b + std::copysign(std::sqrt(under), b));
   return {std::min(far / a, c / far), std::max(far / a, c / far)};
 }
-Stretch stretch(const Sphere& sphere, const Vec3& x, const Vec3& d) {
-  const Vec3 from = x - sphere.centre;
-  return between_roots(1, from.dot(d), from.squaredNorm() - sphere.radius * sphere.radius);
-}
 Stretch stretch_of_cylinder(const Lens& lens, const Vec3& x, const Vec3& d) {
   const Vec3 from = lens.across(x), along(d[0], d[1], 0);
-  return between_roots(along.squaredNorm(), from.dot(along),
-                       from.squaredNorm() - lens.radius() * lens.radius());
+  const double a = along.squaredNorm(), b = from.dot(along), c = lens.barrel_power(x);
+  if (a == 0) return c < 0 ? whole : none;
+  return between_roots(a, b, c, b * b - a * c);
 }
 Stretch stretch(const Plane& plane, const Vec3& x, const Vec3& d) {
   const double speed = plane.outwards.dot(d), distance = plane.distance(x);
@@ -43,20 +38,54 @@ Stretch stretch(const Plane& plane, const Vec3& x, const Vec3& d) {
   return speed > 0 ? Stretch{-no_way, at} : Stretch{at, no_way};
 }
 
-/// Of a concave face, up to the plane of its edge.
+/// A line and the sphere of a curved face, the square root's argument from the point of the line
+/// that is closest to the vertex: at a large radius neither cancels.
+struct LineThroughFace {
+  Stretch within;  ///< the sphere
+  double away;     ///< more than 0 where the line goes away from the centre
+
+  LineThroughFace(const LensFace& face, const Vec3& x, const Vec3& d) {
+    const Vec3 p = x - face.vertex, closest = p - p.dot(d) * d;
+    const double bend = std::abs(face.curvature), side = std::copysign(1.0, face.curvature);
+    const double under =
+        d[2] * d[2] + face.curvature * (2 * closest[2] - face.curvature * closest.squaredNorm());
+    away = bend * p.dot(d) - side * d[2];
+    within = between_roots(bend, away, bend * p.squaredNorm() - 2 * side * p[2], under);
+  }
+};
+
+/// Whether a place on the sphere of a convex face is on its cap.
+bool is_on_cap(const LensFace& face, double z) {
+  return face.outwards * (z - face.edge) >=
+         -crossing_accuracy(std::max(std::abs(face.edge), std::abs(face.vertex[2])));
+}
+
+/// To where a line from inside of the lens leaves it through a face.
+double way_out(const LensFace& face, const Vec3& x, const Vec3& d) {
+  if (face.is_plane()) return way_out(face.edge_plane(), x, d);
+  const LineThroughFace line(face, x, d);
+  if (line.within.is_empty()) return no_way;
+  const double way = face.is_concave() ? line.within.from : line.within.to;
+  const bool leaves = face.is_concave() ? line.away < 0 : is_on_cap(face, x[2] + way * d[2]);
+  return leaves ? std::max(0.0, way) : no_way;
+}
+
+/// Of a line within the lens's cylinder, inside of a convex face or of the plane of another's edge.
 Stretch before(const LensFace& face, const Vec3& x, const Vec3& d) {
-  if (face.is_plane() || face.is_concave()) return stretch(face.edge_plane(), x, d);
-  return stretch(face.sphere(), x, d);
+  Stretch inside = stretch(face.edge_plane(), x, d);
+  if (face.is_plane() || face.is_concave()) return inside;
+  const Stretch within = LineThroughFace(face, x, d).within;
+  if (within.is_empty()) return inside;
+  if (is_on_cap(face, x[2] + within.from * d[2])) inside.from = within.from;
+  if (is_on_cap(face, x[2] + within.to * d[2])) inside.to = within.to;
+  return inside;
 }
 
 }  // namespace
 
 double way_out(const Lens& lens, const Vec3& x, const Vec3& d) {
   double way = std::max(0.0, stretch_of_cylinder(lens, x, d).to);
-  for (const LensFace& face : lens.faces())
-    way = std::min(way, face.is_plane()     ? way_out(face.edge_plane(), x, d)
-                        : face.is_concave() ? way_in(face.sphere(), x, d)
-                                            : way_out(face.sphere(), x, d));
+  for (const LensFace& face : lens.faces()) way = std::min(way, way_out(face, x, d));
   return way;
 }
 
@@ -68,9 +97,11 @@ double way_in(const Lens& lens, const Vec3& x, const Vec3& d) {
   for (std::size_t i = 0; i < hollows.size(); ++i) {
     const LensFace& face = lens.faces()[i];
     within = within.within(before(face, x, d));
-    if (face.is_concave()) hollows[i] = stretch(face.sphere(), x, d);
+    if (face.is_concave()) hollows[i] = LineThroughFace(face, x, d).within;
   }
-  const double rounding = 1e-14 * (lens.bounds().high - lens.bounds().low).norm();
+  const auto [low, high] = lens.bounds();
+  const double rounding =
+      crossing_accuracy(x) + crossing_accuracy(std::max(std::abs(low[2]), std::abs(high[2])));
   const auto is_way_in = [&](double way) {
     return way > -rounding && way >= within.from && way < within.to - rounding &&
            std::ranges::none_of(hollows, [&](const Stretch& hollow) {

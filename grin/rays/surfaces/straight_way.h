@@ -15,9 +15,17 @@ namespace flatspeckle::grin {
 
 inline constexpr double no_way = std::numeric_limits<double>::infinity();
 
+/// To which a line of such coordinates is found to meet a surface.
+inline double crossing_accuracy(double coordinate) {
+  return 32 * std::numeric_limits<double>::epsilon() * coordinate;
+}
+inline double crossing_accuracy(const Vec3& x) {
+  return crossing_accuracy(x.cwiseAbs().maxCoeff());
+}
+
 inline double way_out(const Sphere& sphere, const Vec3& x, const Vec3& d) {
   const Vec3 from = x - sphere.centre;
-  const double b = from.dot(d), c = from.squaredNorm() - sphere.radius * sphere.radius;
+  const double b = from.dot(d), c = sphere.power(x);
   const double root = std::sqrt(std::max(0.0, b * b - c));
   return std::max(0.0, b > 0 ? -c / (b + root) : root - b);
 }
@@ -28,7 +36,7 @@ inline double way_in(const Sphere& sphere, const Vec3& x, const Vec3& d) {
   const double square = sphere.radius * sphere.radius;
   const double under = square - (from - b * d).squaredNorm();
   if (under <= 0) return no_way;
-  return std::max(0.0, (from.squaredNorm() - square) / (std::sqrt(under) - b));
+  return std::max(0.0, sphere.power(x) / (std::sqrt(under) - b));
 }
 
 inline double way_out(const Plane& plane, const Vec3& x, const Vec3& d) {
@@ -47,19 +55,23 @@ inline double way_out(const Box& box, const Vec3& x, const Vec3& d) {
   }
   return std::max(0.0, way);
 }
+/// What is within already, to more than rounding, is on its way out.
 inline double way_in(const Box& box, const Vec3& x, const Vec3& d) {
-  double enter = -no_way, leave = no_way;
+  double enter = -no_way, leave = no_way, speed = 0;
   for (int a = 0; a < 3; ++a) {
     if (d[a] == 0) {
       if (x[a] <= box.low[a] || x[a] >= box.high[a]) return no_way;
       continue;
     }
     const double low = (box.low[a] - x[a]) / d[a], high = (box.high[a] - x[a]) / d[a];
-    enter = std::max(enter, std::min(low, high));
+    const double here = std::min(low, high);
+    if (here > enter) {
+      enter = here;
+      speed = std::abs(d[a]);
+    }
     leave = std::min(leave, std::max(low, high));
   }
-  const double rounding = 1e-14 * (box.high - box.low).norm();
-  return enter < leave && enter > -rounding ? std::max(0.0, enter) : no_way;
+  return enter < leave && enter * speed >= -crossing_accuracy(x) ? std::max(0.0, enter) : no_way;
 }
 
 double way_out(const Lens& lens, const Vec3& x, const Vec3& d);
