@@ -48,13 +48,19 @@ void check_start(const SceneField& scene, const Stage& stage, const RayStops& st
       refuse("behind stop_plane = " + listed(plane->point) + ' ' + listed(plane->outwards));
 }
 
+double largest_coordinate(const std::vector<RayStart>& starts) {
+  double largest = 0;
+  for (const RayStart& start : starts) largest = std::max(largest, start.x.cwiseAbs().maxCoeff());
+  return largest;
+}
+
 class BundleTracer {
  public:
   BundleTracer(const SceneField& scene, const Stage& stage, const RayStops& stops,
-               const RaySteps& steps, std::size_t path_points)
+               const RaySteps& steps, const std::vector<RayStart>& starts, std::size_t path_points)
       : scene_(scene),
         stage_(stage),
-        regions_(stage),
+        regions_(stage, largest_coordinate(starts)),
         stops_(stops),
         steps_(steps),
         path_points_(path_points),
@@ -93,14 +99,16 @@ class BundleTracer {
     Going(const BundleTracer& tracer, std::size_t number_of_ray, const RayStart& start)
         : number(number_of_ray),
           log(tracer.steps_, tracer.path_points_ > 0),
-          part(tracer.part_at(start)),
+          part(tracer.regions_.at(start.x, start.direction)),
           ray{start.x, (1 + tracer.excess(part, start.x, start.direction)) * start.direction},
+          ends(tracer.sides_of_ends(ray)),
           first(tracer.invariants(ray)) {}
 
     std::size_t number;
     RayLog log;
     Part part;
     RayState ray;
+    KnownSides ends;
     double transmittance = 1;
     RayInvariants first;
     std::uint64_t steps = 0;
@@ -174,7 +182,25 @@ class BundleTracer {
     return ray_invariants(*inside_, ray, scene_.centre, scene_.axis);
   }
   TraceLimits limits(const Going& going) const {
-    return {stops_.max_length - going.ray.arc_length, stops_.location};
+    TraceLimits limits{stops_.max_length - going.ray.arc_length, stops_.location};
+    limits.sides = going.ends;
+    for (Part body = 1; body < regions_.parts(); ++body) {
+      KnownSides& sides = limits.sides;
+      (body < going.part    ? sides.ignored
+       : body == going.part ? sides.inside
+                            : sides.outside) |= bit(number_of_stops() + body - 1);
+    }
+    return limits;
+  }
+  static std::uint64_t bit(int surface) { return std::uint64_t{1} << surface; }
+  /// Stop surfaces, and the grid, which a ray stays on one side of until it ends.
+  KnownSides sides_of_ends(const RayState& start) const {
+    const Watch watch(surfaces_, {0, stops_.location}, start);
+    KnownSides sides;
+    for (int i = 0; i < number_of_stops(); ++i)
+      (watch.is_inside(i) ? sides.inside : sides.outside) |= bit(i);
+    if (scene_.grid) sides.inside |= bit(number_of_stops() + regions_.parts() - 1);
+    return sides;
   }
 
   TracedRay finish(const Going& going, const TraceEnd& end) const {
@@ -199,12 +225,19 @@ class BundleTracer {
     constexpr int most_seams = 100'000;
     if (leaves_grid(going.ray)) return {.stop = Stop::surface, .surface = number_of_stops()};
     for (int i = 0; i < most_seams; ++i) {
-      const TraceEnd end = follow_part(going);
+      TraceEnd end = follow_part(going);
+      if (is_body(end.surface)) end.surface = stop_in_contact(going.ray.x).value_or(end.surface);
       if (has_ended(going, end)) return end;
       if (is_body(end.surface)) cross(going, end.surface - number_of_stops() + 1);
     }
     throw InputError("max_length", stops_.max_length,
                      name(going.number) + " meets the rim, or bodies, too often");
+  }
+  /// A ray ends before the surface of a body that a stop surface coincides with.
+  std::optional<int> stop_in_contact(const Vec3& x) const {
+    for (int i = 0; i < number_of_stops(); ++i)
+      if (std::abs(distance(surfaces_[i], x)) <= regions_.contact(x)) return i;
+    return std::nullopt;
   }
   TraceEnd follow_part(Going& going) const {
     const double before = going.ray.arc_length;
@@ -248,16 +281,6 @@ class BundleTracer {
   const RayField& field_of(Part part, const RayState& ray) const {
     if (plain_[part]) return *plain_[part];
     return is_outside(ray) ? *outside_ : *inside_;
-  }
-  /// On a body's surface, that which the ray goes into.
-  Part part_at(const RayStart& start) const {
-    for (Part part = regions_.parts() - 1; part > around; --part) {
-      const double outside = distance(regions_.surface(part), start.x);
-      if (outside < -stops_.location) return part;
-      if (outside > stops_.location) continue;
-      if (normal(regions_.surface(part), start.x).dot(start.direction) < 0) return part;
-    }
-    return around;
   }
   /// Where it was outside of the rim, in one way.
   bool comes_inside(Going& going) const {
@@ -343,7 +366,7 @@ std::vector<TracedRay> trace_rays(const SceneField& scene, const Stage& stage,
                                   const std::vector<RayStart>& starts, std::size_t path_points) {
   for (std::size_t i = 0; i < starts.size(); ++i) check_start(scene, stage, stops, i, starts[i]);
   std::vector<TracedRay> rays(starts.size());
-  const BundleTracer tracer(scene, stage, stops, steps, path_points);
+  const BundleTracer tracer(scene, stage, stops, steps, starts, path_points);
   if (!tracer.has_lanes()) {
     parallel_for(starts.size(), [&](std::size_t i) { rays[i] = tracer.trace(i, starts[i]); });
     return rays;

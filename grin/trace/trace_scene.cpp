@@ -261,6 +261,7 @@ void settle_field(TraceScene& scene, const Keys& keys, const TraceValues& values
     scene.stage = make_ray_stage(keys, values.bodies, scene.field);
   scene.stops =
       make_ray_stops(keys, values.stops, scene.field.scale, farthest, surfaces_of(scene.stage));
+  check_bodies(scene.stage);
 }
 
 /// Curves want shorter steps than rays, by default.

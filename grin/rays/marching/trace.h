@@ -17,6 +17,7 @@ inline TraceEnd trace_straight(const Homogeneous& field, std::span<const Surface
   double way = limits.max_arc_length;
   int surface = -1;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (limits.sides.ignores(i)) continue;
     const double here = watch.is_inside(i) ? way_out(surfaces[i], ray.x, direction)
                                            : way_in(surfaces[i], ray.x, direction);
     if (here >= way) continue;
@@ -48,8 +49,7 @@ inline TraceEnd end_at(const Watch& watch, const RayState& ray, const TraceLimit
 /// Goes on from a ray's state to the first of the surfaces that it meets, or to the full length.
 /// Far from all surfaces nothing is tested: the signed distance, once known, is spent step by step
 /// (sphere tracing). A step that may cross is searched for its first crossing, and the ray ends
-/// with the part of that step that leads there; a surface that is touched for less than 1/64 of a
-/// step may be missed. Steps: grin/rays/marching/stepper.h.
+/// with the part of that step that leads there. Steps: grin/rays/marching/stepper.h.
 template <class Steps, IndexField F>
 TraceEnd trace(const F& field, std::span<const Surface> surfaces, const TraceLimits& limits,
                Steps& steps, RayState& ray) {
@@ -78,6 +78,8 @@ TraceEnd trace(const F& field, std::span<const Surface> surfaces, const TraceLim
       ray = start;
       steps.step(field, theta * h, ray);
       const TraceEnd found = trace_parts::end_at(watch, ray, limits);
+      if (found.surface >= 0)
+        settle(surfaces[found.surface], watch.is_inside(found.surface), limits.tolerance, ray);
       return {found.stop, found.surface, end.steps, end.looks};
     }
     if (is_lost) {

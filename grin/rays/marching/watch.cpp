@@ -3,13 +3,15 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "grin/rays/surfaces/straight_way.h"
 
 namespace flatspeckle::grin {
 
 Watch::Watch(std::span<const Surface> surfaces, const TraceLimits& limits, const RayState& start)
     : surfaces_(surfaces),
       tolerance_(limits.tolerance),
-      last_arc_length_(start.arc_length + limits.max_arc_length) {
+      last_arc_length_(start.arc_length + limits.max_arc_length),
+      known_(limits.sides) {
   if (surfaces.size() > max_surfaces) throw InputError("surfaces", surfaces.size(), "at most 64");
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const double d = distance(surfaces[i], start.x);
@@ -17,6 +19,20 @@ Watch::Watch(std::span<const Surface> surfaces, const TraceLimits& limits, const
     const bool inside = on_surface ? start.v.dot(normal(surfaces[i], start.x)) < 0 : d < 0;
     on_surface_ |= std::uint64_t{on_surface} << i;
     inside_ |= std::uint64_t{inside} << i;
+  }
+  inside_ = (inside_ | known_.inside) & ~known_.outside;
+}
+
+void settle(const Surface& surface, bool inside, double tolerance, RayState& ray) {
+  const double off = distance(surface, ray.x), n = ray.v.norm(), most = 100 * tolerance;
+  const bool is_beyond = (off < 0) != inside;
+  const Vec3 towards = (is_beyond ? -1 : 1) / n * ray.v;
+  const double way = off < 0 ? way_out(surface, ray.x, towards) : way_in(surface, ray.x, towards);
+  if (way <= most) {
+    ray.x += way * towards;
+    ray.accumulate(n, (is_beyond ? -way : way) / n);
+  } else {  // a ray that grazes
+    ray.x -= off * normal(surface, ray.x);
   }
 }
 
@@ -30,17 +46,25 @@ double Watch::clearance(std::size_t i, const Vec3& x) const {
 double Watch::clearance(const RayState& ray) const {
   double least = last_arc_length_ - ray.arc_length;
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+    if (known_.ignores(i)) continue;
     const double here = clearance(i, ray.x);
     if (!(here >= least)) least = here;  // NaN stays
   }
   return least;
 }
 
+/// Only a surface that the ray leaves counts as put back, so that of two close to each other the
+/// one that is met first is the nearest.
 int Watch::nearest(const RayState& ray) const {
   double least = last_arc_length_ - ray.arc_length;
   int nearest = -1;
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-    const double here = clearance(i, ray.x);
+    if (known_.ignores(i)) continue;
+    const Surface& surface = surfaces_[i];
+    const double away = is_inside(i) ? -distance(surface, ray.x) : distance(surface, ray.x);
+    if (away >= least) continue;
+    const bool nears = (ray.v.dot(normal(surface, ray.x)) > 0) == is_inside(i);
+    const double here = nears ? away : clearance(i, ray.x);
     if (here >= least) continue;
     least = here;
     nearest = static_cast<int>(i);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "grin/rays/connections/geometric_spreading.h"
+#include "grin/rays/marching/watch.h"
 #include "grin/rays/surfaces/first_crossing.h"
 
 namespace flatspeckle::grin {
@@ -177,8 +178,15 @@ std::optional<LegEnd> Space::curved_leg(Flight& flight, Neighbours& neighbours,
   const LegStop stop = field_->fly(leg_room(), longest, weight, random, ray,
                                    follows ? &neighbours.tangent : nullptr);
   if (stop == LegStop::lost) return std::nullopt;
+  const LegEnd end = stop == LegStop::collision ? at_collision : end_on_surface(ray);
   end_leg(flight, ray, weight);
-  return stop == LegStop::collision ? at_collision : end_at(ray.x);
+  return end;
+}
+
+LegEnd Space::end_on_surface(RayState& ray) const {
+  const std::size_t nearest = room().nearest(ray.x);
+  settle(room().surfaces[nearest], nearest == 0, 1e-9 * setup_->options.step, ray);
+  return setup_->field_part + static_cast<LegEnd>(nearest);
 }
 
 void Space::end_leg(Flight& flight, const RayState& ray, double weight) const {

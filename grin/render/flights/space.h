@@ -158,10 +158,8 @@ class Space {
   Room room() const { return setup_->stage.regions().room(setup_->field_part); }
   const PartMedium& medium() const { return setup_->stage.medium(setup_->field_part); }
   LegRoom leg_room() const { return {room(), medium(), setup_->options.step}; }
-  /// The surface on which it ends at x.
-  LegEnd end_at(const Vec3& x) const {
-    return setup_->field_part + static_cast<Part>(room().nearest(x));
-  }
+  /// The surface on which it ends, where the ray is then, to rounding.
+  LegEnd end_on_surface(RayState& ray) const;
 
   friend class Legs;
   class Lanes;

@@ -119,7 +119,7 @@ class Legs {
     const LegRoom room{space_.room(), clear, step()};
     if (space_.field_->fly(room, longest(), all, random, ray, tangent) != LegStop::surface)
       return std::nullopt;
-    const LegEnd end = space_.end_at(ray.x);
+    const LegEnd end = space_.end_on_surface(ray);
     if (end == at_boundary) return std::nullopt;
     return Meeting{end, regions().beyond(part, end, ray.x, ray.v)};
   }

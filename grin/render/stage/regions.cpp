@@ -7,13 +7,13 @@
 
 namespace flatspeckle::grin {
 
-Regions::Regions(const Stage& stage) {
+Regions::Regions(const Stage& stage, std::optional<double> farthest) {
   for (Part part = around; part < stage.parts(); ++part) surfaces_.push_back(stage.surface(part));
   if (stage.bodies.empty()) return;
   for (const Surface& surface : surfaces_)
     if (std::holds_alternative<LevelSurface>(surface)) most_legs_ = 10000;
   const auto [low, high] = bounds(stage.boundary);
-  touching_ = 1e-9 * (high - low).norm();
+  farthest_ = farthest.value_or(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff());
 }
 
 Part Regions::at(const Vec3& x) const {
@@ -24,7 +24,7 @@ Part Regions::at(const Vec3& x) const {
 
 bool Regions::goes_into(Part body, const Vec3& x, const Vec3& d) const {
   const double outside = distance(surfaces_[body], x);
-  if (std::abs(outside) > touching_) return outside < 0;
+  if (std::abs(outside) > contact(x)) return outside < 0;
   return normal(surfaces_[body], x).dot(d) < 0;
 }
 

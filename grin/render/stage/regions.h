@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "grin/rays/surfaces/room.h"
@@ -21,7 +22,8 @@ inline constexpr LegEnd at_collision = -1, at_boundary = 0;
 /// Which part of a stage a place lies in, and where straight lines leave that.
 class Regions {
  public:
-  explicit Regions(const Stage& stage);
+  /// farthest: the largest coordinate of where lines start, if not that of the stage's boundary.
+  explicit Regions(const Stage& stage, std::optional<double> farthest = {});
 
   Part parts() const { return static_cast<Part>(surfaces_.size()); }
   const Surface& surface(LegEnd number) const { return surfaces_[number]; }
@@ -32,8 +34,16 @@ class Regions {
   /// has grazed a level surface that is not quite round may take its time to get out again.
   int most_legs() const { return most_legs_; }
 
+  /// Surfaces that are as close to a place where a line crosses one of them are in contact, and
+  /// crossed together. It is the accuracy of the place: two surfaces farther apart are two.
+  double contact(const Vec3& x) const {
+    return crossing_accuracy(farthest_) + crossing_accuracy(x);
+  }
+
   /// Of a place in the stage; on surfaces that around them.
   Part at(const Vec3& x) const;
+  /// The same of a line that starts there; on surfaces that which it goes into.
+  Part at(const Vec3& x, const Vec3& d) const { return beyond(around, at_boundary, x, d); }
 
   /// From a point of a part, or on its surface, to where it ends.
   struct WayOut {
@@ -57,11 +67,11 @@ class Regions {
   }
 
  private:
-  /// Where it touches another surface, by the direction.
+  /// Where a surface is in contact, by the direction.
   bool goes_into(Part body, const Vec3& x, const Vec3& d) const;
 
   std::vector<Surface> surfaces_;
-  double touching_ = 0;  ///< so near to a surface is on it
+  double farthest_ = 0;
   int most_legs_ = 1000;
 };
 

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <string>
 
 #include "core/error.h"
+#include "grin/media/geometry/vector_values.h"
+#include "grin/rays/surfaces/straight_way.h"
 #include "grin/render/stage/regions.h"
 
 namespace flatspeckle::grin {
@@ -48,6 +51,39 @@ void check_flights(const ScatteringMedium& medium, const Surface& within,
                    text.str());
 }
 
+double largest_coordinate(const Box& box) {
+  return box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
+}
+
+/// Two closed surfaces that are the same but for rounding: they have the same bounds, and lines
+/// along the axes meet both at the same places.
+bool coincide(const Surface& a, const Surface& b) {
+  constexpr int lines = 7;
+  const Box box = bounds(a), other = bounds(b);
+  const double same =
+      crossing_accuracy(std::max(largest_coordinate(box), largest_coordinate(other)));
+  const auto far_apart = [&](const Vec3& x, const Vec3& y) {
+    return !((x - y).cwiseAbs().maxCoeff() <= same);
+  };
+  if (far_apart(box.low, other.low) || far_apart(box.high, other.high)) return false;
+  for (int line = 0; line < 3 * lines * lines; ++line) {
+    const int axis = line % 3, i = line / 3 % lines, j = line / 3 / lines;
+    Vec3 share = Vec3::Constant(-0.1);
+    share[(axis + 1) % 3] = (i + 0.5) / lines;
+    share[(axis + 2) % 3] = (j + 0.5) / lines;
+    const Vec3 x = box.low + share.cwiseProduct(box.high - box.low), d = Vec3::Unit(axis);
+    const double to_a = way_in(a, x, d), to_b = way_in(b, x, d);
+    if (to_a != to_b && !(std::abs(to_a - to_b) <= 1e3 * same)) return false;
+  }
+  return true;
+}
+
+std::string name_of(const Body& body) {
+  const std::string keys = body.keys, name = keys.substr(0, keys.find_first_of(",_"));
+  const auto [low, high] = bounds(body.surface);
+  return name + " from " + listed(low) + " to " + listed(high);
+}
+
 ScatteringMedium without_scattering(ScatteringMedium medium) {
   medium.mu_a = medium.mu_t();
   medium.mu_s = 0;
@@ -88,9 +124,23 @@ Stage without_scattering(const Stage& stage) {
   return black;
 }
 
+void check_bodies(const Stage& stage) {
+  for (Part part = 1; part < stage.parts(); ++part) {
+    const Body& body = stage.bodies[part - 1];
+    const Box box = bounds(body.surface);
+    if (!((box.high - box.low).minCoeff() > 8 * crossing_accuracy(largest_coordinate(box))))
+      throw InputError(name_of(body) + ": is too thin for coordinates as large as its own");
+    for (Part other = 1; other < part; ++other)
+      if (coincide(body.surface, stage.bodies[other - 1].surface))
+        throw InputError(name_of(body) + ": coincides with " + name_of(stage.bodies[other - 1]) +
+                         "; a body may be given once only");
+  }
+}
+
 void check(const Stage& stage) {
   bounds(stage.boundary);
   check_flights(stage.medium, stage.boundary, "");
+  check_bodies(stage);
   for (Part part = 1; part < stage.parts(); ++part) {
     const Body& body = stage.bodies[part - 1];
     check_flights(body.medium, body.surface, body.keys);

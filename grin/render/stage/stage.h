@@ -54,6 +54,10 @@ Stage without_scattering(const Stage& stage);
 /// To rounding: touching is allowed. Of a level surface, its bounds.
 bool lies_in(const Surface& inner, const Surface& outer);
 
+/// Throws InputError for bodies that coincide as a whole and for one so thin that crossings of its
+/// two sides cannot be told apart.
+void check_bodies(const Stage& stage);
+
 /// Throws InputError for a boundary or a body that is not closed, a body that is not within the
 /// boundary, a second one without an index, and a density grid that flights take too long through.
 void check(const Stage& stage);

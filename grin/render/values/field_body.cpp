@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "core/keys/number_text.h"
 #include "grin/media/geometry/vector_values.h"
@@ -36,6 +37,7 @@ double volume(const Surface& surface) {
   if (const auto* sphere = std::get_if<Sphere>(&surface))
     return 4 * std::numbers::pi / 3 * std::pow(sphere->radius, 3);
   if (const auto* level = std::get_if<LevelSurface>(&surface)) return level->volume();
+  if (const auto* lens = std::get_if<Lens>(&surface)) return lens->volume();
   const auto [low, high] = bounds(surface);
   return (high - low).prod();
 }
@@ -121,9 +123,16 @@ void check_within(const Body& body, const Surface& region, const std::string& na
 }
 
 void sort_by_size(std::vector<Body>& bodies) {
-  std::stable_sort(bodies.begin(), bodies.end(), [](const Body& a, const Body& b) {
-    return volume(a.surface) > volume(b.surface);
-  });
+  constexpr double rounding = 1e-12;
+  std::vector<Body> sorted;
+  for (const Body& body : bodies) {
+    const double least = (1 - rounding) * volume(body.surface);
+    const auto smaller = std::find_if(sorted.begin(), sorted.end(), [&](const Body& other) {
+      return volume(other.surface) < least;
+    });
+    sorted.insert(smaller, body);
+  }
+  bodies = std::move(sorted);
 }
 
 Lens lens_of(const std::string& key, std::span<const double> numbers) {

@@ -27,7 +27,7 @@ std::vector<Body> make_plain_bodies(const Keys& keys, const PlainBodyValues& val
 /// And for a body that is not within a region; name: of that.
 void check_within(const Body& body, const Surface& region, const std::string& name);
 
-/// A smaller body, by its volume, lies over a larger one; of equal ones the later.
+/// A smaller body, by its volume, lies over a larger one; of those equal to rounding the later.
 void sort_by_size(std::vector<Body>& bodies);
 
 // The numbers of a lens as keys have them.
