@@ -146,6 +146,59 @@ class Bodies(BodiesTest):
         momentum = guide["exit/dx"] * np.sqrt(1.5**2 - (0.3 * guide["exit/x"])**2)
         np.testing.assert_allclose(found["exit/dx"], momentum / 1.7, rtol=1e-9)
 
+class Contact(BodiesTest):
+    AXIS = {**PARALLEL, "ray_count": 1, "origin": [0.1, 0.2, -1]}
+
+    def through(self, *indices):
+        """Transmittance at normal incidence through media one after the other."""
+        return np.prod([1 - ((a - b) / (a + b))**2 for a, b in zip(indices, indices[1:])])
+
+    def test_field_body_and_block_share_a_face(self):
+        for gap, indices in (0, (1, 1.5, 1.3, 1)), (1e-9, (1, 1.5, 1, 1.3, 1)):
+            found = self.trace(**self.AXIS | {"field": "parabolic", "origin": [-0.3, 0, -1]}, index=1.5, alpha=1e-6,
+                               body_box=[-1, -1, 0, 1, 1, 0.5], block=[-1, -1, 0.5 + gap, 1, 1, 3, 1.3, 0, 0, 0],
+                               stop_plane=plane(5))
+            np.testing.assert_allclose(found["optical_path"], 7, atol=1e-9)
+            np.testing.assert_allclose(found["transmittance"], self.through(*indices), rtol=1e-10)
+
+    def test_a_body_flush_with_the_one_around_it(self):
+        found = self.trace(**self.AXIS, block=[-1, -1, 0, 1, 1, 1, 1.3, 0, 0, 0, -0.5, -0.5, 0.3, 0.5, 0.5, 1, *GLASS],
+                           stop_plane=plane(4))
+        np.testing.assert_allclose(found["optical_path"], 1 + 0.3 * 1.3 + 0.7 * 1.5 + 3, rtol=1e-14)
+        np.testing.assert_allclose(found["transmittance"], self.through(1, 1.3, 1.5, 1), rtol=1e-14)
+
+    def test_many_plates_in_contact(self):
+        for count in 1, 2, 50:
+            rows = [[-1, -1, 0.1 * i, 1, 1, 0.1 * (i + 1), 1.5 if i % 2 else 1.2, 0, 0, 0] for i in range(count)]
+            found = self.trace(**self.AXIS, block=sum(rows, []), stop_plane=plane(7))
+            indices = [1, *(row[6] for row in rows), 1]
+            np.testing.assert_allclose(found["transmittance"], self.through(*indices), rtol=1e-12)
+            np.testing.assert_allclose(found["optical_path"], 8 + 0.1 * (sum(indices[1:-1]) - count), rtol=1e-13)
+
+    def test_a_stop_plane_on_a_face_ends_rays_before_it(self):
+        found = self.trace(**self.AXIS, block=[-1, -1, 0.1, 1, 1, 0.7, *GLASS], stop_plane=plane(0.1 + 0.6))
+        self.assertEqual(found["status"], 0)
+        np.testing.assert_allclose(found["optical_path"], 1.1 + 0.6 * 1.5, rtol=1e-14)
+        np.testing.assert_allclose(found["transmittance"], 0.96, rtol=1e-14)
+
+    def test_huge_radii_are_planes(self):
+        keys = {**PARALLEL, "light": "disk", "ray_count": 50, "origin": [0, 0, -20], "stop_plane": plane(50),
+                "max_length": 1000, "image_plane": plane(100), "refocus": True}
+        flat = self.trace(**keys, lens=[0, 0, 0, 12.5, 60, 0, 5, 1.5168, 0, 0, 0])
+        self.assertAlmostEqual(float(flat["image/distance"]), 17.796409, delta=1e-6)
+        for radius in 1e14, -1e15, 1e17, 1e50:
+            found = self.trace(**keys, lens=[0, 0, 0, 12.5, 60, radius, 5, 1.5168, 0, 0, 0])
+            np.testing.assert_allclose(found["image/distance"], flat["image/distance"], rtol=1e-9)
+            np.testing.assert_allclose(found["image/spot_radius"], flat["image/spot_radius"], rtol=1e-7)
+
+    def test_a_rod_with_a_round_end(self):
+        """The far half of the sphere of its end does not cut it."""
+        for back in (-1, -0.6):
+            found = self.trace(**PARALLEL, ray_count=1, origin=[0, 0, -1], lens=[0, 0, 0, 0.5, 0, back, 5, *GLASS],
+                               stop_plane=plane(8))
+            np.testing.assert_allclose(found["optical_path"], 11.5, rtol=1e-14)
+
+
 class Image(BodiesTest):
     def test_aplanatic_points(self):
         """From R/n beside a ball's centre all rays seem to come from n R: no spot, and by Fermat no
@@ -212,6 +265,9 @@ class Refused(BodiesTest):
                 ({"body_sphere": [0, 0, 0, 2], "field": "luneburg"}, "inside of the rim of luneburg"),
                 ({"body_sphere": [0, 0, 0, 2], "field": "parabolic", "index": 1.5, "alpha": 1}, "must be positive"),
                 ({"ball": [0, 0, 0, 1, *GLASS] * 63}, "stop surfaces and bodies = 64: must be at most 62"),
+                ({"ball": [0, 0, 0, 1, *GLASS] * 2}, "ball from -1 -1 -1 to 1 1 1: coincides with ball from -1 -1 -1"),
+                ({"ball": [0, 0, 0, 1, *GLASS], "lens": [0, 0, -1, 1, 1, -1, 2, *GLASS]}, "coincides with"),
+                ({"block": [0, 0, 1, 1, 1, 1 + 1e-14, *GLASS]}, "block from 0 0 1 to 1 1 1: is too thin"),
                 ({"body_sphere": [0, 0, 0, 1], "connect": [0, 0, 0, 0, 0, 1], "light": None, "stop_plane": None},
                  "body_sphere")):
             self.assert_refused([message], "trace", **self.KEYS | keys)
