@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <iostream>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -165,6 +166,18 @@ void print_summary(const wave::WaveSolution& solution) {
               solution.method().c_str(), diagnosis.residual);
   if (diagnosis.condition >= 0) std::printf("condition %.1e, ", diagnosis.condition);
   std::printf("boundary residual %.1e\n", diagnosis.boundary_residual);
+  if (diagnosis.truncation >= 0)
+    std::printf("higher orders change the fields by %.1e\n", diagnosis.truncation);
+  std::printf("a rounding of the radius changes the fields by %.1e; power balance off by %.1e\n",
+              diagnosis.rounding, diagnosis.power_balance);
+}
+
+/// Exit status of fields with such a fault (wave::Diagnosis), which is told.
+int status_of(const std::string& fault, double tolerance) {
+  if (fault.empty()) return ExitStatus::done;
+  std::printf("not converged to the tolerance %s: %s\n", number_text(tolerance).c_str(),
+              fault.c_str());
+  return ExitStatus::error_not_reached;
 }
 
 /// Far views, near sensors, or both.
@@ -201,6 +214,18 @@ wave::WaveSolution solved(const SolveKeys& values, const Placement& placement, d
     for (const Vec2& point : wave::map_sensors(*grid, placement)) options.sensors.push_back(point);
   return wave::solve(placement, 2 * std::numbers::pi / wavelength, values.spec.light_angles,
                      options);
+}
+
+/// Says where an index may be n - 1, as tables of gases and of contrasts have it.
+void note_thin_index(const Placement& placement) {
+  constexpr double rare = 0.8;  // bubbles in solids are of such an index
+  const auto thin = std::ranges::find_if(placement, [](const PlacedScatterer& placed) {
+    const Complex index = placed.scatterer.index;
+    return placed.scatterer.is_penetrable() && index.imag() == 0 && index.real() < rare;
+  });
+  if (thin != placement.end())
+    std::cerr << "note: index " << number_text(thin->scatterer.index.real())
+              << " is below that of the surroundings, which is 1: where it is n - 1, give n\n";
 }
 
 /// One wavelength after the other; nothing where a signal came.
@@ -327,6 +352,13 @@ class SolveExperiment : public OneShot {
     for (const Vec2 sensor : sensors) graded_->views.push_back(near_sensor(sensor));
   }
 
+  void note() const override {
+    if (cluster_) return;
+    if (placement_.empty())
+      std::cerr << "note: the placement holds no scatterers: all scattered fields are 0\n";
+    note_thin_index(placement_);
+  }
+
   bool looks_for_signals() const override { return wavelengths_ && !wavelengths_->values.empty(); }
   ResultFile::Storage storage() const override {
     return grid_ ? ResultFile::Storage::disk : ResultFile::Storage::memory;
@@ -373,7 +405,8 @@ class SolveExperiment : public OneShot {
     write_scene(file);
     const std::string plan = plan_of(*found, *wavelengths_, placement_);
     if (tells) std::printf("%sresidual at most %.1e\n", plan.c_str(), found->residual());
-    return Made{plan + "one solution after the other", 1};
+    return Made{plan + "one solution after the other", 1,
+                status_of(found->fault(), values_.tolerance)};
   }
 
   std::optional<Made> make_fields(ResultFile& file, bool tells) const {
@@ -395,7 +428,8 @@ class SolveExperiment : public OneShot {
     write_scene(file);
     if (tells) print_summary(solution);
     if (tells && grid_) std::printf("%s\n", map_method.c_str());
-    return Made{plan_of(solution, map_method), 1};
+    return Made{plan_of(solution, map_method), 1,
+                status_of(solution.diagnosis().fault(), values_.tolerance)};
   }
 
   void write_scene(ResultFile& file) const {

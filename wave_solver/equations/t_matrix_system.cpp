@@ -100,8 +100,16 @@ constexpr double nowhere = std::numeric_limits<double>::infinity();
 // Orders beyond the oscillating ones of the first try.
 constexpr int first_orders = 16;
 
-// And up to which pairs are solved: the images in hard disks add up, so that their bound is sharp.
-int most_paired(const Scatterer& disk) {
+// Whether a static image in the disk is stronger than its charge, (m^2 - 1) / (m^2 + 1) times.
+// Waves of high orders, gap plasmons, then run along a narrow gap.
+bool amplifies_images(const Scatterer& disk) {
+  return disk.kind == Scatterer::Kind::te && (disk.index * disk.index).real() < 0;
+}
+
+// Orders beyond the oscillating ones up to which pairs are solved. The images in hard disks add up,
+// so that their bound is sharp; with gap plasmons there is no bound.
+int most_paired(const Scatterer& disk, bool plasmons) {
+  if (plasmons) return 1024;
   return disk.kind == Scatterer::Kind::hard ? 64 : 512;
 }
 
@@ -194,10 +202,14 @@ class BasisOrders {
     for (const auto& placed : placement) species_of_.push_back(species_of(placed.scatterer));
   }
 
-  std::vector<ScaledComplex> basis(std::size_t j, const std::vector<Neighbour>& around) {
-    const bool disk = placement_[j].scatterer.is_disk();
-    return species_[species_of_[j]].up_to(disk ? order_of(j, around) : 0);
+  std::vector<ScaledComplex> basis(std::size_t j, const std::vector<Neighbour>& around,
+                                   double growth) {
+    if (!placement_[j].scatterer.is_disk()) return species_[species_of_[j]].up_to(0);
+    return species_[species_of_[j]].up_to(
+        static_cast<int>(std::ceil(growth * order_of(j, around) + 8 * (growth - 1))));
   }
+
+  bool met_gap_plasmons() const { return met_gap_plasmons_; }
 
  private:
   std::size_t species_of(const Scatterer& scatterer) {
@@ -222,7 +234,7 @@ class BasisOrders {
   Contact contact_of(std::size_t j, const Neighbour& neighbour) const {
     const double a = placement_[j].scatterer.radius,
                  b = placement_[neighbour.scatterer].scatterer.disk_radius();
-    const double relative = (neighbour.distance - a - b) / (b > 0 ? std::min(a, b) : a);
+    const double relative = (neighbour.distance - (a + b)) / (b > 0 ? std::min(a, b) : a);
     const double step = std::floor(steps * std::log2(relative));
     return {species_of_[j], species_of_[neighbour.scatterer],
             static_cast<int>(std::min<double>(last_step, step))};
@@ -260,11 +272,19 @@ class BasisOrders {
   int pair_order(std::size_t j, const Neighbour& neighbour, double sensor) {
     Species& own = species_[species_of_[j]];
     const Contact contact = contact_of(j, neighbour);
+    const bool plasmons =
+        contact.step < 0 &&
+        (amplifies_images(own.scatterer) || amplifies_images(species_[contact.second].scatterer));
+    met_gap_plasmons_ = met_gap_plasmons_ || plasmons;
+    const int most = most_paired(own.scatterer, plasmons), highest = own.oscillating + 3 * most / 4;
     const double factor = safety(own.scatterer, k_);
-    for (int more = first_orders; more <= most_paired(own.scatterer); more *= 2)
-      if (const auto order =
-              order_within(own, pair_strength(contact, own.oscillating + more), sensor, factor))
-        return *order;
+    for (int more = first_orders; more <= most; more *= 2) {
+      const auto& strength = pair_strength(contact, own.oscillating + more);
+      if (const auto order = order_within(own, strength, sensor, factor)) return *order;
+      if (plasmons && least_order(contact, strength) > highest)
+        refuse(j, least_order(contact, strength), highest);
+    }
+    if (plasmons) refuse(j, highest + 1, highest);
     return bounded_order(j, contact, sensor);
   }
 
@@ -341,27 +361,43 @@ class BasisOrders {
 
   int bounded_order(std::size_t j, const Contact& contact, double sensor) {
     Species& own = species_[contact.first];
-    const double radius = own.scatterer.radius,
-                 other_radius = species_[contact.second].scatterer.disk_radius();
-    const double statics =
-        -std::log(tolerance_) / (2 * xi(radius, other_radius, distance_of(contact)));
-    if (statics > highest_order) refuse(j, statics);
+    const double statics = -std::log(tolerance_) / decay_of(contact);
+    if (statics > highest_order) refuse(j, statics, highest_order);
     for (int size = 128 + own.oscillating + static_cast<int>(1.4 * statics);; size *= 2) {
       const auto order =
           order_within(own, bound(contact, size), sensor, bound_safety(own.scatterer, k_));
-      if (order && *order > highest_order) refuse(j, *order);
+      if (order && *order > highest_order) refuse(j, *order, highest_order);
       if (order) return *order;
     }
   }
 
-  [[noreturn]] void refuse(std::size_t j, double order) const {
+  // 2 xi: images of images of a charge fall as e^{-2 xi n} of order n.
+  double decay_of(const Contact& contact) const {
+    return 2 * xi(species_[contact.first].scatterer.radius,
+                  species_[contact.second].scatterer.disk_radius(), distance_of(contact));
+  }
+
+  // The order that is needed if strengths of half the orders known fall like images from there on.
+  double least_order(const Contact& contact, const std::vector<double>& strength) const {
+    const std::size_t half = strength.size() / 2;
+    if (strength.empty()) return 0;
+    const double most =
+        *std::max_element(strength.begin() + static_cast<std::ptrdiff_t>(half),
+                          strength.begin() + static_cast<std::ptrdiff_t>(half + half / 2));
+    const double left = std::min(0.0, 2 * most - std::log2(species_[contact.first].field));
+    return static_cast<double>(half) +
+           (left * std::numbers::ln2 - std::log(tolerance_)) / decay_of(contact);
+  }
+
+  [[noreturn]] void refuse(std::size_t j, double order, int highest) const {
     const auto& [position, scatterer] = placement_[j];
     throw InputError("radius", scatterer.radius,
                      "the disk at (" + std::to_string(position.x) + ", " +
                          std::to_string(position.z) +
                          ") is so close to a neighbour that it needs basis order " +
                          std::to_string(static_cast<long long>(std::ceil(order))) + ", more than " +
-                         std::to_string(highest_order) +
+                         std::to_string(highest) +
+                         (highest < highest_order ? " beside a TE disk of Re(index^2) < 0" : "") +
                          "; widen the gap (min_gap) or allow a larger tolerance");
   }
 
@@ -372,26 +408,30 @@ class BasisOrders {
   std::vector<Species> species_;
   std::map<std::pair<Contact, int>, std::vector<double>> paired_, bounds_;  // by orders solved for
   std::vector<double> lone_;
+  bool met_gap_plasmons_ = false;
 };
 
 }  // namespace
 
-std::vector<std::vector<ScaledComplex>> basis(const Placement& placement, double k,
-                                              double tolerance, std::span<const Vec2> sensors) {
+Basis basis(const Placement& placement, double k, double tolerance, std::span<const Vec2> sensors,
+            double growth) {
   BasisOrders orders(placement, k, tolerance, sensors);
   const bool disks = std::any_of(placement.begin(), placement.end(),
                                  [](const auto& placed) { return placed.scatterer.is_disk(); });
   const auto around =
       disks ? neighbours(placement) : std::vector<std::vector<Neighbour>>(placement.size());
-  std::vector<std::vector<ScaledComplex>> basis;
-  for (std::size_t j = 0; j < placement.size(); ++j) basis.push_back(orders.basis(j, around[j]));
+  Basis basis;
+  for (std::size_t j = 0; j < placement.size(); ++j)
+    basis.t.push_back(orders.basis(j, around[j], growth));
+  basis.gap_plasmons = orders.met_gap_plasmons();
   return basis;
 }
 
 TMatrixSystem::TMatrixSystem(Placement placement, double k, double tolerance,
-                             std::span<const Vec2> sensors)
+                             std::span<const Vec2> sensors, double growth)
     : WaveEquations(k), placement_(std::move(placement)) {
-  const auto t = basis(placement_, k, tolerance, sensors);
+  const auto [t, gap_plasmons] = basis(placement_, k, tolerance, sensors, growth);
+  has_gap_plasmons_ = gap_plasmons;
   std::vector<Mode> modes;
   std::vector<Complex> diagonal;
   for (std::size_t j = 0; j < placement_.size(); ++j) {
@@ -409,6 +449,32 @@ TMatrixSystem::TMatrixSystem(Placement placement, double k, double tolerance,
     }
     add({placement_[j].position, placement_[j].scatterer.disk_radius()}, modes, diagonal);
   }
+}
+
+// As a difference over a step that long double resolves, and far below the width of resonances.
+std::vector<Complex> TMatrixSystem::radius_derivatives() const {
+  constexpr double step = 0x1p-36;
+  std::map<std::pair<std::size_t, int>, std::vector<Complex>> known;
+  std::vector<Scatterer> species;
+  std::vector<Complex> derivatives;
+  for (std::size_t j = 0; j < placement_.size(); ++j) {
+    const Scatterer& own = placement_[j].scatterer;
+    const auto number = static_cast<std::size_t>(std::ranges::find(species, own) - species.begin());
+    if (number == species.size()) species.push_back(own);
+    auto& of_order = known[{number, order(j)}];
+    if (of_order.empty()) {
+      const auto there = scaled_t_matrix(own, k() * (1 + step), order(j)),
+                 here = scaled_t_matrix(own, k(), order(j));
+      for (std::size_t n = 0; n < here.size(); ++n)
+        of_order.push_back(here[n].value() == 0.0L
+                               ? Complex()
+                               : Complex((static_cast<ExtendedComplex>(there[n] / here[n]) - 1.0L) /
+                                         static_cast<long double>(step)));
+    }
+    for (std::size_t n = 0; n < of_order.size(); ++n)
+      derivatives.insert(derivatives.end(), n == 0 ? 1 : 2, of_order[n]);
+  }
+  return derivatives;
 }
 
 std::vector<Complex> TMatrixSystem::source_side(Vec2 source) const {

@@ -10,7 +10,13 @@
 
 namespace flatspeckle::wave {
 
-/// T_n of every scatterer for n = 0 .. its basis order.
+/// What basis() chooses.
+struct Basis {
+  std::vector<std::vector<ScaledComplex>> t;  ///< of every scatterer: T_n, n = 0 .. its basis order
+  bool gap_plasmons = false;  ///< a TE disk of Re(index^2) < 0 has a gap narrower than a radius
+};
+
+/// T_n of every scatterer for n = 0 .. its basis order, times growth.
 ///
 /// The order is the one at which the pairs that a disk forms with the closest neighbours of every
 /// kind (neighbours.h), each solved by itself, have converged: with beta_n its
@@ -23,12 +29,13 @@ namespace flatspeckle::wave {
 /// other all add up), beta_n^2 is bounded by F |T_n| w_n^2: |H_n(k s)| is due to those images,
 /// which accumulate at the distance s (nearest_image), and gives M >= ln(1/eps) / (2 xi) in
 /// statics; between large disks |T_m H_{n+m}(k d)| max(1, |H_m(k s')|) of the neighbour's orders m
-/// is more.
+/// is more. Beside TE disks of Re(index^2) < 0, whose images are stronger than what causes them,
+/// there is no such bound: what pairs do not tell is refused.
 ///
 /// Throws InputError for scatterers without a T-matrix, and, naming the order that would be needed,
 /// where it is above highest_order.
-std::vector<std::vector<ScaledComplex>> basis(const Placement& placement, double k,
-                                              double tolerance, std::span<const Vec2> sensors);
+Basis basis(const Placement& placement, double k, double tolerance, std::span<const Vec2> sensors,
+            double growth = 1);
 
 /// Two disks of this order have 16,000 unknowns, a matrix of 4 GB.
 inline constexpr int highest_order = 4000;
@@ -38,14 +45,21 @@ inline constexpr int highest_order = 4000;
 /// (C11).
 class TMatrixSystem : public WaveEquations {
  public:
-  /// Orders follow from the tolerance. sensors: where the near field will be
-  /// wanted. Throws InputError for scatterers without a T-matrix or disks too close to be resolved.
-  TMatrixSystem(Placement placement, double k, double tolerance,
-                std::span<const Vec2> sensors = {});
+  /// Orders follow from the tolerance. sensors: where the near field will be wanted. growth: what
+  /// orders are multiplied by. Throws InputError for scatterers without a T-matrix or disks too
+  /// close to be resolved.
+  TMatrixSystem(Placement placement, double k, double tolerance, std::span<const Vec2> sensors = {},
+                double growth = 1);
 
   const Placement& placement() const { return placement_; }
+  /// Whether narrow gaps beside TE disks of Re(index^2) < 0 may resonate, many of them together:
+  /// orders that suffice for pairs are then confirmed by higher ones.
+  bool has_gap_plasmons() const { return has_gap_plasmons_; }
   /// T_n for n = 0 .. order.
   std::span<const ExtendedComplex> t_matrix(std::size_t scatterer) const { return t_[scatterer]; }
+
+  /// d ln T_n / d ln(radius) of each unknown, 0 for points.
+  std::vector<Complex> radius_derivatives() const;
 
   /// -sigma a of a point source, the Green function (C3); by reciprocity -i/4 of outside_row().
   /// Throws InputError for a source inside a disk or on a point scatterer.
@@ -54,6 +68,7 @@ class TMatrixSystem : public WaveEquations {
  private:
   Placement placement_;
   std::vector<std::vector<ExtendedComplex>> t_;
+  bool has_gap_plasmons_ = false;
 };
 
 }  // namespace flatspeckle::wave

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/numbers/bessel.h"
+#include "core/numbers/random.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/skeletons/fast_direct.h"
@@ -196,19 +197,71 @@ EquationSolver solver_of(const WaveEquations& equations, const SolveOptions& opt
   return {equations, method, options.sensors.empty() ? options.tolerance : options.tolerance / 10};
 }
 
+namespace {
+
+double norm_of(const std::vector<Complex>& values) {
+  double squares = 0;
+  for (const Complex value : values) squares += std::norm(value);
+  return std::sqrt(squares);
+}
+
+// A rounding e of a radius changes M by e |T|/T d ln T / d ln(radius) on its diagonal, one of the
+// sides likewise; to first order, M^-1 of that and a solution is what the solution changes by.
+double rounding_of(const WaveEquations& equations, EquationSolver& solver,
+                   const std::vector<Complex>& sides, const std::vector<Complex>& solution,
+                   std::span<const Complex> radius_derivatives) {
+  constexpr double rounding = std::numeric_limits<double>::epsilon();
+  const std::size_t n = equations.unknowns();
+  if (n == 0 || sides.empty()) return 0;
+  RandomStream random(0, 0, 0);
+  const auto x = combinations(solution, n);
+  auto changes = combinations(sides, n);
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    const double sign = random.uniform() < 0.5 ? -1 : 1;
+    changes[i] = rounding *
+                 (sign * changes[i] + equations.diagonal(i % n) * radius_derivatives[i % n] * x[i]);
+  }
+  std::vector<double> angles;
+  for (int i = 0; i < 16; ++i) angles.push_back(i * std::numbers::pi / 8);
+  const auto rows = equations.far_rows(angles);
+  const auto size = [&](const std::vector<Complex>& columns) {
+    return norm_of(transposed_product(rows, columns.data(), columns.size() / n, n));
+  };
+  const double whole = size(x);
+  return whole > 0 ? size(solver.solve(changes)) / whole : 0;
+}
+
+}  // namespace
+
+std::string Diagnosis::fault() const {
+  if (truncation > tolerance)
+    return "gap plasmons resonate: the last growth of the basis orders changes the fields by " +
+           scientific(truncation);
+  if (rounding > tolerance)
+    return "a rounding of the radius changes the field by " + scientific(rounding);
+  if (power_balance > power_limit)
+    return "extinction differs from scattering and absorption by " + scientific(power_balance);
+  return "";
+}
+
 LightSolution solve_lights(const WaveEquations& equations, const std::vector<double>& light_angles,
-                           const Circle& circle, const SolveOptions& options) {
+                           const Circle& circle, const SolveOptions& options,
+                           std::span<const Complex> radius_derivatives) {
   const auto basis = light_basis(light_angles, equations.k(), circle, options.tolerance);
   EquationSolver solver = solver_of(equations, options);
   const auto sides = equations.right_sides(basis.angles);
-  LightSolution found{solver.solve(sides, options.diagnose), {}, {}};
+  LightSolution found{solver.solve(sides, options.diagnose), {.tolerance = options.tolerance}, {}};
   if (options.diagnose) {
     std::vector<double> weights;  // those times their roots are rows of the unscaled equations
     for (std::size_t i = 0; i < equations.unknowns(); ++i) weights.push_back(equations.strength(i));
-    found.diagnosis = {relative_size(solver.remainder(), sides, weights), solver.condition(), -1};
+    found.diagnosis.residual = relative_size(solver.remainder(), sides, weights);
+    found.diagnosis.condition = solver.condition();
   }
-  found.coefficients = expanded(basis, std::move(found.coefficients), equations.unknowns());
   found.method = solver.description();
+  if (!radius_derivatives.empty())
+    found.diagnosis.rounding =
+        rounding_of(equations, solver, sides, found.coefficients, radius_derivatives);
+  found.coefficients = expanded(basis, std::move(found.coefficients), equations.unknowns());
   return found;
 }
 

@@ -109,6 +109,15 @@ struct Diagnosis {
   double residual = -1;
   double condition = -1;          ///< of the scaled matrix, in the Frobenius norm (an estimate)
   double boundary_residual = -1;  ///< of the fields at the rims (wave_solution.cpp)
+  /// Relative change of the fields from lower orders, where gap plasmons may resonate.
+  double truncation = -1;
+  /// Relative change of the far fields where radii and sides change by a rounding.
+  double rounding = -1;
+  double power_balance = -1, power_limit = -1;  ///< solution_invariants.h
+  double tolerance = 0;                         ///< asked for
+
+  /// Why the fields are not within the tolerance; empty where nothing says so.
+  std::string fault() const;
 };
 
 /// beta under unit plane waves.
@@ -118,9 +127,12 @@ struct LightSolution {
   std::string method;                 ///< in words
 };
 
-/// circle: that holds all bodies. Throws as EquationSolver does.
+/// circle: that holds all bodies. radius_derivatives: of the logarithm of each unknown's T-matrix
+/// element by that of the radius (TMatrixSystem); where given, rounding is measured. Throws as
+/// EquationSolver does.
 LightSolution solve_lights(const WaveEquations& equations, const std::vector<double>& light_angles,
-                           const Circle& circle, const SolveOptions& options);
+                           const Circle& circle, const SolveOptions& options,
+                           std::span<const Complex> radius_derivatives = {});
 
 EquationSolver solver_of(const WaveEquations& equations, const SolveOptions& options);
 

@@ -9,12 +9,15 @@
 #include <vector>
 
 #include "core/contract.h"
+#include "core/error.h"
+#include "core/keys/number_text.h"
 #include "core/result/result_group.h"
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/equations/neighbours.h"
 #include "wave_solver/equations/rim_waves.h"
+#include "wave_solver/solutions/solution_invariants.h"
 
 namespace flatspeckle::wave {
 
@@ -51,6 +54,8 @@ void Spectrum::add(double wavelength, const WaveSolution& solution) {
                                    : static_cast<std::uint64_t>(*std::ranges::max_element(orders)));
   residual_.push_back(solution.diagnosis().residual);
   boundary_residual_.push_back(solution.diagnosis().boundary_residual);
+  if (const auto fault = solution.diagnosis().fault(); fault_.empty() && !fault.empty())
+    fault_ = "wavelength " + number_text(wavelength) + ": " + fault;
 }
 
 double Spectrum::residual() const {
@@ -276,6 +281,43 @@ std::vector<Complex> view_rows(const TMatrixSystem& system, std::span<const View
   return system.view_rows(views);
 }
 
+// Orders grow by these where those of pairs are to be confirmed.
+const std::vector<double> confirming_growths{1.25, 1.6, 2};
+
+double relative_change(const std::vector<Complex>& before, const std::vector<Complex>& after) {
+  double changes = 0, sizes = 0;
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    changes += std::norm(after[i] - before[i]);
+    sizes += std::norm(after[i]);
+  }
+  return sizes > 0 ? std::sqrt(changes / sizes) : 0;
+}
+
+// Far ones around, or the sensors off the scatterers.
+std::vector<View> confirming_far_views() {
+  constexpr int around = 16;
+  std::vector<View> views;
+  for (int i = 0; i < around; ++i) views.push_back(far_view(2 * std::numbers::pi * i / around));
+  return views;
+}
+std::vector<View> confirming_near_views(const Placement& placement, std::vector<Vec2> sensors) {
+  std::erase_if(sensors, [&](Vec2 sensor) {
+    return std::ranges::any_of(placement, [&](const PlacedScatterer& placed) {
+      return length(sensor - placed.position) <= placed.scatterer.disk_radius();
+    });
+  });
+  return column(sensors, near_sensor);
+}
+
+double relative_change(const WaveSolution& before, const WaveSolution& after,
+                       const SolveOptions& options) {
+  const auto of = [&](const std::vector<View>& views) {
+    return relative_change(before.fields(views), after.fields(views));
+  };
+  return std::max(of(confirming_far_views()),
+                  of(confirming_near_views(after.system().placement(), options.sensors)));
+}
+
 // Of the waves and sources of a basis: [basis][unknown].
 std::vector<Complex> right_sides(const TMatrixSystem& system, const LightBasis& basis) {
   auto sides = system.right_sides(basis.angles);
@@ -328,9 +370,19 @@ Complex WaveSolution::near_field(Vec2 point, std::size_t light) const {
 }
 
 std::vector<Complex> WaveSolution::fields(std::span<const View> views) const {
-  if (system_.unknowns() == 0) return std::vector<Complex>(light_angles_.size() * views.size());
-  auto fields = transposed_product(view_rows(system_, views), coefficients_.data(),
-                                   light_angles_.size(), system_.unknowns());
+  return fields(views, 0, light_angles_.size());
+}
+
+std::vector<Complex> WaveSolution::fields(std::span<const View> views, std::size_t light) const {
+  return fields(views, light, 1);
+}
+
+std::vector<Complex> WaveSolution::fields(std::span<const View> views, std::size_t first_light,
+                                          std::size_t lights) const {
+  if (system_.unknowns() == 0) return std::vector<Complex>(lights * views.size());
+  auto fields = transposed_product(view_rows(system_, views),
+                                   &coefficients_[first_light * system_.unknowns()], lights,
+                                   system_.unknowns());
   require_finite(fields);
   return fields;
 }
@@ -339,12 +391,29 @@ WaveSolution solve(const Placement& placement, double k, const std::vector<doubl
                    const SolveOptions& options) {
   FS_EXPECT(k > 0 && options.tolerance > 0 && options.tolerance < 1);
   check_no_overlap(placement);
-  TMatrixSystem system(placement, k, options.tolerance, options.sensors);
-  auto found = solve_lights(system, light_angles, enclosing_circle(placement), options);
-  WaveSolution solution(std::move(system), light_angles, std::move(found.coefficients));
-  if (options.diagnose) found.diagnosis.boundary_residual = boundary_residual(solution);
-  solution.diagnosis_ = found.diagnosis;
-  solution.method_ = std::move(found.method);
+  const auto solved = [&](double growth) {
+    TMatrixSystem system(placement, k, options.tolerance, options.sensors, growth);
+    auto found =
+        solve_lights(system, light_angles, enclosing_circle(placement), options,
+                     options.diagnose ? system.radius_derivatives() : std::vector<Complex>{});
+    WaveSolution solution(std::move(system), light_angles, std::move(found.coefficients));
+    solution.diagnosis_ = found.diagnosis;
+    solution.method_ = std::move(found.method);
+    return solution;
+  };
+  WaveSolution solution = solved(1);
+  if (solution.system().has_gap_plasmons())
+    for (const double growth : confirming_growths) {
+      const auto before = std::exchange(solution, solved(growth));
+      const double change = relative_change(before, solution, options);
+      solution.diagnosis_.truncation = change;
+      if (change <= options.tolerance) break;
+    }
+  if (!options.diagnose) return solution;
+  solution.diagnosis_.boundary_residual = boundary_residual(solution);
+  const auto [off, limit] = power_balance(solution, options.tolerance);
+  solution.diagnosis_.power_balance = off;
+  solution.diagnosis_.power_limit = limit;
   return solution;
 }
 
@@ -360,11 +429,11 @@ FieldPlan make_field_plan(const Lights& lights, std::vector<View> views, double 
   return plan;
 }
 
+namespace {
+
 // With R the rows of the views and L the right sides of the lights, R^T M^-1 L either way round.
-std::vector<Complex> scattered_fields(const Placement& placement, double k, const FieldPlan& plan,
-                                      const SolveOptions& options) {
-  FS_EXPECT(k > 0 && options.tolerance > 0 && options.tolerance < 1);
-  const TMatrixSystem system(placement, k, options.tolerance, options.sensors);
+std::vector<Complex> fields_of(const TMatrixSystem& system, const FieldPlan& plan,
+                               const SolveOptions& options) {
   const std::size_t n = system.unknowns();
   const bool compressed = !plan.far_views.weights.empty();
   const auto views = compressed ? far_views(plan.far_views.angles) : plan.views;
@@ -382,6 +451,29 @@ std::vector<Complex> scattered_fields(const Placement& placement, double k, cons
                    plan.lights.count());
   require_finite(fields);
   return fields;
+}
+
+}  // namespace
+
+std::vector<Complex> scattered_fields(const Placement& placement, double k, const FieldPlan& plan,
+                                      const SolveOptions& options) {
+  FS_EXPECT(k > 0 && options.tolerance > 0 && options.tolerance < 1);
+  const auto system = [&](double growth) {
+    return TMatrixSystem(placement, k, options.tolerance, options.sensors, growth);
+  };
+  const TMatrixSystem first = system(1);
+  auto fields = fields_of(first, plan, options);
+  if (!first.has_gap_plasmons()) return fields;
+  double change = 0;
+  for (const double growth : confirming_growths) {
+    const auto before = std::exchange(fields, fields_of(system(growth), plan, options));
+    change = relative_change(before, fields);
+    if (change <= options.tolerance) return fields;
+  }
+  throw InputError("tolerance", options.tolerance,
+                   "narrow gaps beside TE disks of Re(index^2) < 0 resonate: higher orders still "
+                   "change the fields by " +
+                       number_text(change) + "; widen the gap (min_gap) or allow that");
 }
 
 void write_solution(ResultFile& file, const WaveSolution& solution,

@@ -35,8 +35,12 @@ class WaveSolution {
   Complex near_field(Vec2 point, std::size_t light = 0) const;
   /// Either, for all lights: [light][view].
   std::vector<Complex> fields(std::span<const View> views) const;
+  /// Of one light: [view].
+  std::vector<Complex> fields(std::span<const View> views, std::size_t light) const;
 
  private:
+  std::vector<Complex> fields(std::span<const View> views, std::size_t first_light,
+                              std::size_t lights) const;
   friend WaveSolution solve(const Placement&, double, const std::vector<double>&,
                             const SolveOptions&);
 
@@ -88,6 +92,8 @@ class Spectrum {
 
   /// The worst residual so far.
   double residual() const;
+  /// Why the first solution that is not within the tolerance is not; empty where all are.
+  const std::string& fault() const { return fault_; }
   /// Of the largest system so far.
   std::size_t unknowns() const;
 
@@ -97,6 +103,7 @@ class Spectrum {
   std::vector<Complex> far_, near_;
   std::vector<std::uint64_t> unknowns_, orders_;
   std::vector<double> residual_, boundary_residual_;
+  std::string fault_;
   Placement placement_;
 };
 
