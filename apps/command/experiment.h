@@ -33,6 +33,9 @@ class Experiment {
   /// In place of the default; before add_keys(). What has no chance in it takes no seed that is
   /// given, but any default.
   void set_default_seed(std::uint64_t seed) { run_.seed = static_cast<std::int64_t>(seed); }
+  /// Only the keys are wanted (--print-config): what takes time in read() may be left out. Before
+  /// read().
+  void only_print() { only_prints_ = true; }
   /// Keys of all it reads, those of the run too; they are bound to this object.
   virtual void add_keys(Keys& keys) = 0;
   /// Makes the scene. All that can be refused is refused here: throws InputError.
@@ -55,6 +58,7 @@ class Experiment {
   RunSettings run_;
   StopRule stop_;
   std::string inputs_;
+  bool only_prints_ = false;
 };
 
 /// A result that is made in one go.

@@ -85,6 +85,7 @@ class ExperimentCall : public Call {
   Subcommand& command() override { return command_; }
   int run() override {
     Session session(command_.text(), command_.keys(), experiment_->run(), command_.only_prints());
+    if (command_.only_prints()) experiment_->only_print();
     experiment_->read(command_.keys());
     if (!command_.settle()) return ExitStatus::done;
     experiment_->note();

@@ -63,7 +63,7 @@ class CovarianceExperiment : public Experiment {
     take_q_depths(keys, q_depths_, spec_);
     choose_tilts(keys, tilt_count_, spec_, method_, run_, seed());
     scene_ = with_dimension(make_scene(keys, spec_), spec_);
-    estimation_ = made_estimation(reversed);
+    if (!only_prints_) estimation_ = made_estimation(reversed);
     disregard_unused(keys, spec_, {method_});
     neglected_ = Neglected(*scene_);
     if (method_ != "wave") refuse_absurd(methods_, neglected_);

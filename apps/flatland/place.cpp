@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iostream>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -225,6 +226,24 @@ void put_placement(const std::string& path, const std::string& text, bool is_all
   if (is_all) result_is_there();
 }
 
+/// Holds a placement to its number and its smallest gap, which are told.
+int status_of(const PlacementDraw& drawing, const Placement& placement) {
+  constexpr double rounding = 1e-9;  // of distances, in gaps and radii
+  if (!drawing.radii.empty() && placement.size() > 1) {
+    const double largest = *std::ranges::max_element(drawing.radii),
+                 within = drawing.min_gap + largest, gap = smallest_gap(placement, within);
+    std::printf("smallest gap %s%.6g, min_gap %.6g\n", gap < within ? "" : "above ", gap,
+                drawing.min_gap);
+    if (!(gap >= drawing.min_gap - rounding * (drawing.min_gap + largest))) {
+      std::cerr << "warning: disks are closer than min_gap: the placement is not as asked for\n";
+      return ExitStatus::error_not_reached;
+    }
+  }
+  if (placement.size() == drawing.count) return ExitStatus::done;
+  std::cerr << "warning: " << drawing.count << " scatterers are asked for\n";
+  return ExitStatus::error_not_reached;
+}
+
 int draw_one(const Subcommand& command, PlaceKeys& values) {
   const Keys& keys = command.keys();
   const Session session(command.text(), keys, values.run, command.only_prints(),
@@ -233,11 +252,15 @@ int draw_one(const Subcommand& command, PlaceKeys& values) {
   if (!keys.read(values.structure).empty()) keys.read(values.realizations);
   if (!command.settle()) return ExitStatus::done;
   if (!values.structure.empty()) check_result_path(values.structure);
-  const std::string text = csv_text(drawing, draw(drawing, session.seed(), 0), command.text());
-  put_placement(session.out(), text, values.structure.empty());
-  std::printf("%zu scatterers, packing fraction %.3g\nwrote %s\n", drawing.count,
+  const Placement placement = draw(drawing, session.seed(), 0);
+  put_placement(session.out(), csv_text(drawing, placement, command.text()),
+                values.structure.empty());
+  std::printf("%zu scatterers, packing fraction %.3g\nwrote %s\n", placement.size(),
               drawing.packing(0), session.out().c_str());
-  return values.structure.empty() ? ExitStatus::done : save_structure(values, drawing, session);
+  const int status = status_of(drawing, placement);
+  const int structure =
+      values.structure.empty() ? ExitStatus::done : save_structure(values, drawing, session);
+  return structure == ExitStatus::done ? status : structure;
 }
 
 }  // namespace

@@ -173,6 +173,23 @@ void require_outside(const Placement& placement, Vec2 sensor) {
   }
 }
 
+double smallest_gap(const Placement& placement, double within) {
+  double largest = 0, smallest = within;
+  for (const auto& placed : placement) largest = std::max(largest, placed.scatterer.disk_radius());
+  CellGrid grid(2 * largest + within);
+  for (std::size_t j = 0; j < placement.size(); ++j) {
+    const auto& [position, scatterer] = placement[j];
+    grid.any_near(position, [&, here = position, radius = scatterer.disk_radius()](Vec2 other,
+                                                                                   std::size_t l) {
+      const double reach = radius + placement[l].scatterer.disk_radius();
+      smallest = std::min(smallest, length(here - other) - reach);
+      return false;
+    });
+    grid.insert(position, j);
+  }
+  return smallest;
+}
+
 void check_no_overlap(const Placement& placement) {
   double largest = 0;
   for (const auto& placed : placement) largest = std::max(largest, placed.scatterer.disk_radius());

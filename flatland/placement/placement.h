@@ -75,6 +75,9 @@ Placement read_placement(const std::string& path, const Scatterer& scatterer);
 /// Throws InputError where a near sensor lies inside a disk or on a point.
 void require_outside(const Placement& placement, Vec2 sensor);
 
+/// The least distance between rims, among disks closer than `within`; that where none is closer.
+double smallest_gap(const Placement& placement, double within);
+
 /// Throws InputError naming two scatterers that overlap or coincide.
 void check_no_overlap(const Placement& placement);
 
