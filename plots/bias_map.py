@@ -2,6 +2,7 @@
 """How far Monte Carlo is from the exact solver, against 1/(k mean free path) and packing fraction,
 from the table that scripts/bias_map.py makes (default: the shipped data/bias_map.csv)."""
 
+import functools
 import pathlib
 
 from lib import page, script, style
@@ -11,6 +12,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 SHIPPED = pathlib.Path(__file__).parent.parent / "data" / "bias_map.csv"
+COLUMNS = ("family", "structure", "optical_depth", "k_mean_free_path", "packing_fraction", "k_shift_over_k",
+           "mean", "mean_error", "rms", "grazing", "grazing_error")
 KINDS = (("black", "o", "filled: mean over the views"), ("white", "o", "open: RMS"),
          ("black", "x", "crosses: mean of the views along the faces"))
 
@@ -51,7 +54,7 @@ def draw_disks(axis, rows):
     axis.set(xlabel=r"packing fraction $\phi$", title="cylinders, $ka = 1$, index 1.2")
 
 
-@script.plot(read=read_table, metavar="TABLE.csv", default=SHIPPED)
+@script.plot(read=functools.partial(read_table, columns=COLUMNS), metavar="TABLE.csv", default=SHIPPED)
 def draw(rows):
     figure, axes = plt.subplots(1, 2, figsize=(style.PAGE, 2.8))
     for axis, family, draw_family in zip(axes, ("points", "disks"), (draw_points, draw_disks)):

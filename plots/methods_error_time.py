@@ -3,6 +3,8 @@
 from the shipped table data/methods_error_time.csv; prints the table of times to 2 % and how their ratio
 grows."""
 
+import functools
+
 from lib import script, style
 from lib.result_file import read_table
 
@@ -10,6 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 TARGET = 0.02
+COLUMNS = ("method", "seed", "depth", "optical_depth", "setup_s", "cpu_s", "relative_error")
 METHODS = {"mc": ("Monte Carlo", 1.4), "wave": ("exact ensemble", 0.7)}  # names, line widths
 
 
@@ -47,7 +50,7 @@ def print_table(rows):
     print(f"ratio grows as size^{size:.2f} x OD^{density:.2f}")
 
 
-@script.plot(read=read_table, metavar="TRACES.csv")
+@script.plot(read=functools.partial(read_table, columns=COLUMNS), metavar="TRACES.csv")
 def draw(rows):
     print_table(rows)
     figure, axis = plt.subplots(figsize=(style.PAGE, 3.6))

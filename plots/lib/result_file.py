@@ -91,12 +91,23 @@ class Result:
         return list(self.attribute("swept", [])) if self.attribute("of") else []
 
 
-def read_table(path):
+class Table(np.ndarray):
+    """The rows of a table; `path` is its file."""
+
+
+def read_table(path, columns=()):
     """A CSV table with a line of names: [row], each column by its name. Lines that begin with # are
-    comments."""
+    comments. Refuses one without rows, or without some columns."""
     try:
-        with open(path) as file:
+        with open(path, encoding="utf-8-sig") as file:
             lines = [line for line in file if not line.startswith("#")]
-        return np.genfromtxt(lines, delimiter=",", names=True, dtype=None, encoding="utf-8")
-    except ValueError:
+        if len(lines) < 2:
+            raise Unusable(f"{path}: has no rows")
+        table = np.atleast_1d(np.genfromtxt(lines, delimiter=",", names=True, dtype=None, encoding="utf-8")).view(Table)
+    except (ValueError, TypeError, IndexError):
         raise Unusable(f"{path}: is no CSV table")
+    lacking = [name for name in columns if name not in (table.dtype.names or ())]
+    if lacking:
+        raise Unusable(f"{path}: has no column {', '.join(lacking)}")
+    table.path = path
+    return table

@@ -46,7 +46,12 @@ class Plot:
             for name, hint in self.needs.items():
                 file.require(name, hint)
         drawn = files if self.several else files[0]
-        return self.draw(drawn, arguments) if self.options else self.draw(drawn)
+        try:
+            return self.draw(drawn, arguments) if self.options else self.draw(drawn)
+        except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as problem:
+            names = ", ".join(str(file.path) for file in files)
+            why = " ".join(f"{type(problem).__name__}: {problem}".split())
+            raise Unusable(f"{names}: does not hold what this plot draws ({why})") from problem
 
     def run(self):
         """Draws the command line's files; ends with status 2 if they lack something."""

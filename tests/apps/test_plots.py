@@ -141,6 +141,31 @@ class Plots(ProgramTest):
             self.maker.call(subcommand, out=file.name, **keys)
         return file
 
+    def test_odd_files_end_in_one_line(self):
+        names = "method,seed,width,depth,optical_depth,setup_s,samples,cpu_s,relative_error\n"
+        tables = {"names.csv": (names, "no rows"), "empty.csv": ("", "no rows"), "other.csv": ("a,b\n1,2\n", "no column method"),
+                  "one.csv": (names + "mc,1,2,3,4,5,6,7,8\n", "does not hold"), "ragged.csv": ("a,b\n1\n2,3,4\n", "no CSV table"),
+                  "words.csv": (names + "mc,1,2,3,4,5,6,7,x\nwave,1,2,3,4,5,6,7,x\n", "does not hold")}
+        for name, (text, why) in tables.items():
+            path = self.maker.write(name, text)
+            for script in ("methods_error_time", "bias_map"):
+                with self.subTest(script=script, file=name):
+                    status, _, heard = run_script(script, path)
+                    self.assertEqual((status, heard.count("\n")), (2, 1), heard)
+                    self.assertIn(name, heard)
+                    if script == "methods_error_time":
+                        self.assertIn(why, heard)
+        for number, parts in enumerate(({"graded_spline": np.ones(3), "profile/r": np.ones(3), "profile/index": np.ones(3)},
+                                        {"slice_x": np.ones(3), "slice_z": np.ones(3), "slice_index": np.ones((2, 5))},
+                                        {"picture/shown": np.ones(3), "picture/psnr_db": 1.0})):
+            path = self.maker.folder / f"odd{number}.h5"
+            with h5py.File(path, "w") as file:
+                for name, values in parts.items():
+                    file[name] = values
+            status, _, heard = run_script("design", path)
+            self.assertEqual((status, heard.count("\n")), (2, 1), heard)
+            self.assertIn(path.name, heard)
+
     def test_each_draws_its_own_and_refuses_the_others_in_one_line(self):
         """By night all of the others, by day one in 24; by day every other figure of a script is made, of every third its first
         is drawn, and the labels of every twelfth are fitted."""
