@@ -1,8 +1,11 @@
 """One function for each subcommand, made from its keys."""
 
+import contextlib
+import fcntl
 import functools
 import inspect
 import json
+import os
 import pathlib
 import tempfile
 import textwrap
@@ -10,7 +13,7 @@ import warnings
 
 import xarray
 
-from flatspeckle import cache, keys, program
+from flatspeckle import cache, inputs, keys, program
 from flatspeckle.errors import InputError, TargetMissed
 from flatspeckle.result import read
 from flatspeckle.run import BAD_INPUT, DONE, FAILED, TARGET_MISSED, run
@@ -71,10 +74,15 @@ def command(subcommand, values, known, folder):
     return words
 
 
-def refusal(said, folder):
-    """The one line, less what is not the user's."""
+def refusal(said, folder, values=()):
+    """The one line, less what is not the user's, and with the key where it begins with the file that a key names."""
     text = (said.strip().splitlines() or ["no word of why"])[-1].removeprefix("flatspeckle: ")
-    return text.removeprefix(f"{folder / 'scene.toml'}, ")
+    text = text.removeprefix(f"{folder / 'scene.toml'}, ")
+    for name in values:
+        several = [values[name]] if isinstance(values[name], str) else values[name]
+        if any(os.path.isabs(path) and text.startswith(path) for path in several):
+            return f"{name} = {text}"
+    return text
 
 
 def make(subcommand, values, folder, progress):
@@ -82,7 +90,7 @@ def make(subcommand, values, folder, progress):
     words = command(subcommand, values, keys.rows_for(subcommand, values), folder)
     status, printed, said = run(words, progress)
     if status == BAD_INPUT:
-        raise InputError(refusal(said, folder))
+        raise InputError(refusal(said, folder, values))
     if status == FAILED:
         raise OSError(refusal(said, folder))
     if status not in (DONE, TARGET_MISSED):
@@ -92,13 +100,30 @@ def make(subcommand, values, folder, progress):
     return end
 
 
+@contextlib.contextmanager
+def alone(folder):
+    """One call at a time makes the result of a folder: others, of this process too, wait for it."""
+    with open(folder / ".lock", "w") as lock:
+        with contextlib.suppress(OSError):  # of file systems without locks
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
+def all_values(subcommand, scene):
+    """Texts of all that is given, with full paths."""
+    rows = keys.rows_for(subcommand, scene)
+    values = all_texts(scene, rows)
+    return {name: inputs.paths(rows[name], text, scene.folder) if name in rows else text for name, text in values.items()}
+
+
 def call(subcommand, scene, given, use_cache, progress):
-    values = all_texts(scene_of(scene).replace(**given), keys.rows_for(subcommand, given))
+    values = all_values(subcommand, scene_of(scene).replace(**given))
     folder = place_of_run(subcommand, values, use_cache)
     ending = ".csv" if subcommand == "place" else ".h5"
     values.setdefault("out", str(folder / f"result{ending}"))
     end = folder / "end.json"
-    known = json.loads(end.read_text()) if end.exists() else make(subcommand, values, folder, progress)
+    with alone(folder):
+        known = json.loads(end.read_text()) if end.exists() else make(subcommand, values, folder, progress)
     result = read(values["out"])
     result.attrs["printed"] = known["printed"]
     if known["status"] == TARGET_MISSED:

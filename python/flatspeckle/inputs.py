@@ -1,7 +1,9 @@
 """Arrays and tables as the files that the program reads. A file is named by its content."""
 
+import functools
 import hashlib
 import io
+import os
 import re
 
 import h5py
@@ -12,8 +14,19 @@ from flatspeckle import cache, keys, program
 from flatspeckle.errors import InputError
 from flatspeckle.result import source_of
 
-COLUMNS = re.compile(r"columns (\w+(?:, \w+)*)")
-DATASET = re.compile(r"HDF5 (?:file )?with (\w+)")
+COLUMNS = re.compile(r"columns (\w+\b(?! [a-z])(?:(?:, | \[, )\w+\b(?! [a-z]))*)")
+DATASET = re.compile(r"HDF5 (?:file )?with (?:its dataset )?(\w+)\b(?!/)")
+TABLE = re.compile(r"\bCSV\b|\btables\b")
+PICTURES = "Files of numbers"
+FILES = re.compile(r"\bCSV\b|^Files|or a file|results of fits")
+WORDS_OR_FILES = ("placement", "structure")
+
+
+def refuse(name, value, accepted):
+    """Raises InputError, which shows the value in a line."""
+    shown = f"array of shape {np.shape(value)}" if isinstance(value, np.ndarray) else (
+        type(value).__name__ if is_array(value) else repr(value))
+    raise InputError(f"{name} = {shown if len(shown) < 80 else shown[:80] + '...'}: {accepted}".replace("\n", " "))
 
 
 def kept(content, ending):
@@ -26,51 +39,90 @@ def kept(content, ending):
     return str(path)
 
 
-def csv(columns):
-    """A table of named columns, as text that reads back as the same numbers."""
-    rows = zip(*(np.asarray(values, float).ravel().tolist() for values in columns.values()), strict=True)
-    lines = [",".join(columns), *(",".join(map(repr, row)) for row in rows)]
-    return ("\n".join(lines) + "\n").encode()
+def without_mask(name, values):
+    """The values. Raises InputError for masked ones, which have none."""
+    if np.ma.is_masked(values):
+        refuse(name, values, "has masked values: leave them out or fill them")
+    if isinstance(values, (list, tuple)):
+        for one in values:
+            without_mask(name, one)
+    return values
 
 
-def hdf5(name, parts):
+def numbers(name, values):
+    """An array of real numbers. Raises InputError for what is none."""
+    without_mask(name, values)
+    try:
+        array = np.asarray(values, float)
+    except (TypeError, ValueError, OverflowError):
+        refuse(name, values, "must be an array of real numbers, whose rows have one length")
+    if array.size == 0 or not np.isfinite(array).all():
+        refuse(name, values, "must be an array of finite numbers, with one or more")
+    return array
+
+
+def rows(name, array):
+    """A table without names of columns, as text that reads back as the same numbers."""
+    array = numbers(name, array)
+    if array.ndim != 2:
+        refuse(name, array, "must have two axes, rows and columns")
+    return "".join(",".join(map(repr, row)) + "\n" for row in array.tolist())
+
+
+def csv(name, columns):
+    """A table of named columns, as such a text."""
+    arrays = {str(title): numbers(name, values) for title, values in columns.items()}
+    shapes = {array.shape for array in arrays.values()}
+    if len(shapes) != 1 or any(len(shape) != 1 for shape in shapes):
+        sizes = ", ".join(f"{title} {'x'.join(map(str, array.shape)) or 'one number'}" for title, array in arrays.items())
+        refuse(name, columns, f"must have columns of one length; has {sizes or 'none'}")
+    titles = ",".join('"' + title.replace('"', '""') + '"' if re.search(r'[,;"\s]', title) else title for title in arrays)
+    return (titles + "\n" + rows(name, np.stack(list(arrays.values()), 1))).encode()
+
+
+def hdf5(key, name, parts):
     """A dataset, with what else there is as its attributes."""
     buffer = io.BytesIO()
     with h5py.File(buffer, "w", track_order=True) as file:
-        dataset = file.create_dataset(name, data=np.asarray(parts[name], float), track_times=False)
+        dataset = file.create_dataset(name, data=numbers(key.name, parts[name]), track_times=False)
         for attribute, value in parts.items():
             if attribute != name:
-                dataset.attrs[attribute] = np.asarray(value, float)
+                dataset.attrs[attribute] = numbers(key.name, value)
     return buffer.getvalue()
 
 
-def named_columns(key, values):
-    """The columns of an array [row, column], in the order in which the key's help names them."""
+def names_of_columns(key):
+    """Those that the key's help names, in their order; optional ones too."""
     found = COLUMNS.search(" ".join(key.helps))
-    names = found[1].split(", ") if found else []
+    return re.findall(r"\w+", found[1]) if found else []
+
+
+def named_columns(key, values):
+    """The columns of an array [row, column], or of a list of frames."""
+    if key.name in ("frames", "reference"):  # each column is one of a kind, or each of a list
+        array = numbers(key.name, values)
+        frames = array[None] if array.ndim == 1 else array if isinstance(values, (list, tuple)) else array.T
+        if frames.ndim != 2:
+            refuse(key.name, array, "must have two axes, pixels and frames, or be a list of lines of pixels")
+        return {f"frame_{number}": frame for number, frame in enumerate(frames)}
+    names, values = names_of_columns(key), numbers(key.name, values)
     if values.ndim == 1:
         values = values[:, None] if len(names) == 1 else values[None, :]
     if names and values.ndim == 2 and values.shape[1] <= len(names):
         return dict(zip(names, values.T))
-    if key.name in ("frames", "reference"):  # each column is one of a kind
-        return {f"frame_{number}": column for number, column in enumerate(values.T)}
-    raise InputError(f"{key.name} = array of shape {values.shape}: must be a table of named columns, "
-                     f"{key.helps[0]}")
+    refuse(key.name, values, f"must be a table of named columns, {key.helps[0]}")
 
 
 def is_array(value):
     """What is no text, number or path, but a table or grid."""
-    return isinstance(value, (dict, np.ndarray, xarray.DataArray, xarray.Dataset)) or hasattr(value, "columns")
-
-
-def shown(value):
-    return f"array of shape {np.shape(value)}" if isinstance(value, np.ndarray) else type(value).__name__
+    return isinstance(value, (dict, np.ndarray, xarray.DataArray, xarray.Dataset)) or hasattr(value, "columns") or (
+        hasattr(value, "to_numpy") and hasattr(value, "index"))  # of pandas
 
 
 def elsewhere(key):
     """Which subcommands take a table for a key of this name."""
     rows = {name: keys.keys_of(name).get(key.name) for name in program.table(program.path())["subcommands"]}
-    found = [name for name, row in rows.items() if row and COLUMNS.search(" ".join(row.helps))]
+    found = [name for name, row in rows.items() if row and names_of_columns(row)]
     return f" here (in {' and '.join(found)} it does)" if found else ""
 
 
@@ -85,13 +137,45 @@ def file_of(key, value):
     """The path of a file with a table, grid or result in it."""
     if isinstance(value, xarray.Dataset):
         return source_of_dataset(key, value)
+    helps = " ".join(key.helps)
     if key.words:
-        raise InputError(f"{key.name} = {shown(value)}: takes no table{elsewhere(key)}; {key.accepted}")
-    grid = DATASET.search(" ".join(key.helps))
-    if grid and not (isinstance(value, dict) and grid[1] not in value):
+        refuse(key.name, value, f"takes no table{elsewhere(key)}; {key.accepted}")
+    if helps.startswith(PICTURES):
+        return kept(rows(key.name, value).encode(), ".csv")
+    if grid := DATASET.search(helps):
         parts = value if isinstance(value, dict) else {grid[1]: value}
-        return kept(hdf5(grid[1], parts), ".h5")
+        if grid[1] not in parts:
+            refuse(key.name, value, f"must have {grid[1]}, has {', '.join(map(str, parts)) or 'nothing'}; {key.helps[0]}")
+        return kept(hdf5(key, grid[1], parts), ".h5")
+    if not TABLE.search(helps):
+        refuse(key.name, value, f"takes no array; {key.helps[0]}")
     if hasattr(value, "columns"):  # of pandas
         value = {name: value[name] for name in value.columns}
-    columns = value if isinstance(value, dict) else named_columns(key, np.asarray(value))
-    return kept(csv(columns), ".csv")
+    return kept(csv(key.name, value if isinstance(value, dict) else named_columns(key, value)), ".csv")
+
+
+def names_a_file(key, text):
+    """Whether the program reads a file of this name."""
+    if key.name in WORDS_OR_FILES and not ("." in text or os.sep in text):
+        return False
+    is_input = not key.words and key.type is str and FILES.search(" ".join(key.helps))
+    return key.is_file or bool(is_input and key.name != "out" and not key.helps[0].startswith("Result file"))
+
+
+@functools.cache
+def file_keys(path):
+    """Names of the keys of all subcommands that may name files."""
+    table = program.table(path)["subcommands"]
+    return {name for one in table for name, key in keys.read_keys(path, one).items() if names_a_file(key, os.sep)}
+
+
+def paths(key, texts, folder):
+    """Texts with the full paths of files that there are: the folder of their scene file, if any, was looked at before.
+    Raises InputError for a file that is not there."""
+    for text in [texts] if isinstance(texts, str) else texts:
+        if names_a_file(key, text) and not os.path.exists(text):
+            where = f" in {folder}, where the scene is, nor in the working folder {os.getcwd()}" if folder else ""
+            raise InputError(f"{key.name} = {text}: no such file{where}")
+    full = [os.path.abspath(text) if names_a_file(key, text) else text
+            for text in ([texts] if isinstance(texts, str) else texts)]
+    return full[0] if isinstance(texts, str) else full

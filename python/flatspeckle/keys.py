@@ -65,4 +65,7 @@ def rows_for(subcommand, values):
     """Those that a call may use: sweeps and searches of another subcommand take its keys as well."""
     other = {"sweep": values.get("of"), "optimise": values.get("of", "render")}.get(subcommand)
     known = program.table(program.path())["subcommands"]
-    return {**(keys_of(other) if other in known else {}), **keys_of(subcommand)}
+    own, others = keys_of(subcommand), keys_of(other) if isinstance(other, str) and other in known else {}
+    if "points" in others and "points" in own:  # of the subcommand that is swept; the table of the sweep is named apart
+        own = {**own, "points": others["points"], "points_table": dataclasses.replace(own["points"], name="points_table")}
+    return {**others, **own}

@@ -1,5 +1,8 @@
 """Scenes: keys and their values, from keyword arguments, scene files and results, and as scene files."""
 
+import contextlib
+import decimal
+import numbers
 import os
 import re
 import tomllib
@@ -7,10 +10,12 @@ from collections.abc import Mapping
 
 import h5py
 import numpy as np
+import xarray
 
-from flatspeckle import inputs
+from flatspeckle import inputs, program
 from flatspeckle.errors import InputError
 
+MOST = 10 ** 18  # of whole numbers
 OF_KEYS = ("vary", "free", "against")  # take dicts {key: values}
 
 
@@ -18,21 +23,41 @@ class Scene(Mapping):
     """Keys and values, which do not change: `replace` makes another. A function takes one before its
     keyword arguments: covariance(scene, g=0.9)."""
 
+    folder = None  # of the scene file that it was loaded from
+
     def __init__(self, scene=(), /, **keys):
-        self._keys = {name: value for name, value in {**dict(scene), **keys}.items() if value is not None}
+        try:
+            given = {**dict(scene), **keys}
+        except (TypeError, ValueError):
+            inputs.refuse("scene", scene, "must be a Scene, a mapping, or the path of a scene file or result")
+        for name in given:
+            if not isinstance(name, str):
+                inputs.refuse("scene", name, "names of keys must be texts")
+        self._keys = {name: value for name, value in given.items() if value is not None}
+        self.folder = getattr(scene, "folder", None)
 
     def replace(self, **keys):
         """The same with other values; None takes a key away."""
-        return Scene(self._keys, **keys)
+        return Scene(self, **keys)
 
     @classmethod
     def load(cls, path):
-        """Of a scene file (TOML), or of the run that made a result file."""
-        if h5py.is_hdf5(path):
-            with h5py.File(path) as file:
-                return cls(tomllib.loads(file.attrs["config"]))
-        with open(path, "rb") as file:
-            return cls(tomllib.load(file))
+        """Of a scene file (TOML), or of the run that made a result file. Files that the scene file names are looked
+        for beside it, then in the working folder."""
+        try:
+            if h5py.is_hdf5(path):
+                with h5py.File(path) as file:
+                    return cls(tomllib.loads(file.attrs["config"]))
+            with open(path, "rb") as file:
+                scene = cls(tomllib.load(file))
+        except OSError as problem:
+            raise InputError(f"scene = {path}: {problem.strerror or problem}") from None
+        except (ValueError, KeyError, TypeError) as problem:  # also what is no TOML or text
+            raise InputError(f"scene = {path}: {problem}") from None
+        scene.folder = os.path.dirname(os.path.abspath(path))
+        names = inputs.file_keys(program.path()) & scene.keys()
+        scene._keys.update({name: beside(scene.folder, scene[name]) for name in names})
+        return scene
 
     def save(self, path):
         """As a scene file."""
@@ -52,54 +77,103 @@ class Scene(Mapping):
         return f"Scene({', '.join(f'{key}={value!r}' for key, value in self.items())})"
 
 
+def beside(folder, value):
+    """Paths in a folder, of files that are there."""
+    if isinstance(value, list):
+        return [beside(folder, one) for one in value]
+    path = os.path.join(folder, value) if isinstance(value, str) else ""
+    return path if os.path.isfile(path) else value
+
+
 def scene_of(value):
     """A Scene, a mapping, or the path of one."""
-    return Scene.load(value) if isinstance(value, (str, os.PathLike)) else Scene(value or ())
+    return Scene.load(value) if isinstance(value, (str, os.PathLike)) else Scene(() if value is None else value)
 
 
-def values_of(key, values):
+def values_of(key, name, values):
     """Of one key in such a dict: "1,2" of a list, "0:1" of bounds where there are bounds. A tuple is bounds,
     (low, high) or (low, high, "log"); an array or list is values."""
     if isinstance(values, str):
         return values
     bounds = key is not None and re.search(r"\bbounds\b", " ".join(key.helps))
-    if bounds and (key.name == "free" or isinstance(values, tuple)):
-        return ":".join(map(text_of, values))
-    return ",".join(map(text_of, np.ravel(values)))
+    between = ":" if bounds and (key.name == "free" or isinstance(values, tuple)) else ","
+    several = values if between == ":" and isinstance(values, (list, tuple)) else flat(name, values)
+    return between.join(text_of(name, one) for one in several)
+
+
+def is_many(value):
+    """Whether it is a list, an array with an axis, or a table."""
+    is_list = isinstance(value, (list, tuple, range))
+    return is_list or (inputs.is_array(value) and getattr(value, "ndim", 1) != 0)
+
+
+def flat(name, values):
+    """The values of a list or array, row by row."""
+    if not is_many(values):
+        return [values]
+    if isinstance(values, (dict, xarray.Dataset)):
+        inputs.refuse(name, values, "must be a number or a list of them")
+    if not isinstance(values, (list, tuple, range)):
+        return list(np.ravel(inputs.without_mask(name, values)))
+    inputs.without_mask(name, values)
+    if any(is_many(one) for one in values):
+        rows = [flat(name, one) for one in values]
+        if len({len(row) for row in rows}) > 1:
+            inputs.refuse(name, values, "must have rows of one length")
+        return [one for row in rows for one in row]
+    array = np.asarray(values)  # of integers and floats beside each other floats
+    return list(array if array.dtype.kind in "iufc" else values)
 
 
 def texts(key, name, value):
     """A value as the program's own texts: one, or a list of them."""
     if name in OF_KEYS and isinstance(value, Mapping):
-        return [f"{one}={values_of(key, several)}" for one, several in value.items()]
-    is_text = key is not None and key.type is str
-    if is_text and inputs.is_array(value) and not (key.is_list and isinstance(value, np.ndarray)):
+        return [f"{one}={values_of(key, name, several)}" for one, several in value.items()]
+    if not is_many(value):
+        return text_of(name, value)
+    if key is None or key.type is not str:
+        found = [text_of(name, one) for one in flat(name, value)]
+    elif key.is_list and (isinstance(value, (list, tuple)) or getattr(value, "ndim", 2) != 2):
+        found = [inputs.file_of(key, one) if is_many(one) and not key.words else text_of(name, one) for one in value]
+    else:
         return inputs.file_of(key, value)
-    if isinstance(value, (list, tuple)) and is_text:
-        if not key.is_list:
-            return inputs.file_of(key, np.asarray(value))
-        return [texts(key, name, one) if inputs.is_array(one) else text_of(one) for one in value]
-    if isinstance(value, (str, bytes, os.PathLike)) or np.ndim(value) == 0:
-        return text_of(value)
-    return [text_of(one) for one in np.ravel(value)]
+    if not found:
+        raise InputError(f"{name} = []: must have a value or more")
+    return found
 
 
-def text_of(value):
-    if isinstance(value, np.generic) or (hasattr(value, "item") and np.ndim(value) == 0):
+def text_of(name, value):
+    inputs.without_mask(name, value)
+    if isinstance(value, (np.datetime64, np.timedelta64)):
+        inputs.refuse(name, value, "must be a number, not a time")
+    if hasattr(value, "item") and np.ndim(value) == 0:
         value = value.item()
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, complex):
+    if isinstance(value, (bool, np.bool_)):
+        return str(bool(value)).lower()
+    if isinstance(value, (numbers.Real, decimal.Decimal)):
+        if isinstance(value, numbers.Integral) and abs(value) < MOST:
+            return str(int(value))
+        with contextlib.suppress(OverflowError, ValueError):
+            return repr(float(value))
+        raise InputError(f"{name}: a number is too large")
+    if isinstance(value, numbers.Complex):
+        value = complex(value)
         return f"{value.real!r}{value.imag:+}i"
-    return repr(value) if isinstance(value, (int, float)) else os.fspath(value)
+    if isinstance(value, (str, os.PathLike)) and isinstance(path := os.fspath(value), str):
+        return checked(name, path)
+    inputs.refuse(name, value, "must be a number, a text, a path, or a list or array of them")
+
+
+def checked(name, text):
+    """A text that scene files can have."""
+    if '"' in text or "\\" in text or not text.isprintable():
+        raise InputError(f"{name} = {text!r}: must be without control characters, \" and \\")
+    return text
 
 
 def line(name, value):
     """Of a scene file. The program reads numbers out of texts as well."""
     show = '"{}"'.format
-    for text in [value] if isinstance(value, str) else value:
-        if '"' in text or "\\" in text or not text.isprintable():
-            raise InputError(f"{name} = {text}: must be without control characters, \" and \\")
     shown = show(value) if isinstance(value, str) else f"[{', '.join(map(show, value))}]"
     return f"{name} = {shown}\n"
 
