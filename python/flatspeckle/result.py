@@ -73,9 +73,12 @@ def read(path):
 
 
 def read_placement(path):
-    with open(path) as file:
-        names, *rows = [line.strip().split(",") for line in file if line.strip() and not line.startswith("#")]
-    columns = np.array(rows, float).reshape(-1, len(names)).T
+    try:
+        with open(path) as file:
+            names, *rows = [line.strip().split(",") for line in file if line.strip() and not line.startswith("#")]
+        columns = np.array(rows, float).reshape(-1, len(names)).T
+    except ValueError:
+        raise InputError(f"path = {path}: is neither a result nor a placement as place writes it") from None
     result = xarray.Dataset({name: ("scatterer", column) for name, column in zip(names, columns)})
     result.encoding["source"] = path
     return result

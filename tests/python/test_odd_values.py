@@ -69,6 +69,12 @@ class Odd(PackageTest):
                 fs.flux(scene)
             self.assertEqual(caught.exception.key, "scene")
 
+    def test_files_that_are_no_results(self):
+        for name, content in (("a.csv", b"x,z\n1,a\n"), ("b.csv", b"\xff\xfe\x00"), ("c.csv", b"")):
+            (self.folder / name).write_bytes(content)
+            with self.subTest(file=name), self.assertRaisesRegex(fs.InputError, f"{name}: is neither"):
+                fs.read(self.folder / name)
+
     def test_what_the_program_refuses_has_its_key_too(self):
         with self.assertRaises(fs.InputError) as caught:
             fs.solve(placement=[[0, 0], [0, 0]], scatterer="soft", radius=0.1)
