@@ -143,7 +143,7 @@ References references_of(const Keys& keys, const RecoverKeys& values, const Tabl
   References references;
   if (keys.read(values.reference).empty()) return references;
   references.task = deconvolution_task(keys, values.deconvolution);
-  const Table table = read_csv(values.reference);
+  const Table table = read_key_table("reference", values.reference);
   const std::size_t columns = table.names().size(), count = frames.names().size();
   if (table.rows() != frames.rows())
     throw InputError("reference", table.rows(),
@@ -225,7 +225,7 @@ Make sources_of(const Keys& keys, const RecoverKeys& values, const Table& table)
 int recover_points(const Subcommand& command, RecoverKeys& values) {
   const Keys& keys = command.keys();
   const Session session(command.text(), keys, values.run, command.only_prints());
-  const Table table = read_csv(keys.required(values.frames));
+  const Table table = read_key_table("frames", keys.required(values.frames));
   const Make make = keys.read(values.recovery) == "sources" ? sources_of(keys, values, table)
                                                             : search_of(keys, values, table);
   if (!command.settle()) return ExitStatus::done;

@@ -138,10 +138,11 @@ Placement placement_of_file(const Keys& keys, const SceneSpec& spec) {
   } catch (const InputError& error) {
     throw InputError(std::string(error.what()) + " (the placement comes from " + path + ')');
   }
+  Placement placement = read_placement(path, scatterer);
   const Table table = read_csv(path);
   if (table.has("radius")) keys.disregard(spec.radius);
   if (table.has("index_re")) keys.disregard(spec.index);
-  return read_placement(path, scatterer);
+  return placement;
 }
 
 Placement drawn_placement(const SceneSpec& spec, const Scene& scene, std::uint64_t seed) {
@@ -192,7 +193,7 @@ Sensors sensors_of(const Keys& keys, const SceneSpec& spec) {
   keys.read(spec.view_angles);
   if (keys.read(spec.near_sensors).empty() || keys.given(spec.view_angles))
     sensors.angles = spec.view_angles;
-  if (!spec.near_sensors.empty()) sensors.points = read_points(spec.near_sensors);
+  if (!spec.near_sensors.empty()) sensors.points = read_points("near_sensors", spec.near_sensors);
   return sensors;
 }
 
@@ -341,8 +342,8 @@ class SolveExperiment : public OneShot {
   void read_graded_file(const Keys& keys) {
     const SceneSpec& spec = values_.spec;
     const auto field = index_field(keys, spec);
-    const auto sources = read_points(keys.required(spec.near_sources)),
-               sensors = read_points(keys.required(spec.near_sensors));
+    const auto sources = read_points("near_sources", keys.required(spec.near_sources)),
+               sensors = read_points("near_sensors", keys.required(spec.near_sensors));
     const double k = 2 * std::numbers::pi / keys.read(spec.wavelength);
     placement_ = placement_of_file(keys, spec);
     if (placement_.empty() || placement_.front().scatterer.is_disk())

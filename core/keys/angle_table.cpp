@@ -11,19 +11,15 @@
 namespace flatspeckle {
 
 AngleTable::AngleTable(const std::string& key, const std::string& path) {
-  try {
-    const Table table = read_csv(path);
-    const auto angles = table.column("angle"), values = table.column("value");
-    angles_.assign(angles.begin(), angles.end());
-    values_.assign(values.begin(), values.end());
-  } catch (const InputError& error) {
-    throw InputError(key + ": " + error.what());
-  }
+  const Table table = read_key_table(key, path);
+  const auto angles = table.column("angle"), values = table.column("value");
+  angles_.assign(angles.begin(), angles.end());
+  values_.assign(values.begin(), values.end());
   const auto refuse = [&](const char* accepted) { throw InputError(key, path, accepted); };
   constexpr double rounding = 1e-4;  // pi as somebody wrote it
   if (angles_.size() < 2 || std::abs(angles_.front()) > rounding ||
       std::abs(angles_.back() - std::numbers::pi) > rounding)
-    refuse("column angle must go from 0 to pi (radians)");
+    refuse("column angle must go from 0 to pi (radians), or angle_deg from 0 to 180");
   if (std::adjacent_find(angles_.begin(), angles_.end(), std::greater_equal<>()) != angles_.end())
     refuse("column angle must rise");
   if (*std::min_element(values_.begin(), values_.end()) < 0)

@@ -2,91 +2,146 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <cstddef>
+#include <iterator>
+#include <numbers>
+#include <set>
 #include <string_view>
 #include <utility>
 
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "core/keys/table_text.h"
+#include "core/keys/written_number.h"
 
 namespace flatspeckle {
 
 namespace {
 
-constexpr const char* byte_order_mark = "\xEF\xBB\xBF";
+constexpr std::string_view degrees = "_deg";
 
-std::vector<std::string_view> fields_of(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (std::size_t comma = line.find(','); comma != std::string_view::npos;
-       comma = line.find(',')) {
-    fields.push_back(trimmed(line.substr(0, comma)));
-    line.remove_prefix(comma + 1);
-  }
-  fields.push_back(trimmed(line));
-  return fields;
-}
-
-class CsvReader {
+/// The numbers of a table. Decimal commas are read where all numbers agree on them.
+class NumberReader {
  public:
-  explicit CsvReader(const std::filesystem::path& path) : path_(path.string()), file_(path) {
-    if (!file_ || std::filesystem::is_directory(path)) throw InputError("cannot read " + path_);
+  NumberReader(const std::filesystem::path& path, const TableText& text)
+      : path_(path.string()), text_(text) {}
+
+  double read(const TableLine& line, const std::string& name, const std::string& field,
+              bool angle) {
+    const std::string number = with_point(line, field);
+    const auto value = angle ? written_number(number, Written::angle) : read_number(number);
+    if (!value || !std::isfinite(*value))
+      text_.fail(line, name + " = \"" + field + "\": must be a finite number");
+    return *value;
   }
 
-  Table read() {
-    if (!next_line()) throw InputError(path_ + ": empty, expected a line of column names");
-    read_names();
-    while (next_line()) read_row();
-    if (file_.bad()) throw InputError("cannot read " + path_);
-    return {path_, std::move(names_), std::move(columns_)};
+  /// Once all are read. Throws InputError where commas may stand before decimals or between
+  /// thousands.
+  void check() const {
+    if (comma_ == 0) return;
+    const std::string lines =
+        path_ + ", line " + std::to_string(comma_) + ": \"" + with_comma_ + '"';
+    if (point_ > 0)
+      throw InputError(lines + " has a comma, and a number of line " + std::to_string(point_) +
+                       " a decimal point: must be all the same");
+    if (!surely_decimal_ && text_.separator() != ';')
+      throw InputError(lines +
+                       ": the comma may stand before decimals or between thousands; must "
+                       "be written with a decimal point");
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw InputError(path_ + ", line " + std::to_string(number_) + ": " + what);
-  }
-
-  /// Goes to the next line that says something.
-  bool next_line() {
-    while (std::getline(file_, text_)) {
-      if (++number_ == 1 && text_.starts_with(byte_order_mark)) text_.erase(0, 3);
-      line_ = trimmed(text_);
-      if (!line_.empty() && line_.front() != '#') return true;
+  std::string with_point(const TableLine& line, std::string field) {
+    const auto comma = field.find(',');
+    const bool has_point = field.find('.') != field.npos;
+    if (has_point && point_ == 0) point_ = line.number;
+    if (comma == field.npos || has_point || field.find(',', comma + 1) != field.npos) return field;
+    if (comma_ == 0) {
+      comma_ = line.number;
+      with_comma_ = field;
     }
-    return false;
+    surely_decimal_ = surely_decimal_ || !may_divide_thousands(field);
+    field[comma] = '.';
+    return field;
   }
 
-  void read_names() {
-    for (std::string_view field : fields_of(line_)) {
-      const std::string name(field);
-      if (name.empty()) fail("a column has no name");
-      if (std::find(names_.begin(), names_.end(), name) != names_.end())
-        fail("column \"" + name + "\" appears twice");
-      names_.push_back(name);
+  /// As in -12,345.
+  static bool may_divide_thousands(std::string_view field) {
+    if (field.starts_with('-') || field.starts_with('+')) field.remove_prefix(1);
+    const auto comma = field.find(',');
+    return comma > 0 && comma <= 3 && field.front() != '0' && field.size() == comma + 4 &&
+           field.find_first_not_of("0123456789,") == field.npos;
+  }
+
+  std::string path_, with_comma_;
+  const TableText& text_;
+  std::size_t comma_ = 0, point_ = 0;  ///< the first lines with a decimal comma, a point
+  bool surely_decimal_ = false;
+};
+
+class CsvReader {
+ public:
+  CsvReader(const std::filesystem::path& path, const AngleColumns& is_angle)
+      : path_(path.string()), is_angle_(is_angle), text_(path, true), numbers_(path, text_) {}
+
+  Table read(const std::string& source) {
+    const auto& lines = text_.lines();
+    if (lines.empty()) throw InputError(path_ + ": empty, expected a line of column names");
+    read_names(lines.front());
+    for (auto line = lines.begin() + 1; line != lines.end(); ++line) read_row(*line);
+    numbers_.check();
+    for (std::size_t i = 0; i < names_.size(); ++i) turn_into_radians(i);
+    return {source, std::move(names_), std::move(columns_)};
+  }
+
+ private:
+  void read_names(const TableLine& line) {
+    names_ = text_.fields(line);
+    width_ = names_.size();
+    while (names_.size() > 1 && names_.back().empty()) names_.pop_back();
+    std::set<std::string> known;
+    for (const std::string& name : names_) {
+      if (name.empty()) text_.fail(line, "a column has no name");
+      if (!known.insert(base(name)).second)
+        text_.fail(line, "column \"" + base(name) + "\" appears twice");
     }
     columns_.resize(names_.size());
   }
 
-  void read_row() {
-    const auto fields = fields_of(line_);
+  /// Spreadsheets also write rows without anything in them.
+  void read_row(const TableLine& line) {
+    auto fields = text_.fields(line);
+    if (width_ > 1 && std::ranges::count(fields, "") == std::ssize(fields)) return;
+    while (fields.size() > names_.size() && fields.size() <= width_ && fields.back().empty())
+      fields.pop_back();
     if (fields.size() != names_.size())
-      fail("expected " + std::to_string(names_.size()) + " fields, found " +
-           std::to_string(fields.size()));
+      text_.fail(line, "expected " + std::to_string(names_.size()) + " fields, found " +
+                           std::to_string(fields.size()) +
+                           (fields.size() >= 2 * names_.size() && text_.separator() == ','
+                                ? " (beside decimal commas, fields must be separated by ;)"
+                                : ""));
     for (std::size_t i = 0; i < fields.size(); ++i)
-      columns_[i].push_back(number(fields[i], names_[i]));
+      columns_[i].push_back(numbers_.read(line, names_[i], fields[i], is_angle_(names_[i])));
   }
 
-  double number(std::string_view field, const std::string& name) const {
-    const auto value = read_number(std::string(field));
-    if (!value || !std::isfinite(*value))
-      fail(name + " = \"" + std::string(field) + "\": must be a finite number");
-    return *value;
+  bool is_in_degrees(const std::string& name) const {
+    return name.ends_with(degrees) && is_angle_(name.substr(0, name.size() - degrees.size()));
+  }
+  std::string base(const std::string& name) const {
+    return is_in_degrees(name) ? name.substr(0, name.size() - degrees.size()) : name;
+  }
+
+  void turn_into_radians(std::size_t column) {
+    if (!is_in_degrees(names_[column])) return;
+    for (double& value : columns_[column]) value *= std::numbers::pi / 180;
+    names_[column] = base(names_[column]);
   }
 
   std::string path_;
-  std::ifstream file_;
-  std::string text_;
-  std::string_view line_;  ///< the part of text_ that counts
-  std::size_t number_ = 0;
+  const AngleColumns& is_angle_;
+  TableText text_;
+  NumberReader numbers_;
+  std::size_t width_ = 0;  ///< fields of the line of names
   std::vector<std::string> names_;
   std::vector<std::vector<double>> columns_;
 };
@@ -108,21 +163,74 @@ std::span<const double> Table::column(const std::string& name) const {
   return columns_[static_cast<std::size_t>(found - names_.begin())];
 }
 
-Table read_csv(const std::filesystem::path& path) {
-  return CsvReader(path).read();
+bool is_angle_column(const std::string& name) {
+  static const std::set<std::string> names = {"angle", "light_angle", "view_angle",
+                                              "tilt",  "phase",       "aperture"};
+  return names.contains(name);
 }
 
-Table read_csv(const std::filesystem::path& path, const std::vector<std::string>& columns) {
-  Table table = read_csv(path);
-  for (const std::string& name : table.names())
-    if (std::find(columns.begin(), columns.end(), name) == columns.end())
-      throw InputError(path.string() + ": column \"" + name + "\": must be one of " +
-                       joined(columns, ", "));
-  for (const std::string& name : table.names())
-    for (double value : table.column(name))
-      if (std::abs(value) > most_input)
-        throw InputError(path.string() + ", " + name, value, "must be from -1e50 to 1e50");
+Table read_csv(const std::filesystem::path& path, const AngleColumns& is_angle) {
+  return CsvReader(path, is_angle).read(path.string());
+}
+
+namespace {
+
+Table table_of(const std::string& key, const std::filesystem::path& path,
+               const AngleColumns& is_angle) {
+  try {
+    return CsvReader(path, is_angle).read(key + " = " + path.string());
+  } catch (const InputError& error) {
+    throw InputError(key + " = " + error.what());
+  }
+}
+
+void require_rows(const std::string& key, const std::filesystem::path& path, const Table& table) {
+  if (table.rows() == 0)
+    throw InputError(key, path.string(), "must hold at least one row, has names of columns alone");
+}
+
+}  // namespace
+
+Table read_key_table(const std::string& key, const std::filesystem::path& path,
+                     const AngleColumns& is_angle) {
+  Table table = table_of(key, path, is_angle);
+  require_rows(key, path, table);
   return table;
+}
+
+Table read_key_table(const std::string& key, const std::filesystem::path& path,
+                     const std::vector<std::string>& columns, bool may_be_empty) {
+  Table table = table_of(key, path, is_angle_column);
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(key + " = " + path.string() + what);
+  };
+  for (const std::string& name : table.names())
+    if (std::ranges::find(columns, name) == columns.end())
+      refuse(": column \"" + name + "\": must be one of " + joined(columns, ", "));
+  if (!may_be_empty) require_rows(key, path, table);
+  for (const std::string& name : table.names())
+    for (const double value : table.column(name))
+      if (std::abs(value) > most_input)
+        refuse(", " + name + " = " + number_text(value) + ": must be from -1e50 to 1e50");
+  return table;
+}
+
+std::vector<std::vector<double>> read_rows(const std::filesystem::path& path) {
+  const TableText text(path, false);
+  NumberReader numbers(path, text);
+  std::vector<std::vector<double>> rows;
+  for (const TableLine& line : text.lines()) {
+    auto& row = rows.emplace_back();
+    auto fields = text.fields(line);
+    if (fields.back().empty()) fields.pop_back();  // a comma at the end
+    for (const std::string& field : fields)
+      row.push_back(numbers.read(line, "number " + std::to_string(row.size() + 1), field, false));
+    if (row.size() != rows.front().size())
+      text.fail(line, "has " + std::to_string(row.size()) + " numbers, the first row " +
+                          std::to_string(rows.front().size()) + ": must have rows of one length");
+  }
+  numbers.check();
+  return rows;
 }
 
 }  // namespace flatspeckle

@@ -23,6 +23,18 @@ std::optional<Number> read_all(const char* from, const char* end) {
   return value;
 }
 
+/// As scene files have them between digits: 1_000.
+std::string without_underscores(const std::string& text) {
+  const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
+  std::string all;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool divides = text[i] == '_' && i > 0 && i + 1 < text.size() && is_digit(text[i - 1]) &&
+                         is_digit(text[i + 1]);
+    if (!divides) all += text[i];
+  }
+  return all;
+}
+
 /// Of digits: neither inf nor nan.
 std::optional<double> read_digits(std::string_view text) {
   const std::string digits(trimmed(text));
@@ -78,11 +90,13 @@ std::string_view trimmed(std::string_view text) {
 }
 
 std::optional<double> read_number(const std::string& text) {
-  return read_all<double>(text.data(), text.data() + text.size());
+  const std::string digits = without_underscores(text);
+  return read_all<double>(digits.data(), digits.data() + digits.size());
 }
 
 std::optional<std::int64_t> read_whole_number(const std::string& text) {
-  if (const auto whole = read_all<std::int64_t>(text.data(), text.data() + text.size()))
+  const std::string digits = without_underscores(text);
+  if (const auto whole = read_all<std::int64_t>(digits.data(), digits.data() + digits.size()))
     return whole;
   constexpr double most = 1e15;
   const auto number = read_number(text);

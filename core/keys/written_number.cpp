@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -78,18 +79,19 @@ Written written_kind(const std::string& unit) {
 }
 
 std::optional<double> written_number(const std::string& text, Written kind) {
-  const std::string_view whole = trimmed(text);
+  std::string_view whole = trimmed(text);
   if (const auto number = read_number(std::string(whole))) return number;
-  const auto sign = last_sign(whole);
-  if (sign == whole.npos) {
-    const bool minus = whole.starts_with('-') && !whole.starts_with("--");
-    const auto value = term(minus ? whole.substr(1) : whole, kind);
-    return value ? std::optional(minus ? -*value : *value) : std::nullopt;
+  std::vector<double> added;  // the last term first
+  for (auto sign = last_sign(whole); sign != whole.npos; sign = last_sign(whole)) {
+    const auto value = term(whole.substr(sign + 1), kind);
+    if (!value) return std::nullopt;
+    added.push_back(whole[sign] == '-' ? -*value : *value);
+    whole = trimmed(whole.substr(0, sign));
   }
-  const auto left = written_number(std::string(whole.substr(0, sign)), kind);
-  const auto right = term(whole.substr(sign + 1), kind);
-  if (!left || !right) return std::nullopt;
-  return whole[sign] == '-' ? *left - *right : *left + *right;
+  const bool minus = whole.starts_with('-') && !whole.starts_with("--");
+  const auto first = term(minus ? whole.substr(1) : whole, kind);
+  if (!first) return std::nullopt;
+  return std::accumulate(added.rbegin(), added.rend(), minus ? -*first : *first);
 }
 
 const char* must_be_number(Written kind) {

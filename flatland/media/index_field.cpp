@@ -10,7 +10,7 @@
 namespace flatspeckle {
 
 IndexTable::IndexTable(const std::string& path) : path_(path) {
-  const Table table = read_csv(path, {"wavelength", "index_re", "index_im"});
+  const Table table = read_key_table("index_table", path, {"wavelength", "index_re", "index_im"});
   const auto wavelength = table.column("wavelength"), real = table.column("index_re"),
              imaginary = table.column("index_im");
   for (std::size_t row = 0; row < table.rows(); ++row) {

@@ -147,9 +147,8 @@ void check_packing(const Domain& box, PlacementRule::Kind kind, double packing, 
 }
 
 Placement read_placement(const std::string& path, const Scatterer& scatterer) {
-  const Table table = read_csv(path, {"x", "z", "radius", "index_re", "index_im"});
-  for (const char* name : {"x", "z"})
-    if (!table.has(name)) throw InputError(path + ": column " + name + " is missing");
+  const Table table =
+      read_key_table("placement", path, {"x", "z", "radius", "index_re", "index_im"}, true);
   if (table.has("index_im") && !table.has("index_re"))
     throw InputError(path + ": column index_re is missing beside index_im");
   if (scatterer.is_disk() && !table.has("radius") && scatterer.radius <= 0)

@@ -35,7 +35,7 @@ inline View near_sensor(Vec2 point) {
 }
 
 /// Reads columns x, z; at least one row. Throws InputError.
-std::vector<Vec2> read_points(const std::string& path);
+std::vector<Vec2> read_points(const std::string& key, const std::string& path);
 
 /// Where the covariance of channels b <= a stands among the entries of a full_request().
 inline std::size_t triangle_entry(std::size_t a, std::size_t b) {

@@ -107,7 +107,7 @@ class Blobs : public DensityMap {
 };
 
 std::vector<Blob> read_blobs(const std::string& path) {
-  const Table table = read_csv(path, {"x", "z", "radius", "amplitude"});
+  const Table table = read_key_table("density_blobs", path, {"x", "z", "radius", "amplitude"});
   std::vector<Blob> blobs;
   double holes = 0;
   for (std::size_t row = 0; row < table.rows(); ++row) {

@@ -20,8 +20,7 @@ namespace flatspeckle {
 namespace {
 
 std::vector<IndexBlob> read_index_blobs(const std::string& path) {
-  const Table table = read_csv(path, {"x", "z", "height", "width"});
-  if (table.rows() == 0) throw InputError("index_blobs", path, "holds no blobs");
+  const Table table = read_key_table("index_blobs", path, {"x", "z", "height", "width"});
   std::vector<IndexBlob> blobs;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const auto of = [&](const char* name) { return table.column(name)[row]; };
@@ -82,7 +81,7 @@ class LayerTable {
  public:
   /// Reads the key and the file. Throws InputError.
   LayerTable(const Keys& keys, const SceneSpec& spec)
-      : path_(keys.read(spec.layers)), table_(read_csv(path_, all_columns())) {
+      : path_(keys.read(spec.layers)), table_(read_key_table("layers", path_, all_columns())) {
     constexpr std::size_t most = 1000;
     if (table_.rows() == 0 || table_.rows() > most)
       throw InputError("layers", path_, "must hold 1 to " + std::to_string(most) + " layers");

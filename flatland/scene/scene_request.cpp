@@ -18,7 +18,7 @@ const std::vector<double>& at_least_one(const Keys& keys, const std::vector<doub
 
 Lights near_lights(const Keys& keys, const SceneSpec& spec) {
   Lights lights;
-  for (const Vec2& point : read_points(keys.read(spec.near_sources)))
+  for (const Vec2& point : read_points("near_sources", keys.read(spec.near_sources)))
     lights.push_back(point_source(point));
   return lights;
 }
@@ -55,7 +55,7 @@ Light only_light(const Keys& keys, const SceneSpec& spec) {
 std::vector<View> requested_views(const Keys& keys, const SceneSpec& spec) {
   if (spec.near_sensors.empty()) return far_views(at_least_one(keys, spec.view_angles));
   std::vector<View> views;
-  for (const Vec2& point : read_points(keys.read(spec.near_sensors)))
+  for (const Vec2& point : read_points("near_sensors", keys.read(spec.near_sensors)))
     views.push_back(near_sensor(point));
   return views;
 }

@@ -399,7 +399,7 @@ class Refused(TraceTest):
         self.refuse("blobs is not given", field="blobs")
         self.write("one.csv", "x,y,z,height,width\n0,0,0,1,1\n")
         self.refuse("index", "is a key of", field=["luneburg", "blobs"], blobs="one.csv", index=1.3)
-        self.refuse("blobs = none.csv", "no blobs", field="blobs", blobs="none.csv")
+        self.refuse("blobs = none.csv", "at least one row", field="blobs", blobs="none.csv")
         self.refuse("thin.csv, width = 0", field="blobs", blobs="thin.csv")
         self.refuse("sound_wavenumber = -1", field="ultrasound", sound_wavenumber=-1, amplitude=1)
         self.refuse("emitters = 0", field="focused_sound", sound_wavenumber=1, amplitude=0,
@@ -449,7 +449,7 @@ class Refused(TraceTest):
         self.refuse("direction = 0 0 0", direction=[0, 0, 0])
         self.refuse("direction = 0 1", direction=[0, 1])
         self.refuse("across = 0 0 1", across=[0, 0, 1])
-        self.refuse("rays = none.csv", "no rays", rays="none.csv")
+        self.refuse("rays = none.csv", "at least one row", rays="none.csv")
         self.refuse("still.csv, direction of ray 0 = 0 0 0", rays="still.csv")
         self.refuse("short.csv", "dx", rays="short.csv")
         self.write("good.csv", "x,y,z,dx,dy,dz\n0,0,0,0,0,1\n")

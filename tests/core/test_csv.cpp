@@ -1,8 +1,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <string>
 #include <unistd.h>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -91,12 +93,12 @@ TEST_CASE("numbers are read exactly") {
 
 TEST_CASE("tables of given columns hold nothing else, and no numbers out of bounds") {
   const TextFile file("x,z\n1,2\n-1e51,3\n");
-  CHECK_THROWS_WITH_AS(read_csv(file.path(), {"x", "y"}),
+  CHECK_THROWS_WITH_AS(read_key_table("places", file.path(), {"x", "y"}),
                        doctest::Contains("column \"z\": must be one of x, y"), InputError);
-  CHECK_THROWS_WITH_AS(read_csv(file.path(), {"z", "x"}), doctest::Contains("x = -1e+51"),
-                       InputError);
+  CHECK_THROWS_WITH_AS(read_key_table("places", file.path(), {"z", "x"}),
+                       doctest::Contains("x = -1e+51"), InputError);
   const TextFile sound("z,x\n1,-1e50\n");
-  CHECK(column(read_csv(sound.path(), {"x", "y", "z"}), "x") == std::vector{-1e50});
+  CHECK(column(read_key_table("places", sound.path(), {"x", "y", "z"}), "x") == std::vector{-1e50});
 }
 
 TEST_CASE("what is wrong is told with file and line") {
@@ -110,6 +112,106 @@ TEST_CASE("what is wrong is told with file and line") {
   for (const char* bad : {"nan", "inf", "-inf", "1e999", "one", "1.5m", "", "1 2", "+-1", "0x10"})
     CHECK(complaint("z,x\n1," + std::string(bad) + "\n") ==
           ", line 2: x = \"" + std::string(bad) + "\": must be a finite number");
+}
+
+TEST_CASE("tables of spreadsheets, instruments and other programs agree with the plain one") {
+  const std::string plain = "x,z,radius\n0,-0.5,0.3\n0.5,2,1000\n";
+  for (const std::string& text : {
+           std::string("\"x\",\"z\",\"radius\"\n0,-0.5,0.3\n0.5,2,1000\n"),
+           std::string("x,z,radius\n\"0\",\"-0.5\", \"0.3\" \n\"0.5\",\"2\",\"1000\"\n"),
+           std::string("x;z;radius\n0;-0.5;0.3\n0.5;2;1000\n"),
+           std::string("x;z;radius\n0;-0,5;0,3\n0,5;2;1000\n"),
+           std::string("\"x\";\"z\";\"radius\"\n\"0\";\"-0,5\";\"0,3\"\n0,5;2;1000\n"),
+           std::string("x\tz\tradius\n0\t-0,5\t0,3\n0,5\t2\t1_000\n"),
+           std::string("x\tz\tradius\r0\t-0.5\t0.3\r0.5\t2\t1e3\r"),
+           std::string("sep=;\r\nx;z;radius\r\n0;-0,5;0,3\r\n0,5;2;1000\r\n"),
+           std::string("\xEF\xBB\xBF\"sep=|\"\r\nx|z|radius\r\n0|-0.5|0.3\r\n0.5|2|1000\r\n"),
+           std::string("x,z,radius,,\r\n0,-0.5,0.3,,\r\n0.5,2,1000\r\n,,,,\r\n"),
+           std::string("x z radius\n 0  -0.5 0.3\n0.5\t2   1000 \n"),
+           std::string("# x,z,radius\n0,-0.5,0.3\n0.5,2,1000\n"),
+           std::string("% made by hand\n#x z radius\n0 -0.5 0.3\n0.5 2 1000\n"),
+           std::string("x,z,radius\n0,\xE2\x88\x92"
+                       "0.5,0.3\n0.5,\xC2\xA0"
+                       "2,1000\n"),
+       }) {
+    CAPTURE(text);
+    const Table table = table_of(text), expected = table_of(plain);
+    CHECK(table.names() == expected.names());
+    for (const std::string& name : expected.names())
+      CHECK(column(table, name) == column(expected, name));
+  }
+}
+
+TEST_CASE("tables in UTF-16 are read with and without a byte order mark") {
+  const std::string plain = "x,z\r\n0.5,-2\r\n";
+  for (const bool big : {false, true})
+    for (const bool marked : {false, true}) {
+      std::string text = !marked ? "" : big ? "\xFE\xFF" : "\xFF\xFE";
+      for (const char letter : plain)
+        text += big ? std::string{'\0', letter} : std::string{letter, '\0'};
+      CHECK(column(table_of(text), "x") == std::vector{0.5});
+      CHECK(column(table_of(text), "z") == std::vector{-2.0});
+    }
+}
+
+TEST_CASE("columns of angles may be in degrees") {
+  const double degree = std::numbers::pi / 180;
+  const Table table = table_of("light_angle_deg,tilt,radius_deg\n30,0.5deg,7\n-90,pi/2,8\n");
+  CHECK(table.names() == std::vector<std::string>{"light_angle", "tilt", "radius_deg"});
+  CHECK(column(table, "light_angle") == std::vector{30 * degree, -90 * degree});
+  CHECK(column(table, "tilt") == std::vector{0.5 * degree, std::numbers::pi / 2});
+  CHECK(column(table, "radius_deg") == std::vector{7.0, 8.0});
+  CHECK(complaint("angle,angle_deg\n1,2\n") == ", line 1: column \"angle\" appears twice");
+  CHECK(complaint("x\n30deg\n") == ", line 2: x = \"30deg\": must be a finite number");
+}
+
+TEST_CASE("commas that may mean one thing or another are refused") {
+  CHECK(complaint("x\tz\n1,234\t5\n") ==
+        ", line 2: \"1,234\": the comma may stand before decimals or between thousands; must be "
+        "written with a decimal point");
+  CHECK(complaint("x,z\n\"1,234\",5\n").find("thousands") != std::string::npos);
+  CHECK(column(table_of("x\tz\n1,234\t0,5\n"), "x") == std::vector{1.234});
+  CHECK(column(table_of("x;z\n1,234;5\n"), "x") == std::vector{1.234});
+  CHECK(complaint("x;z\n0,5;1\n1.5;2\n") ==
+        ", line 2: \"0,5\" has a comma, and a number of line 3 a decimal point: must be all the "
+        "same");
+  CHECK(complaint("x;z\n1.234,5;2\n") == ", line 2: x = \"1.234,5\": must be a finite number");
+  CHECK(complaint("x,z\n0,5,1,5\n") ==
+        ", line 2: expected 2 fields, found 4 (beside decimal commas, fields must be separated by "
+        ";)");
+}
+
+TEST_CASE("what is no table is refused with the reason") {
+  CHECK(complaint("0,1\n2,3\n") ==
+        ", line 1: must be a line of column names, is a line of numbers");
+  CHECK(complaint("# by hand\n0,1\n").find("line of column names") != std::string::npos);
+  CHECK(complaint("x,z\n\"0,1\n") ==
+        ", line 2: quotation marks must be around whole fields, on one line");
+  CHECK(complaint("x,z\n0\"1\",1\n").find("quotation marks") != std::string::npos);
+  CHECK(complaint("x,z\n1_,1\n") == ", line 2: x = \"1_\": must be a finite number");
+  CHECK(complaint("x,z,\n0,1,2\n") == ", line 2: expected 2 fields, found 3");
+  CHECK(complaint("sep=:\nx:z\n0:1\n").find("sep=:: fields must be") != std::string::npos);
+  for (const std::string& binary :
+       {std::string("PK\x03\x04\x14\0\x06", 7), std::string("x,z\n0,\0", 7)})
+    CHECK(complaint(binary).find("is not a text file") != std::string::npos);
+}
+
+TEST_CASE("tables of keys begin their messages with the key and hold a row or more") {
+  const TextFile file("x,z\n");
+  CHECK_THROWS_WITH_AS(read_key_table("rays", file.path()),
+                       ("rays = " + file.path().string() +
+                        ": must hold at least one row, has names of columns alone")
+                           .c_str(),
+                       InputError);
+}
+
+TEST_CASE("rows without names have one length") {
+  CHECK(read_rows(TextFile("1,2\n3,4,\n").path()) ==
+        std::vector<std::vector<double>>{{1, 2}, {3, 4}});
+  CHECK(read_rows(TextFile("0,5\t2\n3\t4\n").path()) ==
+        std::vector<std::vector<double>>{{0.5, 2}, {3, 4}});
+  CHECK_THROWS_WITH_AS(read_rows(TextFile("1 2\n3\n").path()),
+                       doctest::Contains("line 2: has 1 numbers, the first row 2"), InputError);
 }
 
 TEST_CASE("files that cannot be read are bad input") {

@@ -46,6 +46,21 @@ TEST_CASE("numbers as people write them") {
   CHECK(written_number("2pi", Written::number) == 2 * pi);
 }
 
+TEST_CASE("sums are added from the left, however many terms they have") {
+  CHECK(written_number("0.1+0.2 - 0.3 + pi", Written::angle) == 0.1 + 0.2 - 0.3 + pi);
+  CHECK(written_number("-0.1 - 0.2", Written::number) == -0.1 - 0.2);
+  std::string terms = "1";
+  for (int i = 0; i < 500'000; ++i) terms += "+1";
+  CHECK(written_number(terms, Written::number) == 500'001);
+  CHECK_FALSE(written_number(terms + "+", Written::number).has_value());
+}
+
+TEST_CASE("figures may be divided by underscores, as in scene files") {
+  CHECK(written_number("1_000.5", Written::number) == 1000.5);
+  for (const char* text : {"_1", "1_", "1__0", "1_.5", "1_e3"})
+    CHECK_FALSE(written_number(text, Written::number).has_value());
+}
+
 TEST_CASE("lists and ranges of numbers") {
   const auto numbers = [](const char* text) {
     return written_numbers("tilts", text, Written::angle);

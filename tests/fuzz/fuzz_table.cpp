@@ -58,7 +58,7 @@ void read_table(const std::string& word) {
   static const std::map<std::string, void (*)()> readers = {
       {"points", [] { check_placement({}); }},
       {"disks", [] { check_placement({.kind = Scatterer::Kind::tm, .radius = 0.1}); }},
-      {"sensors", [] { read_points(path); }},
+      {"sensors", [] { read_points("near_sensors", path); }},
       {"sweep", [] { check_sweep("scatterer = \"hg\"\ndepth = 10\n"); }},
       {"sweep_disks", [] { check_sweep("scatterer = \"tm\"\ndepth = 10\nmethod = \"mc\"\n"); }},
       {"rays", check_rays},

@@ -173,7 +173,7 @@ KeptCluster read_cluster(const std::string& path) {
 }
 
 std::vector<ClusterPlace> read_places(const std::string& path) {
-  const Table table = read_csv(path, {"x", "z", "angle"});
+  const Table table = read_key_table("placement", path, {"x", "z", "angle"});
   std::vector<ClusterPlace> places;
   for (std::size_t row = 0; row < table.rows(); ++row)
     places.push_back({{table.column("x")[row], table.column("z")[row]},

@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <numeric>
-#include <sstream>
 #include <string>
 #include <utility>
 
 #include <Eigen/Geometry>
 
 #include "core/error.h"
+#include "core/keys/csv.h"
 #include "core/keys/number_text.h"
 #include "grin/design/goals/even_points.h"
 #include "grin/design/goals/solid_hull.h"
@@ -146,46 +145,23 @@ Numbers blurred(const Numbers& values, int pixels, std::size_t stride, std::size
   return blurred;
 }
 
-std::vector<double> numbers_of(std::string line, const std::string& where) {
-  std::ranges::replace(line, ',', ' ');
-  std::istringstream text(line);
-  std::vector<double> numbers;
-  for (std::string word; text >> word;) {
-    const auto value = read_number(word);
-    if (!value || !(*value >= 0 && *value <= 1e50))
-      throw InputError(where + ": '" + word + "' must be a number from 0 to 1e50");
-    numbers.push_back(*value);
-  }
-  return numbers;
-}
-
-/// A picture of a file of numbers, a line for each row, with commas or spaces between. Throws
-/// InputError for one that is not square, has fewer than 4 rows, is dark or holds anything else
-/// than numbers from 0 to 1e50.
+/// A picture of a file of numbers, a line for each row. Throws InputError for one that is not
+/// square, has fewer than 4 rows, is dark or holds anything else than numbers from 0 to 1e50.
 ScreenPicture read_picture(const std::string& path, double width) {
-  std::ifstream file(path);
-  if (!file) throw InputError("pictures", path, "cannot be read");
-  ScreenPicture picture{width, 0, {}};
-  std::size_t rows = 0, columns = 0, number = 0;
-  for (std::string line; std::getline(file, line);) {
-    ++number;
-    const auto row = numbers_of(line, path + ", line " + std::to_string(number));
-    if (row.empty()) continue;
-    if (rows++ == 0) columns = row.size();
-    if (row.size() != columns)
-      throw InputError("pictures", path,
-                       "must have rows of one length; line " + std::to_string(number) + " has " +
-                           std::to_string(row.size()) + " numbers, the first row " +
-                           std::to_string(columns));
-    picture.values.insert(picture.values.end(), row.begin(), row.end());
-  }
-  if (rows != columns || rows < 4 || rows > 4096)
+  const auto rows = read_rows(path);
+  const std::size_t columns = rows.empty() ? 0 : rows.front().size();
+  if (rows.size() != columns || columns < 4 || columns > 4096)
     throw InputError("pictures", path,
-                     "must be a square of 4 to 4096 rows of numbers; has " + std::to_string(rows) +
-                         " rows of " + std::to_string(columns));
+                     "must be a square of 4 to 4096 rows of numbers; has " +
+                         std::to_string(rows.size()) + " rows of " + std::to_string(columns));
+  ScreenPicture picture{width, static_cast<int>(columns), {}};
+  for (const auto& row : rows) picture.values.insert(picture.values.end(), row.begin(), row.end());
+  for (const double value : picture.values)
+    if (!(value >= 0 && value <= most_input))
+      throw InputError("pictures", path,
+                       "has the number " + number_text(value) + ": must be from 0 to 1e50");
   if (!(std::ranges::max(picture.values) > 0))
     throw InputError("pictures", path, "must not be all dark");
-  picture.pixels = static_cast<int>(rows);
   return picture;
 }
 

@@ -33,8 +33,8 @@ void add_keys(Keys& keys, BlobsValues& values) {
 }
 
 GaussianBlobs make_field(const Keys& keys, const BlobsValues& values, const FieldUse& use) {
-  const Table table = read_csv(keys.required(values.blobs), {"x", "y", "z", "height", "width"});
-  if (table.rows() == 0) throw InputError("blobs", values.blobs, "holds no blobs");
+  const Table table =
+      read_key_table("blobs", keys.required(values.blobs), {"x", "y", "z", "height", "width"});
   const auto x = table.column("x"), y = table.column("y"), z = table.column("z");
   const auto height = table.column("height"), width = table.column("width");
   std::vector<GaussianBlob> blobs;

@@ -75,7 +75,7 @@ std::vector<double> all_numbers(const Keys& keys, const TransducersValues& value
   std::vector<double> rows = keys.read(values.transducer);
   const std::string& path = keys.read(values.transducer_table);
   if (path.empty()) return rows;
-  const Table table = read_csv(path, columns);
+  const Table table = read_key_table("transducer_table", path, columns);
   std::vector<std::span<const double>> by_column;
   for (const std::string& name : columns) by_column.push_back(table.column(name));
   for (std::size_t row = 0; row < table.rows(); ++row)

@@ -86,8 +86,7 @@ std::vector<std::string> words() {
 }
 
 std::vector<RayStart> read_rays(const std::string& path) {
-  const Table table = read_csv(path, {"x", "y", "z", "dx", "dy", "dz"});
-  if (table.rows() == 0) throw InputError("rays", path, "holds no rays");
+  const Table table = read_key_table("rays", path, {"x", "y", "z", "dx", "dy", "dz"});
   const auto x = table.column("x"), y = table.column("y"), z = table.column("z");
   const auto dx = table.column("dx"), dy = table.column("dy"), dz = table.column("dz");
   std::vector<RayStart> starts;
