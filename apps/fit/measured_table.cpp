@@ -166,6 +166,25 @@ void check_times(const std::string& path, CurveAxis axis, const std::vector<doub
                        axis_words[static_cast<std::size_t>(axis)] + " must be positive");
 }
 
+/// Throws InputError for shares and correlations above 1, or below 0 and -1, that noise does not
+/// explain: percent, or a contrast that is not one.
+void check_values(const mc::Measurement& measured, Observable observable) {
+  if (observable == Observable::intensity) return;
+  const bool share = observable > Observable::intensity;
+  const double most_noise = share ? 0.15 : 0.5, least = share ? 0 : -1;
+  for (Index i = 0; i < measured.values.size(); ++i) {
+    const double noise = std::min(5 * std::sqrt(measured.covariance(i, i)), most_noise);
+    const double value = measured.values[i];
+    if (std::abs(value) > most_input) continue;  // which is refused with all numbers
+    if (value > 1 + noise || value < least - noise)
+      throw InputError("measurement = " + measured.name + ", " +
+                           mc::observable_words[static_cast<std::size_t>(observable)],
+                       value,
+                       std::string("must be from ") + (share ? "0" : "-1") +
+                           " to 1, up to 5 errors; percent must be divided by 100");
+  }
+}
+
 /// Without rows of no tilt or delay, whose correlations are 1 and tell nothing.
 Table telling(const std::string& path, const Table& table) {
   const char* const axis = table.has("delay") ? "delay" : "tilt";
@@ -206,14 +225,14 @@ mc::Measurement measurement_of_values(const std::string& path, const Table& tabl
   found.values =
       Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
   found.covariance = covariance_of(path, table);
+  check_values(found, observable);
   return found;
 }
 
 }  // namespace
 
 mc::Measurement measurement_of_table(const std::string& path, const mc::MovingSpec& medium) {
-  const Table table = read_csv(path);
-  if (table.rows() == 0) throw InputError("measurement", path, "must have at least one row");
+  const Table table = read_key_table("measurement", path);
   if (table.has("field_re")) return measurement_of_fields(path, table, medium);
   if (table.has("speckle_intensity")) return measurement_of_intensities(path, table, medium);
   return measurement_of_values(path, telling(path, table), medium);
