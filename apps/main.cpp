@@ -3,18 +3,21 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
+#include <poll.h>
+#include <string>
 #include <string_view>
+#include <sys/resource.h>
 #include <system_error>
 #include <thread>
 #include <unistd.h>
 
 #include "apps/command/subcommands.h"
 #include "core/error.h"
-#include "core/numbers/address_space.h"
 #include "core/numbers/blas.h"
 #include "core/result/version.h"
 #include "core/run/interrupt.h"
@@ -46,14 +49,35 @@ bool set(const char* variable, const char* value) {
 /// OpenBLAS picks its kernels while it is loaded, by the processors that were known when it was
 /// made; on younger ones it falls back on its oldest, which take two to three times as long. There
 /// this starts the program once more, with the environment variable OPENBLAS_CORETYPE set by what
-/// the processor can do. So it does with OPENBLAS_NUM_THREADS = 1 where the address space is
-/// limited (ulimit -v): the threads that OpenBLAS starts wait for ever where there is none for
-/// their buffers. Variables that are set stay.
+/// the processor can do. Variables that are set stay.
 void prepare_blas(char** argv) {
-  const bool kernel = set("OPENBLAS_CORETYPE", better_kernel());
-  const bool threads = set("OPENBLAS_NUM_THREADS", address_space_is_limited() ? "1" : nullptr);
-  if (kernel || threads) ::execv("/proc/self/exe", argv);  // does not return, unless it fails
+  if (set("OPENBLAS_CORETYPE", better_kernel()))
+    ::execv("/proc/self/exe", argv);  // does not return, unless it fails
 }
+
+/// Starts the program once more with OPENBLAS_NUM_THREADS = 1 where the address space is limited
+/// (ulimit -v) and the variable is not set: the threads that OpenBLAS starts while it is loaded
+/// wait for ever where there is none for their buffers, and where there is none for their stacks
+/// OpenBLAS ends the program. Runs before libraries, those of sanitizers too, are initialised.
+__attribute__((no_sanitize("address"), no_sanitize("thread"), no_sanitize("undefined"))) void
+limit_blas_threads(int, char** argv, char** environment) {
+  static char one_thread[] = "OPENBLAS_NUM_THREADS=1";
+  constexpr std::size_t name_size = sizeof one_thread - 2;
+  rlimit limit;
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+  std::size_t size = 0;
+  for (; environment[size] != nullptr; ++size)
+    if (std::strncmp(environment[size], one_thread, name_size) == 0) return;
+  const std::size_t bytes = (size + 2) * sizeof(char*);
+  auto** const more = static_cast<char**>(__builtin_alloca(bytes));
+  for (std::size_t i = 0; i < size; ++i) more[i] = environment[i];
+  more[size] = one_thread;
+  more[size + 1] = nullptr;
+  ::execve("/proc/self/exe", argv, more);
+}
+
+[[gnu::section(".preinit_array"),
+  gnu::used]] void (*const before_libraries)(int, char**, char**) = limit_blas_threads;
 
 void print_usage() {
   std::puts(
@@ -114,6 +138,17 @@ int fail(std::string what, int status) {
   return status;
 }
 
+/// Returns the status, or 1 where the standard output could not be written, which is said. One that
+/// is closed, or a pipe whose reader has ended, need not be.
+int with_written_output(int status) {
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  pollfd output{STDOUT_FILENO, POLLOUT, 0};
+  ::poll(&output, 1, 0);
+  if ((output.revents & (POLLERR | POLLNVAL)) != 0) return status;
+  return fail("the standard output cannot be written: is its device full?", 1);
+}
+
 /// Where memory or disk ran out, and the clearing up of libraries at the end may crash.
 [[noreturn]] void fail_at_once(const std::string& what, int status) {
   fail(what, status);
@@ -126,7 +161,7 @@ int main(int argc, char** argv) {
   prepare_blas(argv);
   set_signals();
   try {
-    return run({argv, argv + argc});
+    return with_written_output(run({argv, argv + argc}));
   } catch (const InputError& error) {
     return fail(error.what(), ExitStatus::bad_input);
   } catch (const IoError& error) {

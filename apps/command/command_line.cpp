@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <iterator>
 #include <map>
@@ -12,12 +13,14 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
 #include "apps/command/key_lists.h"
+#include "apps/command/odd_values.h"
 #include "apps/command/scene_file.h"
 #include "apps/command/subcommands.h"
 #include "core/error.h"
@@ -29,18 +32,86 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// Scene files for CLI11.
+/// Keys of files that are looked for where they are used.
+const std::set<std::string> also_files{"compare",     "measurement", "near_sensors", "near_sources",
+                                       "phase_table", "points",      "points_table"};
+/// Keys that choose by a word or name a file.
+const std::set<std::string> words_or_files{"placement", "structure"};
+
+/// Whether the value of a key in a scene file is the path of a file that the program reads.
+bool names_a_file(const Key& key, const std::string& value) {
+  if (key.is_file() || key.is_number()) return key.is_file();
+  const bool is_output = key.help().starts_with("Result file");  // the structure that place writes
+  return also_files.contains(key.name()) || (words_or_files.contains(key.name()) && !is_output &&
+                                             value.find_first_of("./") != std::string::npos);
+}
+
+/// Scene files for CLI11. Relative paths of files are looked for beside the scene file first, then
+/// in the working folder.
 class SceneFile : public CLI::Config {
  public:
+  SceneFile() = default;
+  /// keys: those whose values may be paths.
+  SceneFile(const Keys& keys, const CLI::App& app) : keys_(&keys), app_(&app) {}
+
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
     std::vector<CLI::ConfigItem> found;
-    for (auto& [key, values] : read_scene({std::istreambuf_iterator<char>(input), {}}))
+    for (auto& [key, values] : read_scene({std::istreambuf_iterator<char>(input), {}})) {
+      const Key* const row = keys_ == nullptr ? nullptr : keys_->find(key);
+      for (std::string& value : values)
+        if (row != nullptr && names_a_file(*row, value)) value = beside_the_scene(value);
       found.push_back({{}, std::move(key), std::move(values)});
+    }
     return found;
   }
   /// Never asked for.
   std::string to_config(const CLI::App*, bool, bool, std::string) const override { return ""; }
+
+  /// Throws InputError for a file of the scene that is in neither folder.
+  void require_files() const {
+    if (missing_.empty()) return;
+    for (const Key& key : keys_->rows())
+      for (const std::string& value : key.value())
+        if (missing_.contains(value) && names_a_file(key, value))
+          throw InputError(key.name(), value,
+                           "no such file in " + std::filesystem::absolute(folder()).string() +
+                               ", where the scene is, nor in the working folder " +
+                               std::filesystem::current_path().string());
+  }
+
+ private:
+  std::filesystem::path folder() const {
+    const auto file = std::filesystem::path(app_->get_config_ptr()->as<std::string>());
+    return file.has_parent_path() ? file.parent_path() : ".";
+  }
+
+  /// The path that leads to a file of the scene from the working folder.
+  std::string beside_the_scene(const std::string& value) const {
+    std::error_code none;
+    const std::filesystem::path path = value, beside = (folder() / path).lexically_normal();
+    if (path.is_absolute() || app_->get_config_ptr()->empty()) return value;
+    if (std::filesystem::exists(beside, none)) return beside.string();
+    if (!std::filesystem::exists(path, none)) missing_.insert(value);
+    return value;
+  }
+
+  const Keys* keys_ = nullptr;
+  const CLI::App* app_ = nullptr;
+  mutable std::set<std::string> missing_;  ///< files that are in neither folder
 };
+
+/// Throws InputError for a run of figures too long for a number, which the search for units and
+/// libraries would be slow with.
+void refuse_long_numbers(const std::string& key, const std::string& text) {
+  constexpr std::size_t most = 400;
+  std::size_t figures = 0;
+  for (const char letter : text) {
+    figures = letter == '.' || std::isdigit(static_cast<unsigned char>(letter)) ? figures + 1 : 0;
+    if (figures > most)
+      throw InputError(key, text.substr(0, 20) + "...",
+                       "a number must have at most " + std::to_string(most) + " figures");
+  }
+}
 
 const std::map<std::string, double> sizes = {{"nm", 1e-9}, {"um", 1e-6}, {"mm", 1e-3},
                                              {"cm", 1e-2}, {"m", 1},     {"km", 1e3}};
@@ -198,7 +269,7 @@ Subcommand::Subcommand(std::string name, std::string purpose)
       app_(std::make_unique<CLI::App>(purpose_, "flatspeckle " + name_)) {
   app_->set_config("--config");
   app_->allow_config_extras(CLI::config_extras_mode::error);
-  app_->config_formatter(std::make_shared<SceneFile>());
+  app_->config_formatter(std::make_shared<SceneFile>(keys_, *app_));
   app_->allow_extras();  // refused below, in clearer words
   app_->add_flag("--print-config", print_config_)->configurable(false);
 }
@@ -239,9 +310,11 @@ void Subcommand::add_flags() {
 /// What is given of a key; CLI11 lets an option without a value take the flag that follows it.
 std::vector<std::string> Subcommand::results_of(const Key& key) const {
   const CLI::Option* const option = app_->get_option("--" + key.name());
-  for (const std::string& value : option->results())
+  for (const std::string& value : option->results()) {
     if (value.empty() || value.starts_with("--"))
       throw InputError(key.name(), '"' + value + '"', "must have a value");
+    refuse_long_numbers(key.name(), value);
+  }
   return option->results();
 }
 
@@ -273,7 +346,13 @@ void Subcommand::take_results() {
     auto given = results_of(key);
     if (given.empty() || key.name() == length_unit_key) continue;
     for (std::string& text : given) text = in_numbers(key, text, metres);
-    key.set(given);
+    try {
+      key.set(given);
+    } catch (const InputError& error) {
+      const std::string table = key.name() + "_table";
+      if (keys_.find(table) == nullptr) throw;
+      throw InputError(error.what() + ("; a table is given by " + table));
+    }
   }
 }
 
@@ -290,6 +369,7 @@ void Subcommand::parse_by(const Parser& parser) {
   }
   take_results();
   refuse_strays(keys_, app_->remaining());
+  dynamic_cast<const SceneFile&>(*app_->get_config_formatter()).require_files();
   keys_.check();
 }
 
@@ -334,7 +414,10 @@ void Subcommand::parse_config(const std::string& config) {
 
 bool Subcommand::settle() const {
   keys_.refuse_unread();
-  if (print_config_) std::cout << keys_.config();
+  if (print_config_)
+    std::cout << keys_.config();
+  else
+    note_odd_values(keys_);
   return !print_config_;
 }
 

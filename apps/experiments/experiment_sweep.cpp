@@ -12,8 +12,8 @@ namespace flatspeckle::apps {
 namespace {
 
 /// Of the sweep as a whole, not of its points.
-const std::set<std::string> keys_of_the_sweep{"of",  "vary",    "points",  "shard",
-                                              "out", "threads", "seconds", "resume"};
+const std::set<std::string> keys_of_the_sweep{"of",      "vary",    "shard", "out",
+                                              "threads", "seconds", "resume"};
 
 std::string line(const std::string& key, const std::vector<std::string>& values) {
   return key + " = " + joined(values, " ") + '\n';
@@ -71,6 +71,7 @@ void ExperimentSweep::check() {
   keys.read(run_.seconds);
   points_ = varied_points(keys, vary_, keys);
   std::set<std::string> noted = keys_of_the_sweep;  // of a key that is varied as a whole, nothing
+  noted.insert(keys.name(vary_.points));
   for (const SweepAxis& axis : points_.axes) noted.insert(axis.key);
   family_.take_given(keys, noted);
   check_points();

@@ -83,9 +83,11 @@ SweepPoints grid_of(const VaryValues& values, const Keys& of) {
   return points;
 }
 
-SweepPoints list_of(const std::string& path, const Keys& of) {
-  const Table table = read_csv(path);
-  if (table.rows() == 0) throw InputError("points", path, "must have at least one row");
+SweepPoints list_of(const std::string& own_key, const std::string& path, const Keys& of) {
+  const Table table = read_key_table(own_key, path, [&](const std::string& name) {
+    const Key* const key = of.find(key_of({name, {}}));
+    return key != nullptr && key->unit() == "rad";
+  });
   SweepPoints points;
   points.is_list = true;
   for (const std::string& name : table.names()) {
@@ -159,9 +161,8 @@ void check_columns(const Table& table, const SweepLists& lists) {
 }
 
 SweepPoints listed(const Keys& keys, const SweepLists& lists) {
-  const Table table = read_csv(lists.points);
+  const Table table = read_key_table("points", lists.points);
   check_columns(table, lists);
-  if (table.rows() == 0) throw InputError("points", lists.points, "must have at least one row");
   SweepPoints list;
   list.is_list = true;
   const auto given = given_axes(keys, lists);
@@ -210,15 +211,18 @@ void add_vary_key(Keys& keys, VaryValues& values) {
 
 void add_keys(Keys& keys, VaryValues& values) {
   add_vary_key(keys, values);
-  keys.add("points", values.points, "CSV with columns named by keys: a list of points instead");
+  const bool is_taken = keys.find("points") != nullptr;  // by the subcommand that is swept
+  keys.add(is_taken ? "points_table" : "points", values.points,
+           "CSV with columns named by keys: a list of points instead");
 }
 
 SweepPoints varied_points(const Keys& keys, const VaryValues& values, const Keys& of) {
   const bool is_list = !keys.read(values.points).empty(), is_grid = !keys.read(values.vary).empty();
   if (is_list == is_grid)
-    throw InputError(is_list ? "vary, points: give one"
-                             : "vary is not given: key=values to sweep, or points, a table");
-  return is_list ? list_of(values.points, of) : grid_of(values, of);
+    throw InputError(is_list ? "vary, " + keys.name(values.points) + ": give one"
+                             : "vary is not given: key=values to sweep, or " +
+                                   keys.name(values.points) + ", a table");
+  return is_list ? list_of(keys.name(values.points), values.points, of) : grid_of(values, of);
 }
 
 void set_point(const SweepPoints& points, std::size_t point, const Keys& keys) {

@@ -70,6 +70,7 @@ struct VaryValues {
   std::string points;
 };
 void add_vary_key(Keys& keys, VaryValues& values);
+/// Names the table points_table where the keys have points already.
 void add_keys(Keys& keys, VaryValues& values);
 
 /// Points of keys of `of`. Throws InputError for what is no such list or range, for keys that there
