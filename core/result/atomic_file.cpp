@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
-#include <sstream>
 #include <string>
 #include <unistd.h>
 #include <utility>
@@ -24,27 +23,17 @@ fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
+/// Returns the name of a temporary file up to the number of its process.
+std::string temporary_name(const fs::path& path) {
+  return '.' + path.filename().string() + ".tmp-";
+}
+
 fs::path temporary_beside(const fs::path& path) {
-  std::ostringstream name;
-  name << '.' << path.filename().string() << ".tmp-" << ::getpid();
-  return folder_of(path) / name.str();
+  return folder_of(path) / (temporary_name(path) + std::to_string(::getpid()));
 }
 
 int create(const fs::path& path) {
   return ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-}
-
-/// Where a link points to. Throws InputError for a loop of them.
-fs::path followed(fs::path path) {
-  constexpr int most_links = 40;
-  std::error_code none;
-  for (int links = 0; fs::is_symlink(path, none); ++links) {
-    if (links == most_links)
-      throw InputError("cannot write " + path.string() + ": a loop of symbolic links");
-    const fs::path target = fs::read_symlink(path, none);
-    path = target.is_absolute() ? target : folder_of(path) / target;
-  }
-  return path;
 }
 
 /// Of a file that is there; the superuser is asked to mind it too.
@@ -68,10 +57,31 @@ bool sync_folder(const fs::path& folder) {
 
 }  // namespace
 
+fs::path link_target(fs::path path) {
+  constexpr int most_links = 40;
+  std::error_code none;
+  for (int links = 0; fs::is_symlink(path, none); ++links) {
+    if (links == most_links)
+      throw InputError("cannot write " + path.string() + ": a loop of symbolic links");
+    const fs::path target = fs::read_symlink(path, none);
+    path = target.is_absolute() ? target : folder_of(path) / target;
+  }
+  return path;
+}
+
+void remove_temporary_files(const fs::path& path) {
+  const std::string begin = temporary_name(path);
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder_of(path), none))
+    if (const std::string name = entry.path().filename().string();
+        name.starts_with(begin) && name.find_first_not_of("0123456789", begin.size()) == name.npos)
+      fs::remove(entry.path(), none);
+}
+
 void check_writable(const fs::path& given) {
   if (!given.has_filename())
     throw InputError("cannot write \"" + given.string() + "\": no file name");
-  const fs::path path = followed(given);
+  const fs::path path = link_target(given);
   std::error_code unknown;  // leaves it to the attempt below to complain
   if (fs::exists(path, unknown) && !fs::is_regular_file(path, unknown))
     throw InputError("cannot write " + path.string() + ": not a regular file");
@@ -90,7 +100,7 @@ void check_writable(const fs::path& given) {
 }
 
 FileBeside::FileBeside(fs::path path)
-    : path_(followed(std::move(path))),
+    : path_(link_target(std::move(path))),
       temporary_(temporary_beside(path_)),
       removed_(temporary_.string()),
       descriptor_(create(temporary_)) {
@@ -113,6 +123,11 @@ void FileBeside::write(std::span<const std::byte> bytes) {
     if (written < 0 && errno != EINTR) fail(errno);
     if (written > 0) bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
+}
+
+void FileBeside::append(std::span<const std::byte> bytes) {
+  if (::lseek(descriptor_, 0, SEEK_END) < 0) fail(errno);
+  write(bytes);
 }
 
 void FileBeside::reserve(std::uintmax_t bytes) {

@@ -9,10 +9,18 @@
 
 namespace flatspeckle {
 
+/// Returns where symbolic links lead from there, the path itself where it is none. Throws
+/// InputError for a loop of them.
+std::filesystem::path link_target(std::filesystem::path path);
+
 /// Makes sure, before long work, that a file can be put at `path`; leaves nothing behind. Throws
 /// InputError where the folder is missing or something that is no file is there, IoError where the
 /// folder is closed to us, the file is write-protected or the disk is full.
 void check_writable(const std::filesystem::path& path);
+
+/// Removes the temporary files that killed processes have left beside `path`. For the process that
+/// holds the lock of `path` alone.
+void remove_temporary_files(const std::filesystem::path& path);
 
 /// Whether a file that is in place must survive a failure of the machine, which takes some
 /// milliseconds of waiting for the disk, or only that of this process.
@@ -30,6 +38,8 @@ class FileBeside {
 
   const std::filesystem::path& name() const { return temporary_; }
   void write(std::span<const std::byte> bytes);
+  /// Writes at the end, after what was written by name.
+  void append(std::span<const std::byte> bytes);
   /// Makes sure that so many bytes have room on the disk, or throws IoError.
   void reserve(std::uintmax_t bytes);
   /// Ends the file there, giving back what was reserved beyond.

@@ -1,5 +1,6 @@
 #include "core/result/guarded_read.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -7,6 +8,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
+#include <optional>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -25,9 +27,26 @@ struct Seal {
 };
 static_assert(sizeof(Seal) == 16);
 
-Seal seal_of(const std::byte* bytes, std::size_t length) {
-  const auto checksum = crc32_z(0, reinterpret_cast<const unsigned char*>(bytes), length);
+Seal seal_of(uLong checksum, std::size_t length) {
   return {{'s', 'e', 'a', 'l'}, static_cast<std::uint32_t>(checksum), length};
+}
+
+/// Returns the seal of the next bytes; nullopt where there are fewer than `length`.
+std::optional<Seal> seal_of(std::istream& file, std::size_t length) {
+  std::vector<char> part(1 << 20);
+  uLong checksum = 0;
+  for (std::size_t left = length; left > 0;) {
+    const std::size_t count = std::min(left, part.size());
+    if (!file.read(part.data(), static_cast<std::streamsize>(count))) return std::nullopt;
+    checksum = crc32_z(checksum, reinterpret_cast<const unsigned char*>(part.data()), count);
+    left -= count;
+  }
+  return seal_of(checksum, length);
+}
+
+std::vector<std::byte> bytes_of(const Seal& seal) {
+  const auto* first = reinterpret_cast<const std::byte*>(&seal);
+  return {first, first + sizeof seal};
 }
 
 /// Ends this process: by 0 if `read` returned or threw.
@@ -49,22 +68,28 @@ Seal seal_of(const std::byte* bytes, std::size_t length) {
 }  // namespace
 
 void seal(std::vector<std::byte>& bytes) {
-  const Seal seal = seal_of(bytes.data(), bytes.size());
-  const auto* first = reinterpret_cast<const std::byte*>(&seal);
-  bytes.insert(bytes.end(), first, first + sizeof seal);
+  const auto* first = reinterpret_cast<const unsigned char*>(bytes.data());
+  const auto end = bytes_of(seal_of(crc32_z(0, first, bytes.size()), bytes.size()));
+  bytes.insert(bytes.end(), end.begin(), end.end());
+}
+
+std::vector<std::byte> seal_of_file(const std::filesystem::path& path) {
+  std::error_code none;
+  std::ifstream file(path, std::ios::binary);
+  const auto seal = seal_of(file, std::filesystem::file_size(path, none));
+  if (none || !seal) throw IoError("reading " + path.string() + " failed");
+  return bytes_of(*seal);
 }
 
 bool is_sealed(const std::filesystem::path& path) {
   std::error_code none;
   const auto size = std::filesystem::file_size(path, none);
   if (none || size < sizeof(Seal)) return false;
-  std::vector<std::byte> bytes(size);
   std::ifstream file(path, std::ios::binary);
-  if (!file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size)))
-    return false;
-  const std::size_t length = bytes.size() - sizeof(Seal);
-  const Seal expected = seal_of(bytes.data(), length);
-  return std::memcmp(&expected, bytes.data() + length, sizeof(Seal)) == 0;
+  const auto expected = seal_of(file, size - sizeof(Seal));
+  Seal found{};
+  return expected && file.read(reinterpret_cast<char*>(&found), sizeof found) &&
+         std::memcmp(&*expected, &found, sizeof found) == 0;
 }
 
 void read_in_child(const std::filesystem::path& path, const std::function<void()>& read) {

@@ -28,6 +28,7 @@ const DatasetTable provenance_table{
         {"", "samples", "float64", "light paths, placements, fields, rays, trials, camera paths"},
         {"", "identity", "text", "what --resume compares"},
         {"", "converged", "bool", "0: stopped before the target error, or interrupted"},
+        {"", "undefined", "texts", "what is left out, for a value of it is not finite"},
     }};
 
 void write_provenance(ResultFile& file, const Provenance& provenance) {
@@ -45,7 +46,8 @@ void write_provenance(ResultFile& file, const Provenance& provenance) {
   root.attribute("wall_s", provenance.wall_s);
   root.attribute("cpu_s", provenance.cpu_s);
   root.attribute("samples", provenance.samples);
-  root.attribute("converged", provenance.converged);
+  root.attribute("converged", provenance.converged && file.undefined().empty());
+  if (!file.undefined().empty()) root.attribute("undefined", file.undefined());
   if (!provenance.identity.empty()) root.attribute("identity", provenance.identity);
 }
 

@@ -23,7 +23,8 @@ struct Provenance {
 
 extern const DatasetTable provenance_table;
 /// Root attributes: the members of Provenance under their names, and program, version, git_commit,
-/// machine.
+/// machine. After all else: where something was left out (ResultFile::undefined), the result is not
+/// converged.
 void write_provenance(ResultFile& file, const Provenance& provenance);
 
 /// "2024-05-01T12:00:00Z".

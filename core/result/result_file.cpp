@@ -15,7 +15,6 @@
 
 #include <hdf5_hl.h>
 
-#include "core/contract.h"
 #include "core/error.h"
 #include "core/result/collected_result.h"
 #include "core/result/guarded_read.h"
@@ -425,8 +424,12 @@ bool ResultFile::keeps_invariants() const {
   return std::ranges::all_of(invariants_, [](const auto& each) { return each.second.holds(); });
 }
 
-void ResultFile::commit() {
-  if (!beside_) return replace_file(path_, image());
+void ResultFile::commit(bool is_sealed, Durable durable) {
+  if (!beside_) {
+    auto bytes = image();
+    if (is_sealed) seal(bytes);
+    return replace_file(path_, bytes, durable);
+  }
   if (!file_) throw std::logic_error(path_.string() + ": finished twice");
   make_room(0);
   const Hdf5Calls<IoError> call("HDF5 cannot finish " + path_.string());
@@ -435,14 +438,8 @@ void ResultFile::commit() {
   call.check(H5Fget_filesize(file_->get(), &size));
   file_.reset();
   beside_->truncate(size);
-  beside_->put_in_place();
-}
-
-void ResultFile::commit_sealed(Durable durable) {
-  FS_EXPECT(!beside_);
-  auto bytes = image();
-  seal(bytes);
-  replace_file(path_, bytes, durable);
+  if (is_sealed) beside_->append(seal_of_file(beside_->name()));
+  beside_->put_in_place(durable);
 }
 
 /// The bytes of a file in memory, which is closed.

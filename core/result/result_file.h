@@ -90,6 +90,9 @@ class ResultFile {
   /// user.
   void note_rare(const std::string& estimates) { rare_.push_back(estimates); }
   const std::vector<std::string>& rare() const { return rare_; }
+  /// Remembers a dataset, or OBJECT@ATTRIBUTE, that is left out, for it is not finite.
+  void note_undefined(const std::string& name) { undefined_.push_back(name); }
+  const std::vector<std::string>& undefined() const { return undefined_; }
 
   /// Remembers an invariant of the result by the name of its dataset; of several values, the worst.
   void note_invariant(const std::string& name, const Invariant& worst) {
@@ -100,11 +103,12 @@ class ResultFile {
 
   /// Puts the file at its path, replacing what is there. Throws IoError. Nothing can be written
   /// afterwards.
-  void commit();
-  /// The same with a seal (guarded_read.h) at its end, for a file made in memory.
-  void commit_sealed(Durable durable);
+  void commit() { commit(false, Durable::yes); }
+  /// Commits the file with a seal (guarded_read.h) at its end.
+  void commit_sealed(Durable durable) { commit(true, durable); }
 
  private:
+  void commit(bool is_sealed, Durable durable);
   void make_room(std::size_t bytes);
   std::vector<std::byte> image();
 
@@ -115,6 +119,7 @@ class ResultFile {
   std::map<std::string, std::vector<Axis>> roles_;
   std::vector<std::string> rare_;
   std::vector<std::pair<std::string, Invariant>> invariants_;
+  std::vector<std::string> undefined_;
 };
 
 /// check_writable, and throws InputError where another kind of file is, which would be lost.

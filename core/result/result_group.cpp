@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
+
+#include "core/result/hdf5_handle.h"
 
 namespace flatspeckle {
 
@@ -14,6 +17,23 @@ constexpr const char* value_types[] = {"float64", "complex", "uint64", "texts"};
 /// By that of Attribute, as AttributeRow has it.
 constexpr const char* attribute_types[] = {"bool", "int64",    "uint64", "float64",
                                            "text", "float64s", "texts"};
+
+bool is_finite(const Values& values) {
+  return std::visit(
+      []<typename Value>(std::span<const Value> given) {
+        if constexpr (std::is_same_v<Value, std::string>)
+          return true;
+        else
+          return all_finite(given);
+      },
+      values);
+}
+
+bool is_finite(const Attribute& value) {
+  if (const auto* number = std::get_if<double>(&value)) return std::isfinite(*number);
+  const auto* numbers = std::get_if<std::vector<double>>(&value);
+  return numbers == nullptr || all_finite(std::span<const double>(*numbers));
+}
 
 bool is_role(const std::string& word) {
   return !word.empty() && std::isupper(static_cast<unsigned char>(word.front())) != 0;
@@ -116,6 +136,8 @@ void ResultGroup::attribute(const std::string& object, const std::string& name,
   if (found == all.end())
     throw std::logic_error(object + ": no row for its attribute " + name + " in " + table_.name);
   const std::string path = prefix_ + object;
+  if (!object.empty() && std::ranges::count(file_.undefined(), path) > 0) return;
+  if (!is_finite(value)) return file_.note_undefined(path + '@' + name);
   file_.attribute(path.empty() ? "/" : path, name, value);
 }
 
@@ -125,6 +147,8 @@ void ResultGroup::write(const DatasetRow& row, const Values& values) const {
     throw std::logic_error(name + ": its row wants " + type_name(row.data));
   if (row.data == Data::scale || row.data == Data::numbers)
     file_.scale(name, std::get<0>(values), unit(row), row.long_name);
+  else if (!is_finite(values))
+    file_.note_undefined(name);
   else
     file_.dataset(name, values, axes(row), unit(row), row.long_name);
 }

@@ -15,8 +15,10 @@
 namespace flatspeckle {
 
 /// The root of a result file or one of its groups, and the table of what may be written there:
-/// units, long names, axes and companions come from its rows. Throws std::logic_error for a name
-/// without a row, for values that are not what the row says, and as ResultFile does.
+/// units, long names, axes and companions come from its rows. Datasets and attributes with a value
+/// that is not finite are left out and noted (ResultFile::undefined), that the rest of a finished
+/// run is not lost. Throws std::logic_error for a name without a row, for values that are not what
+/// the row says, and as ResultFile does.
 class ResultGroup {
  public:
   /// group: its name, or empty for the root. The table must live as long.

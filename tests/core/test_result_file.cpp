@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "core/result/atomic_file.h"
 #include "core/result/collected_result.h"
+#include "core/result/guarded_read.h"
 #include "core/result/provenance.h"
 #include "core/result/result_file.h"
 #include "core/result/result_reader.h"
@@ -341,6 +342,25 @@ TEST_CASE("a place that cannot be written is bad input, told at once") {
   check_writable(folder / "a.h5");
   check_writable(folder / "file");
   CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("what a killed process left beside a file is removed") {
+  const Folder folder;
+  const char* const others[] = {".a.h5.tmp-x", ".b.h5.tmp-1", ".a.h5.tmp", "a.h5.tmp-1"};
+  for (const char* name : {".a.h5.tmp-1", ".a.h5.tmp-4194304"}) std::ofstream(folder / name) << "1";
+  for (const char* name : others) std::ofstream(folder / name) << "1";
+  remove_temporary_files(folder / "a.h5");
+  CHECK(folder.entries() == std::size(others));
+  for (const char* name : others) CHECK(fs::exists(folder / name));
+}
+
+TEST_CASE("a result on the disk is sealed as one in memory is") {
+  const Folder folder;
+  ResultFile file(folder / "a.h5", ResultFile::Storage::disk);
+  file.dataset("noise", noise(200'000), {std::size_t{200'000}}, "", "");
+  file.commit_sealed(Durable::no);
+  CHECK(is_sealed(folder / "a.h5"));
+  CHECK(ResultReader(folder / "a.h5").dataset<double>("noise") == noise(200'000));
 }
 
 TEST_CASE("a folder that vanishes before the end is an IoError") {

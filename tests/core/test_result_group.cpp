@@ -1,10 +1,13 @@
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <stdexcept>
 
 #include <doctest/doctest.h>
 
 #include "core/result/collected_result.h"
+#include "core/result/provenance.h"
 #include "core/result/result_group.h"
 #include "core/result/result_reader.h"
 
@@ -103,6 +106,27 @@ TEST_CASE("what has no row, or another shape, is refused") {
   CHECK_THROWS_AS(out.root.number("range", 2), std::logic_error);
   CHECK_THROWS_AS(out.root.attribute("width", 1.0), std::logic_error);
   CHECK_THROWS_AS(out.root.attribute("depth", std::uint64_t{1}), std::logic_error);
+}
+
+TEST_CASE("what is not finite is left out and noted, the rest is there") {
+  Written out;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  out.root.put("intensity", two, std::vector<double>{0.1, HUGE_VAL});
+  out.root.put("range", nan);
+  out.root.attribute("range", "censored", std::uint64_t{1});
+  out.root.attribute("depth", nan);
+  const std::vector<std::string> names{"intensity_error", "range", "@depth"};
+  CHECK(out.file.undefined() == names);
+  Provenance made;
+  made.converged = true;
+  write_provenance(out.file, made);
+  out.file.commit();
+  const ResultReader file(out.folder / "a.h5");
+  CHECK(file.dataset<double>("intensity") == two);
+  for (const char* name : {"intensity_error", "range"}) CHECK_FALSE(file.has(name));
+  CHECK_FALSE(file.has_attribute("/", "depth"));
+  CHECK_FALSE(file.attribute<bool>("/", "converged"));
+  CHECK(file.has_attribute("/", "undefined"));
 }
 
 TEST_CASE("a role must be bound") {
