@@ -174,6 +174,8 @@ int main(int argc, char** argv) {
     if (error.code() != std::errc::resource_unavailable_try_again) return fail(error.what(), 1);
     return fail("no thread can be started, for which memory may be too little",
                 ExitStatus::bad_input);
+  } catch (const Interrupted&) {
+    return ExitStatus::interrupted_for_good;
   } catch (const std::exception& error) {
     return fail(error.what(), 1);
   }

@@ -1,7 +1,10 @@
 #include "apps/command/experiment.h"
 
+#include <memory>
+#include <optional>
+#include <utility>
+
 #include "core/result/collected_result.h"
-#include "core/run/interrupt.h"
 
 namespace flatspeckle::apps {
 
@@ -12,23 +15,30 @@ int Experiment::run_alone(Session& session, const std::string& label) const {
 }
 
 PlannedExperiment OneShot::plan() const {
-  const auto made = std::make_shared<CollectedResult>();
+  const auto made = std::make_shared<std::optional<CollectedResult>>();
+  const auto make_once = [this, made] {
+    if (*made) return;
+    CollectedResult result;
+    ResultFile collecting(result);
+    make(collecting, false);
+    *made = std::move(result);
+  };
   BatchJob job;
   job.size = 1;
   job.one_by_one = true;
   job.relative_error = [](const GroupedSums&) { return 0.0; };
-  job.run = [this, made](std::uint64_t batch, std::span<Complex>) {
-    if (batch > 0) return;
-    ResultFile collecting(*made);
-    if (!make(collecting, false)) throw Interrupted{};
+  job.run = [make_once](std::uint64_t batch, std::span<Complex>) {
+    if (batch == 0) make_once();
   };
   return {.plan = "at once",
           .batches = job,
-          .write = [made](ResultFile& file, const GroupedSums&, bool) { put(file, *made); }};
+          .write = [made, make_once](ResultFile& file, const GroupedSums&, bool) {
+            make_once();
+            put(file, **made);
+          }};
 }
 
 int OneShot::run_alone(Session& session, const std::string&) const {
-  if (looks_for_signals()) catch_interrupts();
   return session.once(ResultFile(session.out(), storage()),
                       [&](ResultFile& file) { return make(file, true); });
 }

@@ -2,7 +2,6 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "apps/command/command_line.h"
@@ -65,15 +64,16 @@ class Experiment {
 class OneShot : public Experiment {
  public:
   OneShot() { stop_.samples = 2; }  // batches
-  /// That is its first batch; the second is empty.
+  /// Plans two batches, of which the first makes the result and the second is empty. The result is
+  /// kept in this process alone: where another one ran the first batch, or an interrupted one, it is
+  /// made again when it is written.
   PlannedExperiment plan() const override;
   int run_alone(Session& session, const std::string& label) const override;
 
  protected:
-  /// Nothing where a signal came. tells: on standard output, too.
-  virtual std::optional<Made> make(ResultFile& file, bool tells) const = 0;
-  /// Whether make() looks for signals; else they end the program at once.
-  virtual bool looks_for_signals() const { return false; }
+  /// Makes the result. tells: on standard output, too. Within a sweep or a search it throws
+  /// Interrupted once a signal has come; signals end a run alone at once.
+  virtual Made make(ResultFile& file, bool tells) const = 0;
   /// Of a file of its own.
   virtual ResultFile::Storage storage() const { return ResultFile::Storage::memory; }
   int threads() const {

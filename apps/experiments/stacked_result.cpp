@@ -235,8 +235,9 @@ class Stack {
     const bool as_list = points.is_list || store_.finished() < points.count();
     std::vector<std::string> keys;
     if (as_list) {
-      ResultGroup(file_, sweep_axes_table).number("point", store_.finished());
-      add_axis("point", store_.finished());
+      const std::string name = sets_.contains("point") ? "swept_point" : "point";
+      ResultGroup(file_, sweep_axes_table).number(name, store_.finished());
+      add_axis(name, store_.finished());
     }
     for (std::size_t i = 0; i < points.axes.size(); ++i) {
       keys.push_back(points.axes[i].key);

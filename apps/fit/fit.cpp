@@ -16,6 +16,7 @@
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
 #include "core/result/version.h"
+#include "core/run/interrupt.h"
 #include "core/session/journal.h"
 #include "core/session/session.h"
 #include "mc/fit/fit_datasets.h"
@@ -224,7 +225,8 @@ void add_keys(Keys& keys, FitKeys& values) {
       "Keys that are fitted and their bounds, as g=0.5:0.99; what the scene gives one is where "
       "it starts");
   keys.add("measurement", values.measurements,
-           "Files that are fitted together: results of covariance, flux and sweep (.h5), tables");
+           "Files that are fitted together: results of covariance, flux and sweep (.h5), tables")
+      .file();
   keys.add("compare", values.compare,
            "No measurement: results of fits of the same measurements by other media, side by side");
   keys.add("starts", values.starts,
@@ -395,7 +397,7 @@ int run_plans(const Session& session, const Subcommand& command, const FitKeys& 
     tasks.push_back(plan_of(command.keys(), values, there.values));
   }
   if (!command.settle()) return ExitStatus::done;
-  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
+  return session.once(ResultFile(session.out()), [&](ResultFile& file) {
     std::vector<mc::PlanPoint> plans;
     for (std::size_t i = 0; i < points.count(); ++i)
       plans.push_back({points.name(i), mc::fit_plan(tasks[i])});
@@ -409,7 +411,7 @@ int run_plan(const Session& session, const Subcommand& command, const FitKeys& v
   if (!values.varied.vary.empty()) return run_plans(session, command, values);
   const mc::PlanTask task = plan_of(command.keys(), values, values.medium);
   if (!command.settle()) return ExitStatus::done;
-  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
+  return session.once(ResultFile(session.out()), [&](ResultFile& file) {
     const mc::FitPlan plan = mc::fit_plan(task);
     mc::write_plan(file, task, plan);
     print_plan(task, plan);
@@ -435,7 +437,7 @@ std::string model_of(const mc::FitTask& task, const mc::MediumFit& fit) {
 
 /// All that a search depends on.
 std::string identity_of(const Keys& keys, const mc::FitTask& task) {
-  std::string text = version() + '\n' + keys.identity();
+  std::string text = version() + '\n' + keys.identity() + inputs_text(keys);
   for (const mc::Measurement& one : task.measurements)
     for (const double value : one.values) text += number_text(value) + ' ';
   return text;
@@ -451,21 +453,24 @@ int run_fit(const Session& session, const Subcommand& command, const FitKeys& va
   std::error_code none;
   std::optional<Journal> journal;
   if (task.paths) {
+    catch_interrupts();
     if (!values.run.resume) std::filesystem::remove(path, none);
     journal.emplace(
         path, JournalHead{identity_of(command.keys(), task)}, "search",
         [&](std::uint64_t, char, ByteReader& record) { task.made.push_back(step_of(record)); });
     task.keep = [&](const mc::FitStep& step) { journal->append(step_kind, record_of(step)); };
   }
-  const int status =
-      session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
-        const mc::MediumFit fit = mc::fit_medium(task);
-        mc::write_fit(file, task, fit);
-        print_fit(task, fit);
-        return Made{"least squares; " + model_of(task, fit),
-                    static_cast<double>(fit.residuals.size()),
-                    fit.converged ? ExitStatus::done : ExitStatus::error_not_reached};
-      });
+  const int status = session.once(ResultFile(session.out()), [&](ResultFile& file) {
+    const mc::MediumFit fit = mc::fit_medium(task);
+    mc::write_fit(file, task, fit);
+    print_fit(task, fit);
+    return Made{"least squares; " + model_of(task, fit), static_cast<double>(fit.residuals.size()),
+                fit.converged ? ExitStatus::done : ExitStatus::error_not_reached};
+  });
+  if (journal && status == ExitStatus::interrupted_for_good) {
+    std::printf("interrupted; %s holds what is done, --resume goes on\n", path.c_str());
+    return ExitStatus::interrupted_resumable;
+  }
   if (journal) std::filesystem::remove(path, none);
   return status;
 }

@@ -148,26 +148,24 @@ class FieldExperiment : public OneShot {
   }
 
  private:
-  bool looks_for_signals() const override { return true; }
   ResultFile::Storage storage() const override { return ResultFile::Storage::disk; }
 
-  std::optional<Made> make(ResultFile& file, bool tells) const override {
+  Made make(ResultFile& file, bool tells) const override {
     const auto tell_plan = [&](const mc::DrawingPlan& chosen) {
       if (!tells) return;
       std::printf("%s\n", chosen.describe().c_str());
       std::fflush(stdout);
     };
     const auto drawn = mc::draw_fields(*scene_, demand_, settings_, tell_plan);
-    if (!drawn) return std::nullopt;
     write_medium(file, *scene_);
-    const auto summary = mc::write_fields(file, *scene_, values_.spec.tilts, *drawn);
-    const double paths = drawn->plan.method == mc::FieldMethod::covariance
-                             ? static_cast<double>(drawn->plan.covariance_paths)
-                             : static_cast<double>(drawn->plan.paths_per_field * demand_.fields);
+    const auto summary = mc::write_fields(file, *scene_, values_.spec.tilts, drawn);
+    const double paths = drawn.plan.method == mc::FieldMethod::covariance
+                             ? static_cast<double>(drawn.plan.covariance_paths)
+                             : static_cast<double>(drawn.plan.paths_per_field * demand_.fields);
     check_power(file, "", *scene_, {"mc", paths, 0, seed()});
-    if (tells) print_summary(*drawn, summary);
+    if (tells) print_summary(drawn, summary);
     return Made{"mc: " + mc::make_plan(*scene_, settings_.reversed).describe() + "; " +
-                    drawn->plan.describe(),
+                    drawn.plan.describe(),
                 static_cast<double>(demand_.fields)};
   }
 

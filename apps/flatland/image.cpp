@@ -11,7 +11,7 @@
 #include "apps/results/view_power.h"
 #include "core/error.h"
 #include "core/numbers/address_space.h"
-#include "core/run/interrupt.h"
+#include "core/run/runner.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/imaging/imaging_datasets.h"
 #include "mc/imaging/media_statistics.h"
@@ -183,6 +183,16 @@ std::size_t lags_of(const mc::LineScene& line, const std::optional<double>& obje
   return static_cast<std::size_t>(lags);
 }
 
+/// Refuses a reference whose picture, of so many lags to either side, shows no point of the object.
+void require_picture(const mc::LineScene& line, std::size_t lags) {
+  if (!line.reference) return;
+  const auto away = shifts(line).x;
+  const auto in_picture = [&](double x) { return std::abs(x) < static_cast<double>(lags); };
+  if (std::ranges::none_of(away, in_picture))
+    throw InputError("reference_x", *line.reference,
+                     "is further from all points of the object than object_extent reaches");
+}
+
 /// All but the lags.
 mc::ImagingTask task_of(const Keys& keys, const ImageKeys& values, std::size_t points) {
   mc::ImagingTask task;
@@ -265,9 +275,9 @@ void remove_mean(std::vector<Complex>& fields, std::size_t channels) {
 }
 
 /// The exact solver's fields of all placements, less their mean: the speckle alone, as light paths
-/// have it. Nothing where a signal came.
-std::optional<mc::FieldDraw> exact_fields(const mc::LineScene& line, const mc::ImagingTask& task,
-                                          double tolerance) {
+/// have it.
+mc::FieldDraw exact_fields(const mc::LineScene& line, const mc::ImagingTask& task,
+                           double tolerance) {
   const BatchJob exact = wave_estimation(line.scene, tolerance, task.seed).job.batches;
   const std::size_t channels = line.scene.request.channels.size();
   const std::uint64_t media = task.repeats * task.average;
@@ -280,8 +290,7 @@ std::optional<mc::FieldDraw> exact_fields(const mc::LineScene& line, const mc::I
     std::copy_n(sums.begin(), channels, fields->begin() + static_cast<long>(number * channels));
   };
   RunState state;
-  run_batches(job, {{media, std::nullopt, std::nullopt}, task.threads, "wave", {}}, state);
-  if (interrupted()) return std::nullopt;
+  run_to_end(job, {{media, std::nullopt, std::nullopt}, task.threads, "wave", {}}, state);
   remove_mean(*fields, channels);
   return [fields, channels](std::uint64_t number, std::span<Complex> field, std::span<double>) {
     std::copy_n(fields->begin() + static_cast<long>(number * channels), channels, field.begin());
@@ -293,24 +302,18 @@ struct ImagedFields {
   std::string how;
 };
 
-/// Nothing where a signal came.
-std::optional<ImagedFields> fields_of(const mc::LineScene& line, const mc::ImagingTask& task,
-                                      const std::string& method, double wave_tolerance,
-                                      const std::optional<std::int64_t>& paths_per_field) {
-  if (task.repeats == 0) return ImagedFields{{}, "what is expected, without frames"};
-  if (method == "wave") {
-    auto draw = exact_fields(line, task, wave_tolerance);
-    if (!draw) return std::nullopt;
-    return ImagedFields{std::move(*draw),
-                        "wave: placements by the exact solver, less their mean field"};
-  }
+ImagedFields fields_of(const mc::LineScene& line, const mc::ImagingTask& task,
+                       const std::string& method, double wave_tolerance,
+                       const std::optional<std::int64_t>& paths_per_field) {
+  if (task.repeats == 0) return {{}, "what is expected, without frames"};
+  if (method == "wave")
+    return {exact_fields(line, task, wave_tolerance),
+            "wave: placements by the exact solver, less their mean field"};
   const auto paths = paths_per_field ? static_cast<std::uint64_t>(*paths_per_field)
                                      : mc::paths_for_fields(line, task.seed, task.threads);
-  if (!paths) return std::nullopt;
   const mc::Plan plan = mc::make_plan(line.scene, mc::ReversedPaths::automatic);
-  return ImagedFields{
-      mc::fields_by_paths(line.scene, plan, task.seed, *paths),
-      "mc: fields of " + std::to_string(*paths) + " light paths; " + plan.describe()};
+  return {mc::fields_by_paths(line.scene, plan, task.seed, paths),
+          "mc: fields of " + std::to_string(paths) + " light paths; " + plan.describe()};
 }
 
 void print_pictures(const mc::LineScene& line, const mc::ImagingTask& task,
@@ -319,7 +322,9 @@ void print_pictures(const mc::LineScene& line, const mc::ImagingTask& task,
   std::printf("frames divided by the reference: ");
   if (!media.empty()) {
     const mc::MeanOverMedia mean = mc::mean_psnr(media);
-    std::printf("PSNR %.1f +- %.2g dB", mean.value, mean.error);
+    std::printf("PSNR %.1f", mean.value);
+    if (media.size() > 1) std::printf(" +- %.2g", mean.error);
+    std::printf(" dB");
   }
   if (task.deconvolution.method == mc::DeconvolutionTask::Method::wiener)
     std::printf("%sexpected %.1f dB", media.empty() ? "" : ", ",
@@ -403,6 +408,8 @@ class ImageExperiment : public OneShot {
     task_.threads = threads();
     const auto& object_extent = keys.read(values_.object_extent);
     const bool blinks = keys.read(values_.blinking) != "none";
+    if (blinks && task_.repeats == 0)
+      throw InputError("blinking", values_.blinking, "is of frames: repeats must be at least 1");
     if (blinks) task_.blinking = blinking_of(keys, values_, task_);
     if (values_.blinking == "subsets") keys.read(values_.lit);
     if (by_speckle()) {
@@ -414,6 +421,7 @@ class ImageExperiment : public OneShot {
       throw InputError("domain", "slab", "pictures need a box");
     line_ = mc::line_scene(std::move(medium), std::move(object), object_depth, camera, reference);
     task_.recovery.lags = task_.blinking.unmixing.lags = lags_of(*line_, object_extent);
+    require_picture(*line_, task_.recovery.lags);
     if (blinks)
       task_.recovery.noise = mc::noise_of_mean(task_.recovery.noise, task_.blinking.frames);
     if (excitation_) excited_ = make_scene(*excitation_);
@@ -424,42 +432,36 @@ class ImageExperiment : public OneShot {
  private:
   bool by_waves() const { return values_.method == "wave"; }
   bool by_speckle() const { return values_.blinking == "speckle"; }
-  bool looks_for_signals() const override { return true; }
   ResultFile::Storage storage() const override { return ResultFile::Storage::disk; }
 
-  /// Where points blink. False where a signal came.
-  bool set_brightness(mc::ImagingTask& task) const {
+  /// Where points blink.
+  void set_brightness(mc::ImagingTask& task) const {
     if (values_.blinking == "subsets")
       task.blinking.draw =
           mc::random_subsets(task.blinking.frames, line_->object.x.size(), values_.lit, task.seed);
-    if (!excited_) return true;
+    if (!excited_) return;
     auto excitation = mc::speckle_excitation(
         *excited_, *line_,
         {task.blinking.frames, static_cast<std::uint64_t>(values_.excitation_paths), task.seed,
          task.threads});
-    if (!excitation) return false;
-    task.blinking.draw = std::move(excitation->draw);
-    task.blinking.correlation = std::move(excitation->correlation);
-    return true;
+    task.blinking.draw = std::move(excitation.draw);
+    task.blinking.correlation = std::move(excitation.correlation);
   }
 
-  std::optional<Made> make(ResultFile& file, bool tells) const override {
+  Made make(ResultFile& file, bool tells) const override {
     mc::ImagingTask task = task_;
-    if (task.repeats > 0 && !set_brightness(task)) return std::nullopt;
+    if (task.repeats > 0) set_brightness(task);
     const auto fields = fields_of(*line_, task_, values_.method, values_.estimation.wave_tolerance,
                                   values_.paths_per_field);
-    if (!fields) return std::nullopt;
     const auto prediction = mc::predicted(
         *line_, static_cast<std::uint64_t>(values_.prediction_paths), task_.seed, task_.threads);
-    if (!prediction) return std::nullopt;
-    const auto media = mc::imaged(*line_, task, fields->draw);
-    if (!media) return std::nullopt;
+    const auto media = mc::imaged(*line_, task, fields.draw);
     write_medium(file, line_->scene);
-    mc::write_imaging(file, *line_, task, *media, *prediction);
+    mc::write_imaging(file, *line_, task, media, prediction);
     check_power(file, "", line_->scene,
                 {"mc", static_cast<double>(values_.prediction_paths), 0, task_.seed});
-    if (tells) print_summary(*line_, task, *media, *prediction);
-    return Made{fields->how, static_cast<double>(task_.repeats * task_.average)};
+    if (tells) print_summary(*line_, task, media, prediction);
+    return Made{fields.how, static_cast<double>(task_.repeats * task_.average)};
   }
 
   ImageKeys values_;

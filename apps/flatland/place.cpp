@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
 #include <sstream>
 
 #include "apps/command/subcommands.h"
@@ -208,7 +209,7 @@ void write_drawing(ResultFile& file, const PlacementDraw& drawing) {
 }
 
 int save_structure(const PlaceKeys& values, const PlacementDraw& drawing, const Session& session) {
-  return session.once(ResultFile(values.structure), [&](ResultFile& file) -> std::optional<Made> {
+  return session.once(ResultFile(values.structure), [&](ResultFile& file) {
     const auto realizations = static_cast<std::uint64_t>(values.realizations);
     std::optional<HardDiskFluid> fluid;
     if (drawing.kind == Kind::equilibrium && drawing.equal_disks())
@@ -251,7 +252,11 @@ int draw_one(const Subcommand& command, PlaceKeys& values) {
   const PlacementDraw drawing = make_drawing(keys, values);
   if (!keys.read(values.structure).empty()) keys.read(values.realizations);
   if (!command.settle()) return ExitStatus::done;
-  if (!values.structure.empty()) check_result_path(values.structure);
+  std::optional<OutputLock> of_structure;
+  if (!values.structure.empty()) {
+    check_result_path(values.structure);
+    of_structure.emplace(values.structure);
+  }
   const Placement placement = draw(drawing, session.seed(), 0);
   put_placement(session.out(), csv_text(drawing, placement, command.text()),
                 values.structure.empty());

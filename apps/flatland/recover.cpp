@@ -229,8 +229,7 @@ int recover_points(const Subcommand& command, RecoverKeys& values) {
   const Make make = keys.read(values.recovery) == "sources" ? sources_of(keys, values, table)
                                                             : search_of(keys, values, table);
   if (!command.settle()) return ExitStatus::done;
-  return session.once(ResultFile(session.out()),
-                      [&](ResultFile& file) -> std::optional<Made> { return make(file); });
+  return session.once(ResultFile(session.out()), make);
 }
 
 }  // namespace

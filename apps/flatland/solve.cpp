@@ -217,6 +217,7 @@ wave::WaveSolution solved(const SolveKeys& values, const Placement& placement, d
                      options);
 }
 
+<<<<<<< HEAD
 /// Says where an index may be n - 1, as tables of gases and of contrasts have it.
 void note_thin_index(const Placement& placement) {
   constexpr double rare = 0.8;  // bubbles in solids are of such an index
@@ -233,6 +234,11 @@ void note_thin_index(const Placement& placement) {
 std::optional<wave::Spectrum> spectrum(const SolveKeys& values, const Placement& placement,
                                        const WavelengthList& wavelengths, const Sensors& sensors,
                                        bool tells) {
+=======
+/// One wavelength after the other.
+wave::Spectrum spectrum(const SolveKeys& values, const Placement& placement,
+                        const WavelengthList& wavelengths, const Sensors& sensors, bool tells) {
+>>>>>>> d20b41a3 (Interrupt and resume all subcommands alike, lock results by the target of links)
   wave::Spectrum spectrum(sensors.angles, sensors.points);
   Progress progress(tells ? "solve" : "", "wavelengths");
   const Stopwatch watch;
@@ -240,7 +246,7 @@ std::optional<wave::Spectrum> spectrum(const SolveKeys& values, const Placement&
   for (const double wavelength : wavelengths.values) {
     spectrum.add(wavelength, solved(values, wavelengths.at(wavelength, placement), wavelength, {},
                                     sensors.points));
-    if (interrupted()) return std::nullopt;
+    stop_if_interrupted();
     figures.samples += 1;
     figures.rate = figures.samples / watch.seconds();
     figures.seconds_left =
@@ -320,7 +326,13 @@ class SolveExperiment : public OneShot {
     }
     if (!has_own_places(spec)) scene_ = make_scene(keys, spec);
     placement_ = scene_ ? drawn_placement(spec, *scene_, seed()) : placement_of_file(keys, spec);
-    for (const Vec2& sensor : sensors_.points) require_outside(placement_, sensor);
+    const double shortest = wavelengths_->values.empty()
+                                ? keys.read(spec.wavelength)
+                                : *std::ranges::min_element(wavelengths_->values);
+    for (const Vec2& sensor : sensors_.points) {
+      require_outside(placement_, sensor);
+      require_phase("near_sensors", sensor, 2 * std::numbers::pi / shortest);
+    }
     if (wavelengths_->index) require_index_from_table(spec, placement_);
   }
 
@@ -353,6 +365,7 @@ class SolveExperiment : public OneShot {
     for (const Vec2 sensor : sensors) graded_->views.push_back(near_sensor(sensor));
   }
 
+<<<<<<< HEAD
   void note() const override {
     if (cluster_) return;
     if (placement_.empty())
@@ -361,11 +374,13 @@ class SolveExperiment : public OneShot {
   }
 
   bool looks_for_signals() const override { return wavelengths_ && !wavelengths_->values.empty(); }
+=======
+>>>>>>> d20b41a3 (Interrupt and resume all subcommands alike, lock results by the target of links)
   ResultFile::Storage storage() const override {
     return grid_ ? ResultFile::Storage::disk : ResultFile::Storage::memory;
   }
 
-  std::optional<Made> make(ResultFile& file, bool tells) const override {
+  Made make(ResultFile& file, bool tells) const override {
     blas_single_thread();  // says now what it lacks
     if (graded_) return make_graded(file, tells);
     if (cluster_) return make_clusters(file, tells);
@@ -399,32 +414,32 @@ class SolveExperiment : public OneShot {
     return Made{plan.str(), 1};
   }
 
-  std::optional<Made> make_spectrum(ResultFile& file, bool tells) const {
+  Made make_spectrum(ResultFile& file, bool tells) const {
     const auto found = spectrum(values_, placement_, *wavelengths_, sensors_, tells);
-    if (!found) return std::nullopt;
-    found->write(file);
+    found.write(file);
     write_scene(file);
+<<<<<<< HEAD
     const std::string plan = plan_of(*found, *wavelengths_, placement_);
     if (tells) std::printf("%sresidual at most %.1e\n", plan.c_str(), found->residual());
     return Made{plan + "one solution after the other", 1,
                 status_of(found->fault(), values_.tolerance)};
+=======
+    const std::string plan = plan_of(found, *wavelengths_, placement_);
+    if (tells) std::printf("%sresidual at most %.1e\n", plan.c_str(), found.residual());
+    return Made{plan + "one solution after the other", 1};
+>>>>>>> d20b41a3 (Interrupt and resume all subcommands alike, lock results by the target of links)
   }
 
-  std::optional<Made> make_fields(ResultFile& file, bool tells) const {
+  Made make_fields(ResultFile& file, bool tells) const {
     const double wavelength = values_.spec.wavelength;
     const auto solution = solved(values_, placement_, wavelength, grid_, sensors_.points);
     std::optional<wave::KeptCluster> cluster;
     if (values_.t_matrix_gap)
       cluster = wave::kept_cluster(placement_, 2 * std::numbers::pi / wavelength,
                                    *values_.t_matrix_gap, values_.tolerance);
-    if (grid_) catch_interrupts();  // which must not leave the file that a map is written to
     wave::write_solution(file, solution, sensors_.angles, sensors_.points);
     std::string map_method;
-    if (grid_) {
-      const auto method = wave::write_map(file, solution, *grid_, values_.tolerance);
-      if (!method) return std::nullopt;
-      map_method = *method;
-    }
+    if (grid_) map_method = wave::write_map(file, solution, *grid_, values_.tolerance);
     if (cluster) wave::write_cluster(file, *cluster);
     write_scene(file);
     if (tells) print_summary(solution);

@@ -129,11 +129,10 @@ bool is_reached(const DesignScene& scene, const DesignState& state, const Design
   return scene.target == 0 || state.history.rms.back() <= scene.target;
 }
 
-/// Nothing where a signal came.
-std::optional<Made> make(const DesignScene& scene, const Kept& kept, ResultFile& file) {
+Made make(const DesignScene& scene, const Kept& kept, ResultFile& file) {
   Designer designer(scene);
   const DesignState state = search(designer, kept);
-  if (!state.ended) return std::nullopt;
+  if (!state.ended) throw Interrupted{};
   const DesignCheck check = designer.check(state);
   write_design(file, scene, designer, state, check);
   print_summary(state, check);
@@ -178,7 +177,7 @@ int search_design(const Subcommand& command, DesignKeys& values) {
     std::filesystem::remove(kept.path);
     return status;
   }
-  if (!std::filesystem::exists(kept.path)) return status;
+  if (!grin::design::holds(kept.path, kept.identity)) return status;
   std::printf("interrupted; %s holds what is done, --resume goes on\n", kept.path.c_str());
   return ExitStatus::interrupted_resumable;
 }

@@ -133,7 +133,7 @@ class TraceExperiment : public OneShot {
   }
 
  private:
-  std::optional<Made> make(ResultFile& file, bool tells) const override {
+  Made make(ResultFile& file, bool tells) const override {
     return scene_->curves ? trace_curves(*scene_, file, seed(), tells)
                           : trace_light(*scene_, file, tells);
   }

@@ -18,6 +18,7 @@
 #include "core/result/version.h"
 #include "core/run/interrupt.h"
 #include "core/search/noisy_search.h"
+#include "core/session/journal.h"
 #include "core/session/session.h"
 
 namespace flatspeckle::apps {
@@ -264,8 +265,9 @@ class Optimisation : public Call {
     const Session session(command_.text(), keys, values_.run, command_.only_prints());
     read(session);
     if (!command_.settle()) return ExitStatus::done;
-    return session.is_complete(identity(), fs::exists(journal())) ? ExitStatus::done
-                                                                  : search(session);
+    if (!session.is_complete(identity(), fs::exists(journal()))) return search(session);
+    remove_journal();
+    return ExitStatus::done;
   }
 
  private:
@@ -343,6 +345,15 @@ class Optimisation : public Call {
   std::string identity() const { return identity_of_evaluations() + command_.keys().identity(); }
 
   fs::path journal() const { return values_.run.out + ".evaluations"; }
+  /// Removes the journal of this search, and of no other, which a process left that was killed once
+  /// its result was there.
+  void remove_journal() const try {
+    Journal(journal(), identity_of_evaluations(), "search",
+            [](std::uint64_t, char, ByteReader&) {});
+    fs::remove(journal());
+  } catch (const InputError&) {
+  } catch (const IoError&) {  // no journal is there
+  }
 
   int search(const Session& session);
   Optimum found(Evaluations& evaluations) const;

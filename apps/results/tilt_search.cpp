@@ -61,7 +61,7 @@ mc::Range pilot_range(const Scene& scene, bool transport, int threads, std::uint
     options.stop.samples = paths;
   options.threads = threads;
   RunState state;
-  run_batches(pilot.job.batches, options, state);
+  run_to_end(pilot.job.batches, options, state);
   return mc::memory_effect(scene.request, state.sums, pilot.job.covariance).range.range;
 }
 

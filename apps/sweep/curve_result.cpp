@@ -26,7 +26,9 @@ const DatasetTable sweep_axes_table{
      {"optical_depth", Data::scale, "", "1", "optical depth mu_t L"},
      {"g", Data::scale, "", "1", "mean cosine of scattering"},
      {"albedo", Data::scale, "", "1", "single-scattering albedo"},
-     {"point", Data::numbers, "", "1", "number of the point"}}};
+     {"point", Data::numbers, "", "1", "number of the point"},
+     {"swept_point", Data::numbers, "", "1",
+      "the same, of results that have points of their own (image)"}}};
 
 const DatasetTable sweep_table{
     .name = "sweep",

@@ -194,6 +194,10 @@ void PointStore::save_unfinished(std::size_t run, const RunState& state) const {
   keep_record(unfinished_file(name), identity_of(name), bytes_of(state), Durable::yes);
 }
 
+void PointStore::require_in_place() const {
+  for (const fs::path& path : paths_) BlockFile(path, BlockFile::Access::read);
+}
+
 void PointStore::remove() {
   journals_.clear();
   for (const fs::path& path : paths_) remove_file(path);

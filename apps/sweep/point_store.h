@@ -40,6 +40,8 @@ class PointStore {
   RunState unfinished(std::size_t run, std::size_t size) const;
   void save_unfinished(std::size_t run, const RunState& state) const;
   void sync() { journals_.front()->sync(); }
+  /// Throws IoError where the journals are gone from the folders.
+  void require_in_place() const;
 
   /// All of this sweep, and each folder if nothing else is in it.
   void remove();

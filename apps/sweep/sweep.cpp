@@ -84,7 +84,8 @@ class SweepWork {
     point.reached = !run.stop.target_error || point.relative_error <= *run.stop.target_error;
     ResultFile collecting(point.result);
     run.write(collecting, state);
-    point.reached = point.reached && point.result.keeps_invariants();
+    point.reached =
+        point.reached && point.result.keeps_invariants() && collecting.undefined().empty();
     store_->add(number, point);
     const std::lock_guard lock(mutex_);
     open_.erase(number);
@@ -160,6 +161,7 @@ int end_sweep(const Sweep& sweep, PointStore& store, const PoolEnd& end) {
   const std::string place = shards_of(sweep.settings().out);
   const bool whole = is_whole(sweep, store);
   const bool interrupted = end.reason == StopReason::interrupted;
+  if (interrupted) store.require_in_place();
   if (sweep.share() || interrupted) {
     std::cout << (interrupted ? "interrupted; " : "") << place << " holds "
               << count_text(sweep, store)
@@ -190,11 +192,16 @@ int lead(const Sweep& sweep, RankServer* server) {
   }
   PointStore store(sweep, folder);
   SweepWork work(sweep, &store);
-  const PoolEnd end = run_pool(work.list(), {sweep.settings().seconds, sweep.session().threads(),
-                                             "sweep", "points", server});
-  work.save_unfinished();
-  store.sync();
-  return end_sweep(sweep, store, end);
+  try {
+    const PoolEnd end = run_pool(work.list(), {sweep.settings().seconds, sweep.session().threads(),
+                                               "sweep", "points", server});
+    work.save_unfinished();
+    store.sync();
+    return end_sweep(sweep, store, end);
+  } catch (const InputError&) {  // by a point that cannot be
+    if (store.finished() == 0) store.remove();
+    throw;
+  }
 }
 
 int lead_others(const Sweep& sweep) {

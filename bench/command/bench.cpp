@@ -224,7 +224,7 @@ int run_benchmark(const Subcommand& command, BenchKeys& values) {
   keys.read(values.every);
   if (!command.settle()) return ExitStatus::done;
   omp_set_num_threads(session.threads());
-  return session.once(ResultFile(session.out()), [&](ResultFile& file) -> std::optional<Made> {
+  return session.once(ResultFile(session.out()), [&](ResultFile& file) {
     const Stopwatch clock;
     const Outcome outcome = kind(file, values.quick, values.every);
     std::printf("%zu %s, %zu failed, %.0f s\n", outcome.count, outcome.parts.c_str(),

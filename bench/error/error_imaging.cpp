@@ -9,7 +9,7 @@ namespace flatspeckle::bench {
 namespace {
 
 Estimate correlations(const mc::LineScene& line, double paths, std::uint64_t seed) {
-  return mc::predicted(line, static_cast<std::uint64_t>(paths), seed, 1, "")->correlation;
+  return mc::predicted(line, static_cast<std::uint64_t>(paths), seed, 1, "").correlation;
 }
 
 ErrorReference reference_of(const mc::LineScene& line) {

@@ -319,12 +319,12 @@ void BatchPool::save_now_and_then(std::size_t number, Run& run) const {
 }
 
 void BatchPool::end(std::size_t number, const Run& run, std::unique_lock<std::mutex>& lock) {
-  ++ended_;
   ended_cpu_s_ += run.cpu_s;
   const StopReason reason = *run.merger->ended();
   lock.unlock();
   if (list_.ended) list_.ended(number, reason);
   lock.lock();
+  ++ended_;  // but where a signal has cut that off
 }
 
 void BatchPool::show_progress() {

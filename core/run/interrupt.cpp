@@ -38,18 +38,21 @@ void on_signal(int signal) {
   if (signal != SIGXCPU) std::signal(signal, SIG_DFL);  // which comes every second from then on
 }
 
+void handle_ends(void (*handle)(int)) {
+  for (const int signal : {SIGINT, SIGTERM, SIGXCPU}) std::signal(signal, handle);
+  if (std::signal(SIGHUP, handle) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+}
+
 }  // namespace
 
 void set_signals() {
-  for (const int signal : {SIGINT, SIGTERM, SIGXCPU}) std::signal(signal, end_at_once);
-  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
+  handle_ends(end_at_once);
+  for (const int signal : {SIGPIPE, SIGXFSZ, SIGUSR1}) std::signal(signal, SIG_IGN);
 }
 
 void catch_interrupts() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  std::signal(SIGXCPU, on_signal);
-  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
+  handle_ends(on_signal);
+  std::signal(SIGUSR1, on_signal);
 }
 
 RemovedIfEnded::RemovedIfEnded(const std::string& path) : place_(0) {

@@ -5,13 +5,13 @@
 
 namespace flatspeckle {
 
-/// After this, SIGINT, SIGTERM and SIGXCPU (processor time runs out) end the program at once with
-/// exit status 130, and neither a closed pipe nor a limit on the size of files ends it: writing
-/// fails.
+/// After this, SIGINT, SIGTERM, SIGHUP and SIGXCPU (processor time runs out) end the program at
+/// once with exit status 130, and neither a closed pipe nor a limit on the size of files ends it:
+/// writing fails. SIGUSR1, by which batch systems warn before they end a program, is ignored.
 void set_signals();
 
-/// After this, SIGINT, SIGTERM, SIGHUP and SIGXCPU set a flag that ends runs after the batches in
-/// hand; a second signal ends the program at once, but SIGXCPU.
+/// After this, SIGINT, SIGTERM, SIGHUP, SIGXCPU and SIGUSR1 set a flag that ends runs after the
+/// batches in hand; a second signal ends the program at once, but SIGXCPU.
 void catch_interrupts();
 
 /// A file that is removed, too, where the program ends with 130 while this lives.

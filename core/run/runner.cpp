@@ -98,4 +98,8 @@ StopReason run_batches(const BatchJob& job, const RunOptions& options, RunState&
   return end.reason == StopReason::samples ? ended : end.reason;
 }
 
+void run_to_end(const BatchJob& job, const RunOptions& options, RunState& state) {
+  if (run_batches(job, options, state) == StopReason::interrupted) throw Interrupted{};
+}
+
 }  // namespace flatspeckle

@@ -79,6 +79,10 @@ struct RunOptions {
 /// SIGTERM end it after the batches in hand.
 StopReason run_batches(const BatchJob& job, const RunOptions& options, RunState& state);
 
+/// Runs batches as run_batches() does, for work that needs all of them: throws Interrupted where a
+/// signal ends it before.
+void run_to_end(const BatchJob& job, const RunOptions& options, RunState& state);
+
 /// One of many runs, once its turn has come.
 struct OpenRun {
   BatchJob job;

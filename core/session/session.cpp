@@ -71,9 +71,9 @@ std::filesystem::path free_aside(const std::filesystem::path& path) {
   }
 }
 
-std::filesystem::path set_aside(const std::filesystem::path& path) {
+std::filesystem::path set_aside(const std::filesystem::path& given) {
   namespace fs = std::filesystem;
-  const fs::path place = free_aside(path);
+  const fs::path path = link_target(given), place = free_aside(path);
   std::error_code failed;
   fs::create_hard_link(path, place, failed);
   if (failed) fs::rename(path, place, failed);
@@ -161,11 +161,17 @@ void print_invariants(const ResultFile& file) {
               << (worst.holds() ? "" : ": FAILS, so that the result has not converged") << '\n';
 }
 
+void tell_undefined(const std::vector<std::string>& names) {
+  for (const std::string& name : names)
+    std::cerr << "note: " << name << " is left out: a value of it is not finite\n";
+}
+
 }  // namespace
 
-OutputLock::OutputLock(const std::filesystem::path& out) : path_(lock_beside(out)) {
+OutputLock::OutputLock(const std::filesystem::path& out) : path_(lock_beside(link_target(out))) {
   while (!take(out)) {
   }
+  if (descriptor_ >= 0) remove_temporary_files(link_target(out));
 }
 
 /// False where it is to be tried again.
@@ -238,37 +244,36 @@ Provenance Session::provenance() const {
 void Session::commit(ResultFile& file, const Provenance& provenance) {
   write_provenance(file, provenance);
   const EndsLater whole;
-  file.commit();
+  file.commit_sealed(Durable::yes);
   result_is_there();
   tell_rare(file.rare());
+  tell_undefined(file.undefined());
   std::cout << "wrote " << file.path().string() << '\n';
 }
 
-int Session::once(ResultFile file,
-                  const std::function<std::optional<Made>(ResultFile&)>& make) const {
-  const auto made = [&]() -> std::optional<Made> {
-    try {
-      return make(file);
-    } catch (const Interrupted&) {  // deep within
-      return std::nullopt;
-    }
-  }();
-  if (!made) return ExitStatus::interrupted_for_good;
+int Session::once(ResultFile file, const std::function<Made(ResultFile&)>& make) const try {
+  const Made made = make(file);
   Provenance provenance = this->provenance();
-  provenance.plan = made->plan;
-  provenance.samples = made->samples;
+  provenance.plan = made.plan;
+  provenance.samples = made.samples;
   provenance.wall_s = clock_.seconds();
   provenance.cpu_s = process_cpu_seconds() - cpu_before_;
-  const bool holds = file.keeps_invariants();
-  provenance.converged = holds && made->status == ExitStatus::done;
+  const bool holds = file.keeps_invariants() && file.undefined().empty();
+  provenance.converged = holds && made.status == ExitStatus::done;
   print_invariants(file);
   commit(file, provenance);
-  return holds ? made->status : ExitStatus::error_not_reached;
+  return made.status == ExitStatus::done && !holds ? ExitStatus::error_not_reached : made.status;
+} catch (const Interrupted&) {
+  return ExitStatus::interrupted_for_good;
 }
 
 bool Session::is_complete(const std::string& identity, bool has_begun) const {
   const std::string& path = settings_.out;
   if (!settings_.resume || !std::filesystem::exists(path)) return false;
+  if (!is_sealed(path)) {
+    if (has_begun) return false;
+    throw InputError("resume: " + path + " is damaged, or holds another run; name another file");
+  }
   const ResultReader file(path);
   const bool is_same = file.has_attribute("/", "identity") &&
                        file.attribute<std::string>("/", "identity") == identity;
@@ -341,7 +346,12 @@ int Session::run(std::string plan, std::vector<PlannedRun> runs, const std::stri
   std::cout << plan_ << '\n' << std::flush;
   for (const auto& run : runs_)
     if (!interrupted_) run_one(run);
-  return finish(contents);
+  try {
+    return finish(contents);
+  } catch (const Interrupted&) {  // while the result was made of the sums
+    interrupted_ = true;
+    return finish(contents);
+  }
 }
 
 /// Samples come in whole batches, two at the least: what is far more than was asked for is said.
@@ -381,7 +391,7 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
   ResultFile file(settings_.out);
   for (const auto& [name, state] : states_) write_trace(file, name, state.trace);
   contents(file);
-  const bool holds = file.keeps_invariants(),
+  const bool holds = file.keeps_invariants() && file.undefined().empty(),
              reached = std::exchange(converged_, converged_ && holds);
   write_common(file, converged_);
   print_invariants(file);
@@ -390,6 +400,7 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
   set_strangers_aside();
   file.commit_sealed(Durable::yes);
   tell_rare(file.rare());
+  tell_undefined(file.undefined());
   std::error_code none;
   if (!older_aside_.empty()) std::filesystem::remove(older_aside_, none);
   std::cout << "wrote " << settings_.out;

@@ -30,8 +30,8 @@ std::string inputs_text(const Keys& keys);
 /// free.
 std::filesystem::path free_aside(const std::filesystem::path& path);
 
-/// Gives a file such a name, by a second one beside its own where the file system can, so that the
-/// first is never without a file; returns it. Throws IoError.
+/// Gives a file, or the file that a link leads to, such a name, by a second one beside its own where
+/// the file system can, so that the first is never without a file; returns it. Throws IoError.
 std::filesystem::path set_aside(const std::filesystem::path& path);
 
 /// Tells one file at a path from another, or from itself rewritten.
@@ -54,8 +54,9 @@ enum ExitStatus : int {
   interrupted_for_good = 130  ///< nothing written, nothing to resume
 };
 
-/// Keeps an output to one process at a time, by a lock on .NAME.lock beside it that ends with the
-/// process however that ends. Where the file system has no locks there is none.
+/// Keeps an output to one process at a time, by a lock on .NAME.lock beside it, or beside the file
+/// that a link leads to, that ends with the process however that ends. Where the file system has no
+/// locks there is none. Removes the temporary files that killed processes have left there.
 class OutputLock {
  public:
   /// Throws InputError, which names the process that has the output.
@@ -105,9 +106,8 @@ class Session {
   int threads() const;
   const std::string& out() const { return settings_.out; }
 
-  /// What `make` fills in one go; nothing is written where it returns nothing, for a signal came
-  /// that it caught.
-  int once(ResultFile file, const std::function<std::optional<Made>(ResultFile&)>& make) const;
+  /// What `make` fills in one go; nothing is written where it throws Interrupted.
+  int once(ResultFile file, const std::function<Made(ResultFile&)>& make) const;
 
   /// Runs all to their end, or until an interruption, or goes on with those that the file there
   /// holds; runs that have ended there are extended where this call asks for more. While they run,
@@ -128,7 +128,7 @@ class Session {
 
   /// How results of this call came about, but for plan and costs.
   Provenance provenance() const;
-  /// Ends a file that is whole but for that; says where it is.
+  /// Ends a file that is whole but for that, with a seal; says where it is.
   static void commit(ResultFile& file, const Provenance& provenance);
 
  private:

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <numeric>
@@ -262,18 +263,24 @@ BulkMedium correlated(const std::string& structure, const Scene& scene) {
                                                      : read_structure(structure, disks));
 }
 
-/// Sources and beams so far away, or so wide, that the medium is lost in their rounding.
+/// Returns the distance up to which rounding leaves places of the medium distinct.
+double furthest(const Domain& domain) {
+  return 1e9 * (domain.width + domain.depth);
+}
+
+/// Refuses sources, sensors and beams so far away, or so wide, that the medium is lost in their
+/// rounding.
 void check_reach(const Scene& scene) {
-  const double most = 1e9 * (scene.domain.width + scene.domain.depth);
+  const double most = furthest(scene.domain);
   for (const Light& light : scene.request.lights) {
-    if (light.kind == Light::Kind::point && length(light.point) > most)
-      throw InputError("near_sources", length(light.point),
-                       "lies too far from the medium; a light angle does as well");
+    if (light.kind == Light::Kind::point) require_reach("near_sources", light.point, scene);
     if (light.kind == Light::Kind::beam && (length(light.point) > most || light.waist > most))
       throw InputError(
           "beam_waist", light.waist,
           "is too wide, or its focus too far from the medium; a plane wave does as well");
   }
+  for (const View& view : scene.request.views)
+    if (view.near) require_reach("near_sensors", view.point, scene);
 }
 
 /// Of a medium that is the same everywhere: its phase function, if it has no scatterers.
@@ -324,6 +331,21 @@ void make_layered(Scene& scene, std::shared_ptr<const Layers> layers) {
 }
 
 }  // namespace
+
+void require_phase(const std::string& key, Vec2 point, double k) {
+  constexpr double accuracy = 1e-3;  // rad
+  const double most = accuracy / (k * std::numeric_limits<double>::epsilon());
+  if (!(length(point) <= most))
+    throw InputError(key, length(point),
+                     "is too far away: double precision holds the phase k r to 0.001 rad up to " +
+                         number_text(most) + "; a direction does as well");
+}
+
+void require_reach(const std::string& key, Vec2 point, const Scene& scene) {
+  require_phase(key, point, scene.k);
+  if (length(point) > furthest(scene.domain))
+    throw InputError(key, length(point), "lies too far from the medium; a direction does as well");
+}
 
 std::optional<IndexField> index_field(const Keys& keys, const SceneSpec& spec) {
   using Kind = IndexField::Kind;

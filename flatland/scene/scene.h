@@ -93,6 +93,12 @@ CovarianceRequest make_request(const SceneSpec& spec);
 /// the light's way. Throws InputError.
 void check_slab_request(const CovarianceRequest& request, double depth);
 
+/// Throws InputError, which names the key, for a near source or sensor at a distance r from the
+/// origin at which double precision does not hold the phase k r: k r eps must be at most 0.001.
+void require_phase(const std::string& key, Vec2 point, double k);
+/// Throws InputError in that case, and where places of the medium are lost in the rounding of r.
+void require_reach(const std::string& key, Vec2 point, const Scene& scene);
+
 /// What a scene took from other files, exactly: near sensors and sources, and the structure factor.
 std::string inputs_text(const Scene& scene);
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "core/run/interrupt.h"
 #include "core/run/parallel.h"
 #include "grin/rays/marching/lane_pool.h"
 #include "grin/rays/surfaces/interface.h"
@@ -368,11 +369,15 @@ std::vector<TracedRay> trace_rays(const SceneField& scene, const Stage& stage,
   std::vector<TracedRay> rays(starts.size());
   const BundleTracer tracer(scene, stage, stops, steps, starts, path_points);
   if (!tracer.has_lanes()) {
-    parallel_for(starts.size(), [&](std::size_t i) { rays[i] = tracer.trace(i, starts[i]); });
+    parallel_for(starts.size(), [&](std::size_t i) {
+      stop_if_interrupted();
+      rays[i] = tracer.trace(i, starts[i]);
+    });
     return rays;
   }
   constexpr std::size_t at_once = 16 * lanes;
   parallel_for((starts.size() + at_once - 1) / at_once, [&](std::size_t i) {
+    stop_if_interrupted();
     const std::size_t last = std::min(starts.size(), (i + 1) * at_once);
     tracer.trace_in_lanes(starts, i * at_once, last, rays);
   });

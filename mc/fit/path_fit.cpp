@@ -9,7 +9,6 @@
 #include <Eigen/Core>
 
 #include "core/numbers/symmetric.h"
-#include "core/run/interrupt.h"
 #include "core/run/stopwatch.h"
 #include "mc/fit/medium_fit.h"
 #include "mc/fit/model/path_model.h"
@@ -191,7 +190,6 @@ class PathSearch {
   /// Where it is already.
   Round more(const VectorXd& at, double paths) {
     model_.sample(paths);
-    stop_if_interrupted();
     SampledModel model = model_.model();
     MatrixXd neglected = MatrixXd::Zero(model.values.size(), model.values.size());
     if (!task_.paths->trusted)

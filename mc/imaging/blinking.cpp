@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/run/interrupt.h"
+#include "core/run/runner.h"
 #include "flatland/request/request.h"
 #include "mc/imaging/imaging.h"
 #include "mc/imaging/recovery/frame_statistics.h"
@@ -138,23 +138,20 @@ BrightnessDraw random_subsets(std::size_t frames, std::size_t points, double lit
   };
 }
 
-std::optional<Excitation> speckle_excitation(Scene medium, const LineScene& line,
-                                             const ExcitationTask& task) {
+Excitation speckle_excitation(Scene medium, const LineScene& line, const ExcitationTask& task) {
   medium.request = at_points(line);
   const std::uint64_t seed = seed_of_excitation(task.seed);
   const FieldJob job = covariance_job(medium, make_plan(medium, ReversedPaths::automatic), seed);
   RunState state;
-  run_batches(job.batches,
-              {{task.paths, std::nullopt, std::nullopt}, task.threads, "excitation", {}}, state);
-  if (interrupted()) return std::nullopt;
+  run_to_end(job.batches,
+             {{task.paths, std::nullopt, std::nullopt}, task.threads, "excitation", {}}, state);
   const std::size_t points = line.object.x.size();
   const auto lower = job.covariance(state.sums.total_samples(), state.sums.total());
   CovarianceFactor factor(points, lower);
   double mean = 0;
   for (std::size_t n = 0; n < points; ++n) mean += factor.variance(n) / static_cast<double>(points);
-  return Excitation{
-      brightness_by(fields_from_covariance(std::move(factor), seed), task.frames, points, mean),
-      correlations(lower, points)};
+  return {brightness_by(fields_from_covariance(std::move(factor), seed), task.frames, points, mean),
+          correlations(lower, points)};
 }
 
 Blinked blinked(const LineScene& line, const BlinkingTask& task, std::span<const Complex> field,

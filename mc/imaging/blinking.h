@@ -37,10 +37,9 @@ struct ExcitationTask {
 
 /// Speckle of a plane wave that comes through the medium to the object's line, another in each
 /// frame: Gaussian fields at the points, of the covariance that light paths have. medium: at the
-/// light's wavelength. Alone, a point's brightness is distributed exponentially. Nothing where a
-/// signal came.
-std::optional<Excitation> speckle_excitation(Scene medium, const LineScene& line,
-                                             const ExcitationTask& task);
+/// light's wavelength. Alone, a point's brightness is distributed exponentially. Throws Interrupted
+/// once a signal has come (catch_interrupts).
+Excitation speckle_excitation(Scene medium, const LineScene& line, const ExcitationTask& task);
 
 /// Frames of one medium in which points differ in brightness.
 struct BlinkingTask {

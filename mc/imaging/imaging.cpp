@@ -7,7 +7,7 @@
 #include <random>
 #include <utility>
 
-#include "core/run/interrupt.h"
+#include "core/run/runner.h"
 #include "mc/imaging/recovery/frame_statistics.h"
 #include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/speckle/field_plan.h"
@@ -46,11 +46,10 @@ std::vector<double> over(std::vector<double> peaks, double variance) {
   return peaks;
 }
 
-/// Whether it ran to its end.
-bool run(const BatchJob& job, std::uint64_t samples, int threads, const char* label,
-         RunState& state) {
-  run_batches(job, {{samples, std::nullopt, std::nullopt}, threads, label, {}}, state);
-  return !interrupted();
+RunState run(const BatchJob& job, std::uint64_t samples, int threads, const char* label) {
+  RunState state;
+  run_to_end(job, {{samples, std::nullopt, std::nullopt}, threads, label, {}}, state);
+  return state;
 }
 
 /// Of |u|^2 over its smooth envelope, all points together.
@@ -252,8 +251,8 @@ std::vector<double> filtered_peaks_over_noise(const LineObject& object,
   return over(peaks.pairs, variance / (kept * kept) / frame.pixels);
 }
 
-std::optional<std::vector<ImagedMedium>> imaged(const LineScene& line, const ImagingTask& task,
-                                                const FieldDraw& draw) {
+std::vector<ImagedMedium> imaged(const LineScene& line, const ImagingTask& task,
+                                 const FieldDraw& draw) {
   std::vector<ImagedMedium> media(task.repeats);
   if (media.empty()) return media;
   BatchJob job;
@@ -262,22 +261,20 @@ std::optional<std::vector<ImagedMedium>> imaged(const LineScene& line, const Ima
     // there are always two batches
     if (number < task.repeats) media[number] = imaged_one(line, task, draw, number);
   };
-  RunState state;
-  if (!run(job, task.repeats, task.threads, "frames", state)) return std::nullopt;
+  run(job, task.repeats, task.threads, "frames");
   return media;
 }
 
-std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t paths,
-                                           std::uint64_t seed, int threads, const char* label) {
+ImagingPrediction predicted(const LineScene& line, std::uint64_t paths, std::uint64_t seed,
+                            int threads, const char* label) {
   const auto last = static_cast<double>(line.camera.pixels - 1);
   const std::vector<double> places{0.1 * last, 0.3 * last, 0.5 * last, 0.7 * last, 0.9 * last};
   Scene scene = line.scene;
   const Pairs pairs = pairs_of(line);
   scene.request = pair_request(line, pairs, places);
-  if (scene.request.entries.empty()) return ImagingPrediction{};
+  if (scene.request.entries.empty()) return {};
   const FieldJob field = covariance_job(scene, make_plan(scene, ReversedPaths::automatic), seed);
-  RunState state;
-  if (!run(field.batches, paths, threads, label, state)) return std::nullopt;
+  const RunState state = run(field.batches, paths, threads, label);
   const std::size_t of_object = pairs.size() - (line.reference ? line.object.x.size() : 0);
   ImagingPrediction prediction;
   for (std::size_t i = 0; i < of_object; ++i) {
@@ -294,13 +291,10 @@ std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t 
   return prediction;
 }
 
-std::optional<std::uint64_t> paths_for_fields(const LineScene& line, std::uint64_t seed,
-                                              int threads) {
+std::uint64_t paths_for_fields(const LineScene& line, std::uint64_t seed, int threads) {
   const LineScene some = with_fewer_pixels(line, 64);
   const Plan plan = make_plan(some.scene, ReversedPaths::automatic);
-  RunState state;
-  if (!run(survey_job(some.scene, plan, seed), survey_paths, threads, "survey", state))
-    return std::nullopt;
+  const RunState state = run(survey_job(some.scene, plan, seed), survey_paths, threads, "survey");
   FieldDemand demand;
   demand.method = FieldMethod::paths;
   demand.fields = 1;

@@ -76,10 +76,10 @@ struct ImagedMedium : Recovered {
   double fourth_moment = 0;  ///< of the points' fields, E|u|^4 / (E|u|^2)^2: Gaussian, 2
 };
 
-/// All frames: number, seed and scene make them, no thread does. Nothing where
-/// a signal came (catch_interrupts). draw: fields of line.scene, [point][pixel].
-std::optional<std::vector<ImagedMedium>> imaged(const LineScene& line, const ImagingTask& task,
-                                                const FieldDraw& draw);
+/// All frames: number, seed and scene make them, no thread does. draw: fields of line.scene,
+/// [point][pixel]. This and what follows throws Interrupted once a signal has come.
+std::vector<ImagedMedium> imaged(const LineScene& line, const ImagingTask& task,
+                                 const FieldDraw& draw);
 
 /// What to expect without a picture. C_I of two points: |C|^2/(I I') of the one's light and of the
 /// other's, at places of the camera that differ by how far the picture moves.
@@ -91,14 +91,12 @@ struct ImagingPrediction {
 
 /// By so many light paths. Averaged over places all along the camera. label: of the progress, none
 /// where it is empty.
-std::optional<ImagingPrediction> predicted(const LineScene& line, std::uint64_t paths,
-                                           std::uint64_t seed, int threads,
-                                           const char* label = "correlations");
+ImagingPrediction predicted(const LineScene& line, std::uint64_t paths, std::uint64_t seed,
+                            int threads, const char* label = "correlations");
 
 /// Light paths of one field: as many as a pixel's excess kurtosis of 0.01 asks for, by a survey of
 /// a few pixels, and four for each grain that can be seen, or the frame's autocorrelation would
-/// show the places where the paths end. Nothing where a signal came.
-std::optional<std::uint64_t> paths_for_fields(const LineScene& line, std::uint64_t seed,
-                                              int threads);
+/// show the places where the paths end.
+std::uint64_t paths_for_fields(const LineScene& line, std::uint64_t seed, int threads);
 
 }  // namespace flatspeckle::mc

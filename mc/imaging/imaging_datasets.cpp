@@ -280,7 +280,7 @@ const DatasetTable picture_table{
               "frames divided by their reference; the scale is free"},
              {"psnr", Data::real, "repeat", "1",
               "dB: the largest value of the true picture over the rms difference"},
-             {"mean_psnr", Data::estimate, "", "1", "mean over the media"},
+             {"mean_psnr", Data::estimate, "", "1", "mean over the media, of two or more"},
              {"predicted_psnr", Data::real, "", "1", "without pictures, of Wiener's filter"},
              {"iteration", Data::numbers, "", "1", "number of the step (richardson_lucy)"},
              {"residual", Data::real, "repeat iteration", "1",
@@ -347,7 +347,7 @@ void write_pictures(ResultFile& file, const LineScene& line, const ImagingTask& 
            }));
   root.put("psnr", column(media, [](const ImagedMedium& m) { return m.psnr; }));
   const MeanOverMedia mean = mean_psnr(media);
-  root.put("mean_psnr", mean.value, mean.error);
+  if (media.size() > 1) root.put("mean_psnr", mean.value, mean.error);
   if (task.deconvolution.method == DeconvolutionTask::Method::richardson_lucy)
     write_residuals(root, media);
 }

@@ -43,6 +43,10 @@ LineScene line_scene(Scene medium, LineObject object, double object_depth, const
   Lights lights;
   for (const double x : object.x) lights.push_back(point_source({x, object_depth}));
   if (reference) lights.push_back(point_source({*reference, object_depth}));
+  for (const Light& light : lights) require_reach("object_depth", light.point, medium);
+  if (camera.depth)
+    for (const double x : {camera.first, camera.last})
+      require_reach("camera_depth", {x, *camera.depth}, medium);
   std::vector<View> views;
   for (std::size_t p = 0; p < camera.pixels; ++p)
     views.push_back(view_at(camera, static_cast<double>(p)));

@@ -47,7 +47,8 @@ class Number:
                            "point, as power_within[0]")
         rank = result.dataset(self.path).ndim - (self.entry is not None)
         scales = dict(result.scale(self.path, axis) for axis in range(rank))
-        self.columns = {key: result.values(key) for key in keys_of(result)} if "point" in scales else \
+        is_list = next(iter(scales), "") in ("point", "swept_point")
+        self.columns = {key: result.values(key) for key in keys_of(result)} if is_list else \
             columns_of(scales)
 
     def of(self, path):

@@ -23,6 +23,7 @@ SLOWNESS = float(os.environ.get("FLATSPECKLE_SLOWNESS", 1))  # above 1 of a prog
 LLVM_OPENMP = "libomp" in subprocess.run(["ldd", PROGRAM], capture_output=True, text=True).stdout
 MOST_USER_S = 0.3 * SLOWNESS  # bad input is refused before anything is computed
 WHOLE = "FLATSPECKLE_TEST_WHOLE" in os.environ  # by night: all tests at their full sizes
+RESUMES = signal.SIGUSR1  # caught once a run can be interrupted and resumed; others ignore it
 SAMPLES, ERRORS = (1, 1) if WHOLE else (0.25, 2)  # long runs: a quarter of their samples, twice their errors by day
 nightly = unittest.skipUnless(WHOLE, "takes minutes: run by night")
 TILTS = {"covariance": "memory_effect", "tilts": [0, 0.04, 0.16], "view_angles": [0.1, 0.5]}
@@ -144,8 +145,7 @@ class ProgramTest(unittest.TestCase):
             self.assertIsNone(process.poll(), "it ended before")
             self.assertLess(time.monotonic(), deadline)
 
-    def wait_until_it_catches(self, process, number=signal.SIGHUP):
-        """What can be resumed catches SIGHUP, too."""
+    def wait_until_it_catches(self, process, number=RESUMES):
         self.wait_until(process, lambda: catches(process, number))
 
     def write(self, name, text):

@@ -15,7 +15,7 @@ import threading
 import time
 
 from mounts import go_where_mounts_are_allowed, mounts_allowed
-from program import BOX, PROGRAM, attributes, datasets, flags
+from program import BOX, PROGRAM, RESUMES, attributes, datasets, flags
 from torture_run import wait_until_it_catches
 
 KEYS = {**BOX, "covariance": "full", "view_angles": [0.1 * i for i in range(15)], "threads": 1}
@@ -66,7 +66,7 @@ class Soak:
     def go_on(self):
         """Until it ends, or is ended. Returns its exit status."""
         process = start(self.folder, samples=self.samples, resume=True)
-        wait_until_it_catches(process, signal.SIGHUP)
+        wait_until_it_catches(process, RESUMES)
         try:
             process.wait(timeout=self.random.expovariate(40 / self.seconds))
         except subprocess.TimeoutExpired:

@@ -10,7 +10,7 @@ import unittest
 
 import h5py
 
-from program import BOX, PROGRAM, SLAB, SLOWNESS, WHOLE, ProgramTest, cpu_of_children, flags
+from program import BOX, PROGRAM, RESUMES, SLAB, SLOWNESS, WHOLE, ProgramTest, cpu_of_children, flags
 
 SHORT = {**BOX, "samples": 4000}
 LONG = {**BOX, "seconds": 60, "threads": 1}
@@ -171,7 +171,7 @@ class Streams(ProgramTest):
 
 class Signals(ProgramTest):
     def check_ends(self, process, status, delay=0.5):
-        self.wait_until_it_catches(process, signal.SIGHUP if status == 75 else signal.SIGTERM)
+        self.wait_until_it_catches(process, RESUMES if status == 75 else signal.SIGTERM)
         time.sleep(delay)
         process.send_signal(signal.SIGTERM)
         sent = time.monotonic()

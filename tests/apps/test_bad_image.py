@@ -61,6 +61,17 @@ class BadScene(RefusingTest):
                      excitation_optical_depth=3)
         self.refused(["repeats", "GB"], subsets, blinking_frames=100000, pixels=1 << 20)
         self.refused(["lit = 0"], subsets, lit=0)
+        self.refused(["blinking = subsets", "repeats"], subsets, repeats=0)
+
+    def test_so_far_away_that_phases_are_lost(self):
+        far = {"object_x": [0, 40], "repeats": 0}
+        for depth in -1e18, -1e45, 1e13:
+            self.refused(["object_depth", "too far away"], object_depth=depth, **far)
+        self.refused(["object_depth", "too far away"], object_depth=-8e12, object_x=[0, 6e10, 1.5e11])
+        self.refused(["camera_depth", "too far away"], camera_depth=1e14, camera=[-50, 50])
+
+    def test_nothing_of_the_object_in_the_picture(self):
+        self.refused(["reference_x = 300", "object_extent"], reference_x=300, object_extent=50)
 
 
 class BadFrames(RefusingTest):

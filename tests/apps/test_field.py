@@ -184,7 +184,7 @@ class BadInput(FieldTest):
         before = self.listing()
         process = self.start("field", **BOX, **VIEWS, fields=1_000_000, method="paths",
                              out="field.h5")
-        self.wait_until_it_catches(process)
+        self.wait_until_it_catches(process, signal.SIGINT)
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=60), 130)
         self.assertEqual(self.listing(), before)

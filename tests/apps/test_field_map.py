@@ -136,7 +136,7 @@ class Unfinished(ProgramTest):
     def test_interrupted(self):
         for number in signal.SIGINT, signal.SIGTERM:
             process = self.start("solve", **{**POINTS, "map_pixels": [4000, 4000]}, out="map.h5")
-            self.wait_until_it_catches(process)
+            self.wait_until_it_catches(process, number)
             self.wait_until(process, lambda: any(".tmp" in name for name in self.listing()))
             process.send_signal(number)
             self.assertEqual(process.wait(timeout=60), 130)

@@ -10,7 +10,8 @@ import zlib
 import h5py
 import numpy as np
 
-from program import BOX, TILTS, WHOLE, ProgramTest, attributes, catches, datasets
+import journals
+from program import BOX, RESUMES, TILTS, WHOLE, ProgramTest, attributes, catches, datasets, flags
 
 # Each runs for 0.15 seconds or more on two threads.
 LONG = {
@@ -30,10 +31,10 @@ def seal(path):
 
 
 class Interruption(ProgramTest):
-    def interrupt(self, number, delay, *words, **keys):
-        """Signals once the run has begun; returns the exit status."""
+    def interrupt(self, number, delay, *words, caught=RESUMES, **keys):
+        """Signals once the run has begun, which `caught` tells; returns the exit status."""
         process = self.start(*words, **keys)
-        self.wait_until_it_catches(process)
+        self.wait_until_it_catches(process, caught)
         time.sleep(delay)
         process.send_signal(number)
         return process.wait(timeout=60)
@@ -77,7 +78,7 @@ class Interruption(ProgramTest):
     def test_within_one_solution_of_many(self):
         keys = {"width": 80, "depth": 80, "count": 3000, "wavelengths": [0.9, 1.1],
                 "wavelength_count": 2, "solver": "dense", "threads": 1, "out": "run.h5"}
-        self.assertEqual(self.interrupt(signal.SIGTERM, 0.4, "solve", **keys), 130)
+        self.assertEqual(self.interrupt(signal.SIGTERM, 0.4, "solve", caught=signal.SIGTERM, **keys), 130)
         self.assertEqual(list(self.listing()), [])
 
     def test_an_older_result_is_kept(self):
@@ -159,6 +160,87 @@ class Interruption(ProgramTest):
         self.assertEqual(self.listing(), {})
 
 
+RAYS = {"field": "parabolic", "alpha": 0.5, "index": 1.5, "connect": [0, 0, 0, 0.3, 0, 3], "max_length": 5}
+
+
+class Alike(ProgramTest):
+    """SIGINT, SIGTERM and SIGHUP do the same, and leave nothing but what can be gone on with."""
+
+    def ended(self, process, number, delay=0.1):
+        self.wait_until(process, lambda: catches(process, number) and
+                        list(self.folder.glob(".*.lock")))
+        time.sleep(delay)
+        process.send_signal(number)
+        return process.wait(timeout=60)
+
+    def test_what_cannot_go_on(self):
+        self.write("frames.csv", "a\n" + "".join(f"{i * i % 97}\n" for i in range(4000)))
+        for words, keys in (("trace", {**RAYS, "trials": 10**7}),
+                            ("solve", {"width": 200, "depth": 200, "count": 3000}),
+                            ("place", {"width": 30, "depth": 30, "radii": 0.4, "packing_fraction": 0.5,
+                                       "structure": "s.h5", "realizations": 10**6}),
+                            ("recover", {"frames": "frames.csv", "points": 40, "recovery": "phases",
+                                         "starts": 10000, "phase_iterations": 100000})):
+            out = "x.csv" if words == "place" else "x.h5"
+            for number in (signal.SIGHUP, signal.SIGTERM)[:2 if WHOLE else 1]:
+                with self.subTest(words=words, number=number):
+                    self.assertEqual(self.ended(self.start(words, **keys, out=out), number), 130)
+                    (self.folder / "x.csv").unlink(missing_ok=True)  # before its structure factor
+                    self.assertEqual([path.name for path in self.folder.iterdir()], ["frames.csv"])
+
+    def test_a_fit_goes_on(self):
+        self.write("curve.csv", "tilt,field_correlation,error\n0.002,0.8,0.05\n0.004,0.6,0.05\n")
+        keys = {"free": "g=0:0.8", "depth": 100, "optical_depth": 2, "measurement": "curve.csv",
+                "method": "mc", "model_share": 0.01, "threads": 1}
+        self.call("fit", **keys, out="whole.h5")
+        for number in (signal.SIGTERM, signal.SIGHUP):
+            process = self.start("fit", **keys, out="x.h5")
+            self.wait_until(process, lambda: (self.folder / "x.h5.search").exists() and
+                            len(journals.records(self.folder / "x.h5.search")) > 2)
+            process.send_signal(number)
+            self.assertEqual(process.wait(timeout=60), 75)
+            self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
+                             ["curve.csv", "whole.h5", "x.h5.search"])
+            self.call("fit", "--resume", **keys, out="x.h5")
+            self.assert_same_data("x.h5", "whole.h5")
+            (self.folder / "x.h5").unlink()
+        self.check_other_measurement(keys)
+
+    def check_other_measurement(self, keys):
+        """Of a file that has changed meanwhile, though not in its values."""
+        process = self.start("fit", **keys, out="x.h5")
+        self.wait_until(process, lambda: (self.folder / "x.h5.search").exists())
+        process.kill()
+        process.wait()
+        self.write("curve.csv", "tilt,field_correlation,error\n0.002,0.8,0.05\n0.004,0.6,0.02\n")
+        refused = self.call("fit", "--resume", **keys, out="x.h5", status=2)
+        self.assertIn("another search", refused.stderr)
+
+
+class Links(ProgramTest):
+    def test_a_link_is_the_file_that_it_leads_to(self):
+        """Of two runs to one file by two names the second is refused; the first result is kept until
+        the second is there."""
+        self.call("covariance", **SHORT, seed=5, out="run.h5")
+        older = (self.folder / "run.h5").read_bytes()
+        (self.folder / "alias.h5").symlink_to("run.h5")
+        keys = {**BOX, **TILTS, "samples": 50_000_000, "threads": 1}
+        for first, second in (("alias.h5", "run.h5"), ("run.h5", "alias.h5")):
+            process = self.start("covariance", **keys, out=first)
+            self.wait_until_it_catches(process)
+            for words in (["covariance", *flags({**SHORT, "seed": 2})], ["design"]):
+                refused = self.call(*words, out=second, status=2)
+                self.assertIn("works on it", refused.stderr)
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(timeout=60), 75)
+            self.assertTrue((self.folder / "alias.h5").is_symlink())
+            aside = self.folder / "run.h5.aside-1"
+            self.assertEqual(aside.read_bytes(), older)
+            self.assertFalse(aside.is_symlink())
+            aside.replace(self.folder / "run.h5")
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()), ["alias.h5", "run.h5"])
+
+
 class Kill(ProgramTest):
     def test_killed_at_any_moment(self):
         duration = self.seconds_of("covariance", **SHORT, out="whole.h5")
@@ -176,6 +258,7 @@ class Kill(ProgramTest):
             self.check_left_behind(previous)
         self.write(".run.h5.tmp-1", "left behind")
         self.call("covariance", **SHORT, out="run.h5")
+        self.assertEqual([path.name for path in self.folder.iterdir() if path.name.startswith(".")], [])
         self.assert_same_data("run.h5", "whole.h5")
 
     def check_left_behind(self, previous):

@@ -1,8 +1,11 @@
 """`sweep --of`: its points are runs of the subcommand, nothing is lost, and parts make the whole."""
 
+import random
 import shutil
+import signal
 import subprocess
 import sys
+import time
 import unittest
 
 import h5py
@@ -142,6 +145,49 @@ class SweepOf(SweepTest):
         self.call("sweep", **SLOW, out="sweep.h5", resume=True)
         self.assert_same("sweep.h5", "whole.h5")
         self.assertFalse(self.points().exists())
+
+    def test_what_is_made_at_once_is_interrupted(self):
+        """At any moment, and so between the two batches of a point: all that was found is there."""
+        rays = {"of": "trace", "field": "parabolic", "index": 1.5, "connect": [0, 0, 0, 0.3, 0, 3], "max_length": 5,
+                "trials": 200, "vary": ["alpha=0.4:0.6:20"], "threads": 1}
+        self.whole(rays)
+        moments = random.Random(1)
+        for _ in range(20 if WHOLE else 6):
+            process = self.start("sweep", **rays, out="sweep.h5")
+            self.wait_until_it_catches(process)
+            time.sleep(moments.uniform(0, 0.1))
+            process.send_signal(signal.SIGINT)
+            status = process.wait(timeout=60)
+            self.assertIn(status, (0, 75))
+            if status == 75:
+                self.call("sweep", "--resume", **rays, out="sweep.h5")
+            self.assert_same("sweep.h5", "whole.h5")
+            self.assertFalse(self.points().exists())
+
+    def test_points_of_a_result_that_has_points(self):
+        """Those of the object of image, and those of a part of a sweep."""
+        image = {"of": "image", "domain": "box", "width": 100, "depth": 10, "scatterer": "hg", "g": 0.8,
+                 "object_x": [0, 15, 40], "object_depth": -2000, "camera": [-0.3, 0.3], "pixels": 128,
+                 "prediction_paths": 200, "paths_per_field": 200, "repeats": 1}
+        self.call("sweep", **image, vary="optical_depth=1,2,3,4", shard="0/2", out="part.h5")
+        self.call("merge", partial=True, out="part.h5", status=3)
+        found = datasets(self.folder / "part.h5")
+        np.testing.assert_array_equal(found["swept_point"], [0, 1])
+        np.testing.assert_array_equal(found["point"], [0, 1, 2])
+        self.assertEqual(found["contrast"].shape, (2, 1))
+        self.assertEqual(found["optical_depth"].shape, (2,))
+
+    def test_a_damaged_result_is_no_end(self):
+        """A complete sweep of which a byte is another is refused by --resume, or made again."""
+        self.whole(GRID, "sweep.h5")
+        data = bytearray((self.folder / "sweep.h5").read_bytes())
+        data[len(data) // 2] ^= 1
+        (self.folder / "sweep.h5").write_bytes(data)
+        self.check("damaged", out="sweep.h5", resume=True)
+        self.call("sweep", **GRID, out="sweep.h5", shard="0/1")
+        self.call("sweep", **GRID, out="sweep.h5", resume=True)
+        self.whole(GRID)
+        self.assert_same("sweep.h5", "whole.h5")
 
     def test_shares_and_merge(self):
         self.whole(MANY)

@@ -301,6 +301,20 @@ TEST_CASE("states are handed out now and then, and a run goes on from any of the
   }
 }
 
+TEST_CASE("a run whose end is interrupted has not ended, and ends again") {
+  std::vector<Task> tasks{{job_of(0), after_batches(2)}, {job_of(1), after_batches(2)}};
+  const RunList whole = list_of(tasks);
+  RunList list = whole;
+  list.ended = [&](std::size_t run, StopReason reason) {
+    if (run == 1) throw Interrupted{};
+    whole.ended(run, reason);
+  };
+  CHECK(run_pool(list, with_threads(1)).reason == StopReason::interrupted);
+  CHECK(tasks[1].state.sums.batches() == 2);
+  CHECK(run_pool(whole, with_threads(1)).reason == StopReason::samples);
+  CHECK(tasks[1].endings == 1);
+}
+
 TEST_CASE("an error while a state is saved comes out") {
   std::vector<Task> tasks{{job_of(0, 1e-3), after_batches(1000)}};
   RunList list = list_of(tasks);

@@ -123,6 +123,7 @@ TEST_CASE("a batch that gives up ends the run as interrupted, with the batches b
   RunState state;
   CHECK(run_batches(job, {stop, 2, "", {}}, state) == StopReason::interrupted);
   CHECK(state.sums.batches() == 20);
+  CHECK_THROWS_AS(run_to_end(job, {stop, 2, "", {}}, state), Interrupted);
 }
 
 TEST_CASE("batches that share work are never under way together") {

@@ -93,8 +93,8 @@ std::vector<double> pixel_centres(const MapGrid& grid, std::size_t count, bool a
 
 }  // namespace
 
-std::optional<std::string> write_map(ResultFile& file, const WaveSolution& solution,
-                                     const MapGrid& grid, double tolerance) {
+std::string write_map(ResultFile& file, const WaveSolution& solution, const MapGrid& grid,
+                      double tolerance) {
   FieldMap map(solution, grid, tolerance);
   const ResultGroup root(file, map_table);
   root.put("map_z", pixel_centres(grid, grid.nz, true));
@@ -108,7 +108,7 @@ std::optional<std::string> write_map(ResultFile& file, const WaveSolution& solut
   for (const MapTile& tile : map.tiles()) {
     file.write_block("total_field", map.field(tile), {0, tile.iz, tile.ix},
                      {solution.light_angles().size(), tile.nz, tile.nx});
-    if (interrupted()) return std::nullopt;
+    stop_if_interrupted();
     const double wall = clock.seconds();
     figures.samples += static_cast<double>(tile.pixels());
     figures.rate = figures.samples / wall;

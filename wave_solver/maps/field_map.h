@@ -97,9 +97,9 @@ std::vector<Vec2> map_sensors(const MapGrid& grid, const Placement& placement);
 extern const DatasetTable map_table;
 
 /// Writes total_field [light_angle, map_z, map_x] tile by tile, with progress on standard error,
-/// and returns how it was summed; none where a signal came (catch_interrupts). The axis of lights
-/// must have been written.
-std::optional<std::string> write_map(ResultFile& file, const WaveSolution& solution,
-                                     const MapGrid& grid, double tolerance);
+/// and returns how it was summed. The axis of lights must have been written. Throws Interrupted
+/// once a signal has come (catch_interrupts).
+std::string write_map(ResultFile& file, const WaveSolution& solution, const MapGrid& grid,
+                      double tolerance);
 
 }  // namespace flatspeckle::wave

@@ -216,8 +216,10 @@ void RayRows::sum_up(std::span<double> coefficients, const Add& add) const {
   std::vector<std::vector<double>> sums(shares);
   parallel_for(shares, [&](std::size_t s) {
     sums[s].assign(coefficients_ + width - 1, 0.0);
-    for (std::size_t b = s * blocks_.size() / shares; b < (s + 1) * blocks_.size() / shares; ++b)
+    for (std::size_t b = s * blocks_.size() / shares; b < (s + 1) * blocks_.size() / shares; ++b) {
+      stop_if_interrupted();
       add(blocks_[b], b * block_size, sums[s].data());
+    }
   });
   std::fill(coefficients.begin(), coefficients.end(), 0.0);
   for (const auto& share : sums)
@@ -228,6 +230,7 @@ void RayRows::times(std::span<const double> coefficients, std::span<double> read
   const auto values = padded(coefficients);
   of_readings([&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
     parallel_for(blocks_.size(), [&](std::size_t b) {
+      stop_if_interrupted();
       each_ray(blocks_[b], [&](std::size_t r, const Fours& fours) {
         std::ranges::copy(read<K>(blocks_[b], fours, values.data()),
                           &readings[(b * block_size + r) * K]);

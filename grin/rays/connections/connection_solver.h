@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/run/interrupt.h"
 #include "grin/rays/connections/connection_trial.h"
 
 namespace flatspeckle::grin {
@@ -101,6 +102,7 @@ std::vector<FoundConnection> all_connections(const ConnectionTrial<F, R, Step>& 
                                              ConnectionStatistics& statistics) {
   std::vector<FoundConnection> all;
   for (std::uint64_t i = 0; i < trials; ++i) {
+    stop_if_interrupted();
     const auto result = trial.run(random, statistics);
     if (result.outcome != TrialOutcome::converged) continue;
     const auto known = std::find_if(all.begin(), all.end(), [&](const FoundConnection& one) {

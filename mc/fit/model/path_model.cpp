@@ -170,7 +170,7 @@ void PathModel::sample(double paths) {
   const auto sample_to = [&](const PathJob& job, RunState& state, double most) {
     options.stop.samples = static_cast<std::uint64_t>(most);
     if (state.sums.batches() == 0 || state.sums.total_samples() < most)
-      run_batches(job.field.batches, options, state);
+      run_to_end(job.field.batches, options, state);
   };
   for (Run& run : runs_) {
     sample_to(run.job, run.state, paths);

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "core/run/interrupt.h"
+
 namespace flatspeckle::mc {
 
 namespace {
@@ -178,6 +180,7 @@ class SparseSearch {
       // an object of n points comes from n shorter ones
       const std::size_t kept = beam_ * (rulers.front().marks.size() + 1);
       for (std::uint32_t parent = 0; parent < rulers.size(); ++parent) {
+        stop_if_interrupted();
         grow(rulers[parent], parent);
         if (longer_.size() > 4 * kept) keep(kept);
       }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/run/interrupt.h"
 #include "mc/imaging/unmixing/unmixing.h"
 
 namespace flatspeckle::mc {
@@ -71,6 +72,7 @@ NonnegativeFactors nonnegative_factors(const MatrixXd& frames, const FactorTask&
   const double all = frames.squaredNorm();
   double last = all;
   for (int i = 0; i < task.iterations; ++i) {
+    stop_if_interrupted();
     improve(found.pattern, frames * found.brightness,
             found.brightness.transpose() * found.brightness);
     const MatrixXd with = frames.transpose() * found.pattern,

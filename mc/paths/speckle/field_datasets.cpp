@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/result/result_group.h"
-#include "core/run/interrupt.h"
+#include "core/run/runner.h"
 #include "flatland/request/request.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/paths/estimators/covariance_estimator.h"
@@ -29,22 +29,18 @@ class FieldDrawing {
   FieldDrawing(const Scene& scene, const DrawingSettings& settings)
       : scene_(scene), settings_(settings), plan_(make_plan(scene, settings.reversed)) {}
 
-  std::optional<DrawnFields> draw(const FieldDemand& demand,
-                                  const std::function<void(const DrawingPlan&)>& planned) {
+  DrawnFields draw(const FieldDemand& demand,
+                   const std::function<void(const DrawingPlan&)>& planned) {
     const RunState survey = run("survey", survey_job(scene_, plan_, settings_.seed), survey_paths);
-    if (interrupted()) return std::nullopt;
     drawn_.plan = make_field_plan(scene_, read_survey(survey.sums), demand);
     planned(drawn_.plan);
     const bool by_paths = drawn_.plan.method == FieldMethod::paths;
     const auto source =
         by_paths ? fields_by_paths(scene_, plan_, settings_.seed, drawn_.plan.paths_per_field)
                  : from_covariance();
-    if (interrupted()) return std::nullopt;
     const RunState fields = run("fields", field_job(source, demand.fields), demand.fields);
-    if (interrupted()) return std::nullopt;
     if (by_paths) drawn_.intensity = jackknife(fields.sums, sample_mean);
     if (by_paths && siegert_applies()) covariance({scene_.request.lights.front()}, siegert_paths);
-    if (interrupted()) return std::nullopt;
     return std::move(drawn_);
   }
 
@@ -52,7 +48,7 @@ class FieldDrawing {
   RunState run(const std::string& label, const BatchJob& job, std::uint64_t samples) {
     RunState state;
     const StopRule stop{samples, std::nullopt, std::nullopt};
-    run_batches(job, {stop, settings_.threads, label, {}}, state);
+    run_to_end(job, {stop, settings_.threads, label, {}}, state);
     drawn_.wall_s += state.wall_s;
     drawn_.cpu_s += state.cpu_s;
     return state;
@@ -109,9 +105,9 @@ class FieldDrawing {
 
 }  // namespace
 
-std::optional<DrawnFields> draw_fields(const Scene& scene, const FieldDemand& demand,
-                                       const DrawingSettings& settings,
-                                       const std::function<void(const DrawingPlan&)>& planned) {
+DrawnFields draw_fields(const Scene& scene, const FieldDemand& demand,
+                        const DrawingSettings& settings,
+                        const std::function<void(const DrawingPlan&)>& planned) {
   return FieldDrawing(scene, settings).draw(demand, planned);
 }
 

@@ -29,11 +29,11 @@ struct DrawingSettings {
   int threads = 1;
 };
 
-/// Surveys the scene's paths, chooses how to draw, tells `planned`, and draws. Nothing where a
-/// signal came (catch_interrupts).
-std::optional<DrawnFields> draw_fields(const Scene& scene, const FieldDemand& demand,
-                                       const DrawingSettings& settings,
-                                       const std::function<void(const DrawingPlan&)>& planned);
+/// Surveys the scene's paths, chooses how to draw, tells `planned`, and draws. Throws Interrupted
+/// once a signal has come (catch_interrupts).
+DrawnFields draw_fields(const Scene& scene, const FieldDemand& demand,
+                        const DrawingSettings& settings,
+                        const std::function<void(const DrawingPlan&)>& planned);
 
 extern const DatasetTable field_table;
 
