@@ -217,7 +217,6 @@ wave::WaveSolution solved(const SolveKeys& values, const Placement& placement, d
                      options);
 }
 
-<<<<<<< HEAD
 /// Says where an index may be n - 1, as tables of gases and of contrasts have it.
 void note_thin_index(const Placement& placement) {
   constexpr double rare = 0.8;  // bubbles in solids are of such an index
@@ -230,15 +229,9 @@ void note_thin_index(const Placement& placement) {
               << " is below that of the surroundings, which is 1: where it is n - 1, give n\n";
 }
 
-/// One wavelength after the other; nothing where a signal came.
-std::optional<wave::Spectrum> spectrum(const SolveKeys& values, const Placement& placement,
-                                       const WavelengthList& wavelengths, const Sensors& sensors,
-                                       bool tells) {
-=======
 /// One wavelength after the other.
 wave::Spectrum spectrum(const SolveKeys& values, const Placement& placement,
                         const WavelengthList& wavelengths, const Sensors& sensors, bool tells) {
->>>>>>> d20b41a3 (Interrupt and resume all subcommands alike, lock results by the target of links)
   wave::Spectrum spectrum(sensors.angles, sensors.points);
   Progress progress(tells ? "solve" : "", "wavelengths");
   const Stopwatch watch;
@@ -365,7 +358,6 @@ class SolveExperiment : public OneShot {
     for (const Vec2 sensor : sensors) graded_->views.push_back(near_sensor(sensor));
   }
 
-<<<<<<< HEAD
   void note() const override {
     if (cluster_) return;
     if (placement_.empty())
@@ -373,9 +365,6 @@ class SolveExperiment : public OneShot {
     note_thin_index(placement_);
   }
 
-  bool looks_for_signals() const override { return wavelengths_ && !wavelengths_->values.empty(); }
-=======
->>>>>>> d20b41a3 (Interrupt and resume all subcommands alike, lock results by the target of links)
   ResultFile::Storage storage() const override {
     return grid_ ? ResultFile::Storage::disk : ResultFile::Storage::memory;
   }
@@ -418,16 +407,10 @@ class SolveExperiment : public OneShot {
     const auto found = spectrum(values_, placement_, *wavelengths_, sensors_, tells);
     found.write(file);
     write_scene(file);
-<<<<<<< HEAD
-    const std::string plan = plan_of(*found, *wavelengths_, placement_);
-    if (tells) std::printf("%sresidual at most %.1e\n", plan.c_str(), found->residual());
-    return Made{plan + "one solution after the other", 1,
-                status_of(found->fault(), values_.tolerance)};
-=======
     const std::string plan = plan_of(found, *wavelengths_, placement_);
     if (tells) std::printf("%sresidual at most %.1e\n", plan.c_str(), found.residual());
-    return Made{plan + "one solution after the other", 1};
->>>>>>> d20b41a3 (Interrupt and resume all subcommands alike, lock results by the target of links)
+    return Made{plan + "one solution after the other", 1,
+                status_of(found.fault(), values_.tolerance)};
   }
 
   Made make_fields(ResultFile& file, bool tells) const {

@@ -2,6 +2,7 @@
 damaged or other than those of an undisturbed run, litter, refusals of more than one line.
 
     torture.py [--runs N] [--seed S] [--seconds T]   exit status 1 if anything was found
+    torture.py --kind interrupted [...]              runs of that kind alone
     torture.py --seed S --only K                     run K again; its folder stays
 """
 
@@ -17,10 +18,10 @@ from torture_kinds import KINDS
 from torture_library import Library
 
 
-def torture(library, folder, seed, number):
+def torture(library, folder, seed, number, kinds):
     """Run `number` of this seed, in that folder."""
     case = Case(library, folder, seed, number)
-    kind, = case.random.choices(list(KINDS), weights=KINDS.values())
+    kind, = case.random.choices(list(kinds), weights=kinds.values())
     kind(case)
     for what, command in case.failures:
         print(f"seed {seed} run {number} ({kind.__name__}): {what}\n    {shown(command)}",
@@ -33,20 +34,20 @@ def shown(command):
     return command if len(command) < 2000 else f"{command[:1000]} ... {command[-200:]}"
 
 
-def torture_all(library, seed, runs, seconds):
+def torture_all(library, seed, runs, seconds, kinds):
     """Tells whether anything was found."""
     began, found, number = time.monotonic(), 0, 0
     while number < runs and time.monotonic() - began < seconds:
         with tempfile.TemporaryDirectory() as folder:
-            found += bool(torture(library, folder, seed, number).failures)
+            found += bool(torture(library, folder, seed, number, kinds).failures)
         number += 1
     print(f"{number} runs in {time.monotonic() - began:.0f} s, {found} with failures")
     return found > 0
 
 
-def torture_again(library, seed, number):
+def torture_again(library, seed, number, kinds):
     folder = tempfile.mkdtemp(prefix=f"torture-{seed}-{number}-")
-    case = torture(library, folder, seed, number)
+    case = torture(library, folder, seed, number, kinds)
     for command in case.commands:
         print(command)
     print(f"in {folder}")
@@ -60,12 +61,14 @@ def main():
     parser.add_argument("--seed", type=int, default=int(os.environ.get("FLATSPECKLE_TEST_SEED", 1)))
     parser.add_argument("--seconds", type=float, default=float("inf"))
     parser.add_argument("--only", type=int)
+    parser.add_argument("--kind", choices=[kind.__name__ for kind in KINDS])
     given = parser.parse_args()
+    kinds = {kind: often for kind, often in KINDS.items() if given.kind in (None, kind.__name__)}
     with tempfile.TemporaryDirectory() as folder:
         library = Library(pathlib.Path(folder))
         if given.only is not None:
-            return torture_again(library, given.seed, given.only)
-        return torture_all(library, given.seed, given.runs, given.seconds)
+            return torture_again(library, given.seed, given.only, kinds)
+        return torture_all(library, given.seed, given.runs, given.seconds, kinds)
 
 
 if __name__ == "__main__":

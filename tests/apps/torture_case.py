@@ -14,9 +14,10 @@ from torture_checks import (FINISHED, check_end, check_new_files, check_old_file
                             check_result, check_same_data, snapshot)
 from torture_library import out_of, own_keys
 from torture_run import Hindrance, run
-from torture_scenes import RESUMABLE
+from torture_scenes import GOES_ON
 
 DOCUMENTED = (0, 2, 3, 4)
+SEARCHES = ("search", "state", "evaluations")  # what fit, design and optimise go on from
 
 
 def scene_file(keys, quoted):
@@ -62,8 +63,9 @@ class Case:
         points = self.folder / "x.h5.shards"
         out = self.folder / "x.h5"
         begun = list(points.glob("*.points")) if points.is_dir() else \
+            any((self.folder / f"x.h5.{kind}").exists() for kind in SEARCHES) or \
             out.exists() and out.read_bytes() != (self.folder / "older.h5").read_bytes()
-        return {**keys, "resume": True} if subcommand in RESUMABLE and begun else keys
+        return {**keys, "resume": True} if subcommand in GOES_ON and begun else keys
 
     def own_flags(self, subcommand):
         return flags(own_keys(subcommand, self.random.choice([1, 1, 1, 2])))
@@ -111,7 +113,8 @@ class Case:
         yield from check_new_files(before, after, out, ended, outputs)
         yield from check_old_files(before, after, lambda name: ended.status != 2 and (
             self.may_replace(out, keys, ended) if name == out else
-            name in outputs or name.startswith((f"{out}.shards/", "."))))
+            name in outputs or name.startswith(
+                (f"{out}.shards/", ".", *(f"{out}.{kind}" for kind in SEARCHES)))))
 
     def may_replace(self, out, keys, ended):
         """Whether what was at --out may be gone."""
@@ -130,9 +133,10 @@ class Case:
             complaints = check_same_data(path, whole)
         yield from complaints
 
-    def run_both(self, subcommand, keys, hindrances, delays):
-        """Two processes with one --out, by different seeds."""
-        words = [self.as_flags(subcommand, each) for each in keys]
+    def run_both(self, subcommand, keys, hindrances, delays, outs=("x.h5", "x.h5")):
+        """Two processes with one --out, or two names of one file, by different seeds."""
+        words = [[subcommand, *flags({**each, **own_keys(subcommand, self.random.choice([1, 2])), "out": out})]
+                 for each, out in zip(keys, outs)]
         wholes = [self.library.whole(subcommand, each) for each in keys]
         before = snapshot(self.folder)
         with concurrent.futures.ThreadPoolExecutor() as pool:
@@ -155,13 +159,13 @@ class Case:
         was_cut = any(ended.was_cut for ended in both)
         yield from (f"left {name}" for name in after.keys() - before.keys()
                     if "/." in f"/{name}" and not was_cut)
-        finished = [path for path in self.folder.glob("x.h5*") if path.is_file() and
-                    before.get("x.h5") != path.read_bytes() and is_finished(path)]
+        finished = [path for path in self.folder.glob("[xy].h5*") if path.is_file() and
+                    path.read_bytes() not in (before.get("x.h5"), before.get("y.h5")) and is_finished(path)]
         yield from (what for path in finished for what in check_result(path))
         for path in finished:
             if all(list(check_same_data(path, whole)) for whole in wholes):
                 yield f"{path.name} is the result of neither"
         if any(ended.status == 0 for ended in both) and not finished:
             yield "the finished result is lost"
-        yield from check_old_files(before, after, lambda name: name == "x.h5" and finished or
-                                   name.startswith((".", "x.h5.shards/")))
+        yield from check_old_files(before, after, lambda name: name in ("x.h5", "y.h5") and finished or
+                                   name.startswith((".", "x.h5.shards/", "y.h5.shards/")))

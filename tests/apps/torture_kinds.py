@@ -9,7 +9,7 @@ from torture_run import Hindrance
 from torture_scenes import LONG, OLDER, POINTS, RESUMABLE, SCENES, STOPPED
 
 PATIENCE_S = 1.5 * SLOWNESS
-ENDS = (signal.SIGTERM, signal.SIGINT, signal.SIGKILL)
+ENDS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL)
 
 
 def mutated_scene(case):
@@ -161,15 +161,58 @@ def two_owners(case):
     """Of one --out, by different seeds; the second is refused, or comes after the first."""
     subcommand, keys = case.random.choice([scene for scene in LONG if scene[0] in RESUMABLE])
     case.put_older_result(subcommand)
+    run_two(case, subcommand, keys, ("x.h5", "x.h5"))
+
+
+def linked_owners(case):
+    """The same of a result and a link to it, which may lead nowhere yet. The points of sweeps stand
+    beside the name that is given."""
+    subcommand, keys = case.random.choice(
+        [scene for scene in LONG if scene[0] in RESUMABLE and scene[0] != "sweep"])
+    if case.random.random() < 0.5:
+        (case.folder / "older.h5").rename(case.folder / "y.h5")
+    (case.folder / "x.h5").symlink_to("y.h5")
+    outs = ["x.h5", "y.h5"]
+    case.random.shuffle(outs)
+    run_two(case, subcommand, keys, outs)
+
+
+def run_two(case, subcommand, keys, outs):
     duration = case.library.duration(subcommand, keys)
 
     delays = [case.random.choice([0, case.random.uniform(0, duration)]) for _ in range(2)]
     hindrances = [Hindrance(signals=interrupting_signals(case, duration)
                             if case.random.random() < 0.5 else ()) for _ in range(2)]
-    case.run_both(subcommand, [{**keys, "seed": seed} for seed in (1, 2)], hindrances, delays)
+    case.run_both(subcommand, [{**keys, "seed": seed} for seed in (1, 2)], hindrances, delays, outs)
+
+
+# Subcommands that only print; explain is given a result.
+PRINTING = (["keys", "json"], ["keys", "markdown"], ["new", "lens"], ["explain", "older.h5"], ["datasets"],
+            ["--help"], ["--version"], ["render", "--help"])
+
+
+def full_output(case):
+    """What only prints fails where its output is lost."""
+    words = case.random.choice(PRINTING)
+    case.run(words[0], {}, Hindrance(redirections=">/dev/full"), statuses=(1,), words=words)
+
+
+def long_number(case):
+    """A number of very many digits is read or refused at once."""
+    subcommand, keys = case.random.choice(SCENES)
+    names = [name for name, value in keys.items()
+             if isinstance(value, (int, float)) and not isinstance(value, bool)]
+    if not names:
+        return
+    digits = case.random.choice("01379") * case.random.choice([400, 800, 3000, 30_000, 120_000])
+    text = case.random.choice(["1{}", "-{}", "0.{}", "1e{}", "1.5e-{}", "{}x", "{}:{}", "1e5{}e1"])
+    value = text.replace("{}", digits)
+    case.put_older_result(subcommand)
+    case.run(subcommand, {**keys, case.random.choice(names): value}, Hindrance(patience_s=PATIENCE_S))
 
 
 # How often each is drawn.
 KINDS = {mutated_scene: 35, damaged_input: 10, damaged_scene_file: 5, damaged_result: 4,
          damaged_points: 2, interrupted: 12, limited: 8, short_of_time: 1, closed_folder: 1,
-         bad_streams: 7, odd_environment: 8, two_owners: 7}
+         bad_streams: 7, odd_environment: 8, two_owners: 7, linked_owners: 4, full_output: 1,
+         long_number: 3}

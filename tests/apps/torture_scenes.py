@@ -84,6 +84,24 @@ SCENES = [
                "placement": "equilibrium"}),
 ]
 
+IMAGE = {"domain": "box", "width": 60, "depth": 10, "scatterer": "hg", "g": 0.8, "object_x": [0, 6, 15],
+         "object_depth": -200, "camera": [-0.3, 0.3], "pixels": 256, "prediction_paths": 400,
+         "paths_per_field": 400, "repeats": 2}
+# Sweeps of every subcommand that can be swept: points of some hundredths of a second.
+SWEPT = [
+    ("solve", {"width": 30, "depth": 30, "vary": ["count=100,150,200"], "map": [-10, 10, 0, 10],
+               "map_pixels": [20, 10]}),
+    ("covariance", {**BOX, **TILTS, "count": None, "samples": 60_000, "vary": ["density=0.1:0.2:4"]}),
+    ("covariance", {**SLAB, **TILTS, "method": "transport", "tolerance": 1e-3, "g": None,
+                    "vary": ["g=0:0.8:4"]}),
+    ("flux", {**SLAB, "samples": 80_000, "g": None, "vary": ["g=0:0.8:4"]}),
+    ("field", {**BOX, **VIEWS, "count": None, "fields": 200, "vary": ["density=0.1:0.2:4"]}),
+    ("image", {**IMAGE, "vary": ["optical_depth=1:3:4"]}),
+    ("trace", {**FIBRE, "alpha": None, "connect": [0, 0, 0, 0.3, 0, 3], "max_length": 5, "trials": 500,
+               "vary": ["alpha=0.4:0.6:5"]}),
+    ("render", {**STAGE, **AREA, "samples": 30_000, "vary": ["g=0:0.8:4"], "phase": "henyey_greenstein"}),
+]
+
 # The keys of a longer run, to be interrupted: some tenths of a second of one thread.
 LONG = [
     ("covariance", {**BOX, **TILTS, "samples": 500_000}),
@@ -98,11 +116,18 @@ LONG = [
     ("field", {**BOX, **VIEWS, "fields": 2000}),
     ("solve", {"width": 60, "depth": 60, "count": 1200}),
     ("trace", {**FIBRE, "connect": [0, 0, 0, 0.3, 0, 3], "max_length": 5, "trials": 5000}),
+    ("optimise", {"of": "flux", **SLAB, "g": None, "vary": ["g=0.1:0.9"], "maximise": "transmittance[0]",
+                  "scattered": 8, "starts": 1, "samples": 4000, "target_error": 0.05, "method": "mc"}),
+    ("design", {"nodes": [3, 5], "directions": 8, "rays_per_direction": 25, "iterations": 12}),
+    ("fit", {"free": ["g=0:0.8"], "depth": 100, "optical_depth": 2, "measurement": "curve.csv",
+             "method": "mc", "model_share": 0.02}),
+    *(("sweep", {"of": of, **keys}) for of, keys in SWEPT),
 ]
 OLDER = {**BOX, "samples": 4000}
 STOPPED = {**OLDER, "target_error": 1e-9}
 POINTS = {**GRID, "samples": 2000}
 RESUMABLE = ("covariance", "flux", "validate", "sweep", "render")
+GOES_ON = RESUMABLE + ("optimise", "design", "fit")  # from a file of its own beside the result
 
 
 def write_files(folder):
