@@ -258,6 +258,19 @@ Estimate jackknife(const GroupedSums& sums, const EntrySums& of, double few) {
   return estimate;
 }
 
+bool varies(const GroupedSums& sums) {
+  constexpr double same = 1e-11;  // relative: batches add up many equal numbers
+  if (sums.groups() < 2) return false;
+  const auto first = sums.group_sums(0);
+  for (std::size_t group = 1; group < sums.groups(); ++group) {
+    const double size = sums.group_samples(group) / sums.group_samples(0);
+    const auto here = sums.group_sums(group);
+    for (std::size_t i = 0; i < first.size(); ++i)
+      if (std::abs(here[i] - size * first[i]) > same * std::abs(here[i])) return true;
+  }
+  return false;
+}
+
 double relative_error(const Estimate& estimate) {
   double error2 = 0, value2 = 0, largest = 0;
   for (Complex value : estimate.value) largest = std::max(largest, std::abs(value));

@@ -84,6 +84,10 @@ std::vector<Complex> sample_mean(double samples, std::span<const Complex> sums);
 /// others; rare is less than 24, and less than a ninth of the groups.
 Estimate jackknife(const GroupedSums& sums, const Estimator& theta);
 
+/// Whether the mean of any sum differs between groups by more than rounding. Where none does, no
+/// standard error can be taken from them: nothing that varies was sampled.
+bool varies(const GroupedSums& sums);
+
 /// RMS error relative to the RMS magnitude; 0 where every value and error is 0.
 double relative_error(const Estimate& estimate);
 

@@ -123,12 +123,20 @@ void RunMerger::settle() {
   if (state_.trace.samples.empty() || state_.trace.samples.back() != samples_) record_error();
 }
 
+/// Infinite where no spread has been seen that the error could be taken from.
+double RunMerger::relative_error() const {
+  constexpr double none = 1e-10;  // no sampling gets there
+  const double error = job_.relative_error(state_.sums);
+  const bool is_blind = error < none && found_nothing(job_, state_.sums);
+  return is_blind ? std::numeric_limits<double>::infinity() : error;
+}
+
 void RunMerger::record_error() {
   state_.wall_s = clock_.seconds();
   state_.trace.wall_s.push_back(state_.wall_s);
   state_.trace.cpu_s.push_back(state_.cpu_s);
   state_.trace.samples.push_back(samples_);
-  state_.trace.relative_error.push_back(job_.relative_error(state_.sums));
+  state_.trace.relative_error.push_back(relative_error());
 }
 
 }  // namespace flatspeckle

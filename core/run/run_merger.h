@@ -36,6 +36,7 @@ class RunMerger {
  private:
   void decide();
   bool is_in_vain() const;
+  double relative_error() const;
   void record_error();
   void drop_odd_row();
 

@@ -62,6 +62,10 @@ int default_threads() {
   return std::max(1, omp_get_num_procs() / ranks().sharers);
 }
 
+bool found_nothing(const BatchJob& job, const GroupedSums& sums) {
+  return !job.deterministic && !job.one_by_one && !varies(sums);
+}
+
 PoolEnd run_pool(const RunList& runs, const PoolOptions& options) {
   const int threads = options.threads > 0 ? options.threads : default_threads();
   BatchPool pool(runs, options, threads * ranks().size);

@@ -30,9 +30,15 @@ struct BatchJob {
   /// Batches share their work, a solution without chance: a thread that took the second would wait
   /// for the first, and their number says nothing.
   bool one_by_one = false;
+  /// Nothing is sampled: batches are equal by construction, and errors of 0 are right.
+  bool deterministic = false;
   /// Less where there is no such tail.
   std::uint64_t trusted_batches = flatspeckle::trusted_batches;
 };
+
+/// Whether the batches of a job that samples are all the same to rounding: what it samples has
+/// reached none of its sums, and standard errors of 0 say nothing.
+bool found_nothing(const BatchJob& job, const GroupedSums& sums);
 
 /// When to stop; any that is set may. At least one must be. Samples are rounded up to whole
 /// batches, of which there are always two.

@@ -144,6 +144,13 @@ void tell_few_batches(const std::string& label, std::uint64_t batches) {
               << " batches to take errors from: 2 standard errors do not cover 95 %\n";
 }
 
+void tell_nothing_found(const std::string& label) {
+  std::cerr
+      << "note: all batches of " << label
+      << " are the same: the light that it samples has reached nothing that is asked for, and "
+         "standard errors of 0 are not to be trusted\n";
+}
+
 void tell_rare(const std::vector<std::string>& estimates) {
   if (estimates.empty()) return;
   constexpr std::size_t most = 5;
@@ -375,9 +382,13 @@ void Session::run_one(const PlannedRun& run) {
     tell_few_batches(run.label, state.sums.batches());
     tell_few_placements(run, state.sums.batches());
   }
+  if (!interrupted_ && found_nothing(run.job, state.sums)) {
+    tell_nothing_found(run.label);
+    blind_ = true;
+  }
   const bool reached = !run.stop.target_error || reason == StopReason::target_error ||
                        state.trace.relative_error.back() <= *run.stop.target_error;
-  converged_ = converged_ && reached && !interrupted_;
+  converged_ = converged_ && reached && !blind_ && !interrupted_;
 }
 
 int Session::finish(const std::function<void(ResultFile&)>& contents) {
@@ -409,7 +420,10 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
               << " MB of sums that extend it (--keep_state)";
   std::cout << '\n';
   if (converged_) return ExitStatus::done;
-  if (!reached) std::cout << "stopped before the target error was reached; --resume goes on\n";
+  if (!reached)
+    std::cout << (blind_ ? "not converged: no error can be taken from equal batches"
+                         : "stopped before the target error was reached")
+              << "; --resume goes on\n";
   return ExitStatus::error_not_reached;
 }
 

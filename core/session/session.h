@@ -161,6 +161,7 @@ class Session {
   std::string older_aside_;         ///< where it is now
   std::optional<FileStamp> known_;  ///< of the file there, when it was last looked at or written
   bool already_complete_ = false, interrupted_ = false, converged_ = true;
+  bool blind_ = false;  ///< a run has found nothing that varies
 };
 
 }  // namespace flatspeckle

@@ -94,6 +94,42 @@ TEST_CASE("the trace falls with slope -1/2") {
     CHECK(trace.wall_s[i] >= trace.wall_s[i - 1]);
 }
 
+TEST_CASE("a target error is not met by batches that are all the same") {
+  // Direct light in closed form, and scattered light of which no path finds any.
+  BatchJob job;
+  job.size = 2;
+  job.samples_per_batch = 100;
+  job.run = [](std::uint64_t number, std::span<Complex> sums) {
+    for (std::uint64_t i = 0; i < 100; ++i) sums[0] += 0.1353 * (1 + 1e-16 * double(number % 3));
+  };
+  job.relative_error = [](const GroupedSums& sums) {
+    return relative_error(jackknife(sums, sample_mean));
+  };
+  StopRule stop;
+  stop.target_error = 0.01;
+  const auto reason = [&](const BatchJob& of) {
+    RunState state;
+    return run_batches(of, {stop, 2, "", {}}, state);
+  };
+  CHECK(reason(job) == StopReason::samples);
+  BatchJob dark = job;
+  dark.run = [](std::uint64_t, std::span<Complex>) {};
+  CHECK(reason(dark) == StopReason::samples);
+  job.deterministic = true;
+  CHECK(reason(job) == StopReason::target_error);
+  // little light beside a closed form that is no part of the sums
+  job.deterministic = false;
+  job.run = [](std::uint64_t number, std::span<Complex> sums) {
+    sums[0] += 1e-14 * RandomStream(5, 1, number).uniform();
+  };
+  job.relative_error = [](const GroupedSums& sums) {
+    return relative_error(jackknife(sums, [](double samples, std::span<const Complex> all) {
+      return std::vector<Complex>{1.0 + all[0] / samples};
+    }));
+  };
+  CHECK(reason(job) == StopReason::target_error);
+}
+
 TEST_CASE("a time budget ends a run that has no other end") {
   StopRule stop;
   stop.seconds = 0.05;
