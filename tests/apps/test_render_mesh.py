@@ -124,6 +124,28 @@ class Refused(RenderTest):
         (self.folder / "cut.stl").write_bytes((self.folder / "good.stl").read_bytes()[:-20])
         self.refuse("body_mesh = cut.stl", body_mesh="cut.stl")
 
+    def test_marks_of_text_files_and_bytes_beyond_the_triangles(self):
+        """A byte order mark, capitals and a tail are read; a wrong count is told."""
+        good = ball(2) / 2 + [0, 0, 2]
+        write_stl(self.folder / "text.stl", good, text=True)
+        text, data = (self.folder / "text.stl").read_text(), (self.folder / self.write("good.stl", good)).read_bytes()
+        count = len(good)
+        files = {"mark.stl": ("\ufeff" + text).encode(), "capitals.stl": text.upper().encode(), "tail.stl": data + b"made by x" * 20,
+                 "few.stl": data[:80] + np.uint32(count - 3).tobytes() + data[84:],
+                 "many.stl": data[:80] + np.uint32(count + 3).tobytes() + data[84:]}
+        for name, content in files.items():
+            (self.folder / name).write_bytes(content)
+        for name in ("mark.stl", "capitals.stl", "tail.stl"):
+            self.render(**self.GOOD, body_mesh=name)
+            self.assertAlmostEqual(attributes(self.folder / "render.h5")["mesh_volume"], volume(good), places=6)
+        self.refuse("body_mesh = few.stl", "not a closed surface", "150 bytes after", body_mesh="few.stl")
+        self.refuse("body_mesh = many.stl", f"the header counts {count + 3} triangles", body_mesh="many.stl")
+
+    def test_parts_over_one_another(self):
+        good = ball(3) / 2 + [0, 0, 2]
+        both = np.concatenate([good, good + [0.3, 0, 0]])
+        self.refuse("body_mesh = both.stl", "lie in or over one another", body_mesh=self.write("both.stl", both), body_mesh_spacing=0.05)
+
     def test_keys(self):
         write_stl(self.folder / "ball.stl", ball(3) / 2 + [0, 0, 2])
         for spacing, word in ((0.9, "too coarse"), (1e-4, "too fine"), (-1, "must be positive")):

@@ -102,6 +102,65 @@ TEST_CASE(
   CHECK_THROWS_AS(closed_mesh({}), InputError);
 }
 
+TEST_CASE(
+    "triangles become a closed mesh: corners apart by rounding are welded, up to 1e-5 of the "
+    "size") {
+  RandomStream random(1, 1, 10);
+  const std::vector<Vec3> exact = soup(cube_mesh(1));
+  for (const double noise : {1e-16, 1e-12, 1e-9, 1e-7, 1e-6, 1e-4, 1e-2}) {
+    CAPTURE(noise);
+    std::vector<Vec3> corners = exact;
+    for (Vec3& corner : corners) corner += random_point(random, noise);
+    if (noise > 1e-5) {
+      CHECK_THROWS_WITH_AS(closed_mesh(corners),
+                           doctest::Contains("edges belong to one side alone: from"), InputError);
+      continue;
+    }
+    const TriangleMesh mesh = closed_mesh(corners);
+    CHECK(mesh.corners.size() == 8);
+    CHECK(mesh.triangles.size() == 12);
+    CHECK(volume(mesh) == doctest::Approx(8).epsilon(20 * noise));
+  }
+}
+
+TEST_CASE("triangles become a closed mesh: a body twice is one, and faces back to back go") {
+  const std::vector<Vec3> cube = soup(cube_mesh(1));
+  std::vector<Vec3> twice = cube, beside = cube;
+  twice.insert(twice.end(), cube.begin(), cube.end());
+  for (const Vec3& corner : cube) beside.push_back(corner + Vec3(2, 0, 0));
+  CHECK(volume(closed_mesh(twice)) == doctest::Approx(8));
+  CHECK(volume(closed_mesh(beside)) == doctest::Approx(16));
+  CHECK(area(closed_mesh(beside)) == doctest::Approx(40));
+}
+
+TEST_CASE("meshes without a volume and numbers that are none are refused by name") {
+  std::vector<Vec3> corners = soup(cube_mesh(1));
+  for (Vec3& corner : corners) corner[2] = 0;
+  CHECK_THROWS_WITH_AS(closed_mesh(corners), doctest::Contains("encloses no volume"), InputError);
+  for (int axis = 0; axis < 3; ++axis) {
+    corners = soup(cube_mesh(1));
+    corners[7][axis] = std::nan("");
+    CHECK_THROWS_WITH_AS(closed_mesh(corners), doctest::Contains("corner 2 of triangle 3"),
+                         InputError);
+  }
+}
+
+TEST_CASE("parts of a mesh that lie in or over one another are refused as such, hollows are not") {
+  const auto with = [](double scale, const Vec3& by, bool turned) {
+    std::vector<Vec3> corners = soup(ball_mesh(3)), more = soup(ball_mesh(3));
+    for (Vec3& corner : more) corner = scale * corner + by;
+    for (std::size_t i = 0; turned && i < more.size(); i += 3) std::swap(more[i], more[i + 1]);
+    corners.insert(corners.end(), more.begin(), more.end());
+    return mesh_surface(closed_mesh(corners), "spacing").volume();
+  };
+  const double ball = volume(ball_mesh(3));
+  CHECK(with(0.5, {0.1, 0, 0}, true) == doctest::Approx(ball * 7 / 8).epsilon(0.01));
+  CHECK(with(0.5, {2, 0, 0}, false) == doctest::Approx(ball * 9 / 8).epsilon(0.01));
+  CHECK_THROWS_AS(with(0.5, {0.1, 0, 0}, false), OverlapError);
+  CHECK_THROWS_AS(with(1, {0.7, 0, 0}, false), OverlapError);
+  CHECK_THROWS_WITH_AS(with(0.5, {2, 0, 0}, true), doctest::Contains("inside out"), OverlapError);
+}
+
 TEST_CASE("distance to a mesh: a cube's in closed form, its winding number") {
   const MeshDistance exact(cube_mesh(1)), ball(ball_mesh(3));
   const Box box{Vec3::Constant(-1), Vec3::Constant(1)};

@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -22,68 +19,13 @@ namespace flatspeckle::grin {
 
 namespace {
 
-constexpr std::size_t stl_header = 80, bytes_per_triangle = 50;
-
-std::string contents(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) throw InputError("cannot be read");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-template <class Number>
-Number number_at(const std::string& bytes, std::size_t at) {
-  Number number;
-  std::memcpy(&number, bytes.data() + at, sizeof number);
-  return number;
-}
-
-bool is_binary(const std::string& bytes) {
-  constexpr std::size_t first = stl_header + sizeof(std::uint32_t);
-  if (bytes.size() < first) return false;
-  const std::size_t triangles = number_at<std::uint32_t>(bytes, stl_header);
-  return bytes.size() == first + bytes_per_triangle * triangles;
-}
-
-/// Of each triangle a normal, its corners, and two bytes of anything.
-std::vector<Vec3> corners_of_binary(const std::string& bytes) {
-  std::vector<Vec3> corners;
-  for (std::size_t at = stl_header + sizeof(std::uint32_t); at < bytes.size();
-       at += bytes_per_triangle)
-    for (std::size_t corner = 1; corner <= 3; ++corner) {
-      Vec3& x = corners.emplace_back();
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        x[axis] = number_at<float>(bytes, at + (3 * corner + axis) * sizeof(float));
-    }
-  return corners;
-}
-
-/// Numbers by strtod, which reads nan and inf as such.
-std::vector<Vec3> corners_of_text(const std::string& bytes) {
-  std::istringstream words(bytes);
-  std::vector<Vec3> corners;
-  std::string word;
-  if (!(words >> word) || word != "solid") throw InputError("is not an STL file");
-  while (words >> word) {
-    if (word != "vertex") continue;
-    Vec3& x = corners.emplace_back();
-    for (double& number : x) {
-      char* end = nullptr;
-      words >> word;
-      number = std::strtod(word.c_str(), &end);
-      if (!words || *end != '\0')
-        throw InputError("is not an STL file: a vertex must be three numbers");
-    }
-  }
-  if (corners.size() % 3 != 0)
-    throw InputError("is not an STL file: a facet must have three vertices");
-  return corners;
-}
-
 void check_corners(const std::vector<Vec3>& corners) {
   constexpr double farthest = 1e50;
-  for (const Vec3& corner : corners)
-    if (!(corner.cwiseAbs().maxCoeff() <= farthest))
-      throw InputError("corner of a triangle", listed(corner), "must be finite and within 1e50");
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    if (!(corners[i].array().abs() <= farthest).all())
+      throw InputError(
+          "corner " + std::to_string(i % 3 + 1) + " of triangle " + std::to_string(i / 3 + 1),
+          listed(corners[i]), "must be finite and within 1e50");
 }
 
 TriangleMesh with_shared_corners(const std::vector<Vec3>& corners) {
@@ -101,26 +43,113 @@ TriangleMesh with_shared_corners(const std::vector<Vec3>& corners) {
   return mesh;
 }
 
-void check_closed(const TriangleMesh& mesh) {
+/// Makes corners one that are within `tolerance` of an earlier one. The cells of a hash grid are
+/// two tolerances wide, so that what is near lies in eight of them.
+TriangleMesh welded(const TriangleMesh& mesh, double tolerance) {
+  using Cell = std::array<std::int64_t, 3>;
+  const Vec3 low = bounds(mesh).low;
+  std::map<Cell, std::vector<int>> cells;
+  TriangleMesh found;
+  const auto cell_at = [&](const Vec3& x, double shift) {
+    const Vec3 at = ((x - low) / (2 * tolerance)).array() + shift;
+    return Cell{std::llround(std::floor(at[0])), std::llround(std::floor(at[1])),
+                std::llround(std::floor(at[2]))};
+  };
+  const auto number = [&](const Vec3& x) {
+    const Cell first = cell_at(x, -0.5);
+    for (int i = 0; i < 8; ++i) {
+      const auto cell =
+          cells.find({first[0] + (i & 1), first[1] + (i >> 1 & 1), first[2] + (i >> 2)});
+      if (cell == cells.end()) continue;
+      for (const int other : cell->second)
+        if ((found.corners[other] - x).norm() <= tolerance) return other;
+    }
+    found.corners.push_back(x);
+    const int own = static_cast<int>(found.corners.size()) - 1;
+    cells[cell_at(x, 0)].push_back(own);
+    return own;
+  };
+  std::vector<int> numbers;
+  for (const Vec3& corner : mesh.corners) numbers.push_back(number(corner));
+  for (const auto& [a, b, c] : mesh.triangles)
+    if (numbers[a] != numbers[b] && numbers[b] != numbers[c] && numbers[c] != numbers[a])
+      found.triangles.push_back({numbers[a], numbers[b], numbers[c]});
+  return found;
+}
+
+/// Leaves out triangles that lie back to back, and copies of one.
+void cancel_triangles(TriangleMesh& mesh) {
+  const auto key = [](std::array<int, 3> corners) {
+    std::ranges::rotate(corners, std::ranges::min_element(corners));
+    const bool turned = corners[1] > corners[2];
+    if (turned) std::swap(corners[1], corners[2]);
+    return std::pair(corners, turned ? -1 : 1);
+  };
+  std::map<std::array<int, 3>, int> more_that_way;
+  for (const auto& triangle : mesh.triangles) {
+    const auto [corners, way] = key(triangle);
+    more_that_way[corners] += way;
+  }
+  std::erase_if(mesh.triangles, [&](const std::array<int, 3>& triangle) {
+    const auto [corners, way] = key(triangle);
+    int& more = more_that_way[corners];
+    const bool stays = more * way > 0;
+    if (stays) more = 0;
+    return !stays;
+  });
+}
+
+/// How often more each edge is passed from its first corner to its second than back.
+std::map<std::pair<int, int>, int> passed_edges(const TriangleMesh& mesh) {
   std::map<std::pair<int, int>, int> more_that_way;
   for (const auto& triangle : mesh.triangles)
     for (int i = 0; i < 3; ++i) {
       const int from = triangle[i], to = triangle[(i + 1) % 3];
       more_that_way[std::minmax(from, to)] += from < to ? 1 : -1;
     }
+  return more_that_way;
+}
+bool is_closed(const TriangleMesh& mesh) {
+  return std::ranges::all_of(passed_edges(mesh), [](const auto& edge) { return edge.second == 0; });
+}
+
+[[noreturn]] void refuse_open(const TriangleMesh& mesh) {
+  constexpr std::size_t most = 3;
+  const auto edges = passed_edges(mesh);
   std::size_t open = 0;
-  const Vec3* place = nullptr;
-  for (const auto& [edge, more] : more_that_way) {
-    if (more == 0) continue;
-    ++open;
-    place = &mesh.corners[edge.first];
-  }
-  if (open == 0) return;
+  std::ostringstream places;
+  for (const auto& [edge, more] : edges)
+    if (more != 0 && ++open <= most)
+      places << (open == 1 ? "" : ", ") << "from " << listed(mesh.corners[edge.first]) << " to "
+             << listed(mesh.corners[edge.second]);
   std::ostringstream text;
   text << "is not a closed surface whose triangles are turned alike: " << open << " of "
-       << more_that_way.size() << " edges belong to one side alone, one of them at "
-       << listed(*place);
+       << edges.size() << " edges belong to one side alone: " << places.str()
+       << (open > most ? ", ..." : "");
   throw InputError(text.str());
+}
+
+/// Welds corners where the surface closes only so: those that are equal within rounding of double
+/// precision, then of single precision, then within what does not show on a body of this size.
+TriangleMesh closed(TriangleMesh mesh) {
+  const Box box = bounds(mesh);
+  const double size = (box.high - box.low).norm();
+  cancel_triangles(mesh);
+  for (const double tolerance : {1e-12, 1e-8, 1e-5}) {
+    if (is_closed(mesh)) return mesh;
+    mesh = welded(mesh, tolerance * size);
+    cancel_triangles(mesh);
+  }
+  if (!is_closed(mesh)) refuse_open(mesh);
+  return mesh;
+}
+
+void check_encloses(const TriangleMesh& mesh) {
+  constexpr double least = 1e-9;
+  const Box box = bounds(mesh);
+  if (std::abs(volume(mesh)) > least * area(mesh) * (box.high - box.low).maxCoeff()) return;
+  throw InputError(
+      "encloses no volume: it is flat, or the triangles of its parts are turned opposite ways");
 }
 
 Vec3 doubled_area(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
@@ -186,6 +215,18 @@ NodeGrid grid_around(const Box& box, double spacing, const std::string& key) {
   return grid;
 }
 
+/// Whether a winding number is that of the inside. Throws OverlapError where it is neither 0 nor 1,
+/// but for places on the surface itself.
+bool is_inside(double winding, double away, const NodeGrid& grid, const Vec3& x) {
+  const bool is_clear = away > 1e-3 * grid.spacing;
+  if (is_clear && winding > 1.5)
+    throw OverlapError("parts of the surface lie in or over one another, as at " + listed(x) +
+                       ": join them to one surface (triangles around a hollow face into it)");
+  if (is_clear && winding < -0.5)
+    throw OverlapError("a part of the surface is turned inside out, as at " + listed(x));
+  return winding > 0.5;
+}
+
 /// Signs by the winding number, where the node before in a row does not tell: a row begins outside,
 /// and what is farther than a spacing from the surface is on the same side as the next node.
 std::vector<double> signed_distances(const NodeGrid& grid, const TriangleMesh& mesh) {
@@ -198,7 +239,9 @@ std::vector<double> signed_distances(const NodeGrid& grid, const TriangleMesh& m
       for (int k = 0; k < grid.nodes[2]; ++k) {
         const Vec3 x = grid.origin + grid.spacing * Vec3(i, j, k);
         const double away = exact.unsigned_distance(x, padding * grid.spacing);
-        const bool inside = std::abs(before) > near ? before < 0 : exact.winding_number(x) > 0.5;
+        const bool inside = std::abs(before) > near
+                                ? before < 0
+                                : is_inside(exact.winding_number(x), away, grid, x);
         before = distances[grid.number(i, j, k)] = inside ? -away : away;
       }
     }
@@ -239,20 +282,12 @@ void check_volume(const LevelSurface& surface) {
 
 }  // namespace
 
-TriangleMesh read_stl(const std::string& key, const std::filesystem::path& path) {
-  try {
-    const std::string bytes = contents(path);
-    return closed_mesh(is_binary(bytes) ? corners_of_binary(bytes) : corners_of_text(bytes));
-  } catch (const InputError& error) {
-    throw InputError(key, path.string(), error.what());
-  }
-}
-
 TriangleMesh closed_mesh(const std::vector<Vec3>& corners) {
   check_corners(corners);
   TriangleMesh mesh = with_shared_corners(corners);
   if (mesh.triangles.empty()) throw InputError("has no triangle with an area");
-  check_closed(mesh);
+  mesh = closed(std::move(mesh));
+  check_encloses(mesh);
   if (volume(mesh) < 0)
     for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
   return mesh;
@@ -369,10 +404,10 @@ double MeshDistance::solid_angle(int number, const Vec3& x) const {
 
 LevelSurface mesh_surface(const TriangleMesh& mesh, double spacing, const std::string& key) {
   const NodeGrid grid = grid_around(bounds(mesh), spacing, key);
+  const std::vector<double> distances = signed_distances(grid, mesh);
   try {
     const LevelSurface surface(grid.origin, spacing, grid.nodes,
-                               spline_coefficients(grid, signed_distances(grid, mesh)),
-                               volume(mesh));
+                               spline_coefficients(grid, distances), volume(mesh));
     check_volume(surface);
     return surface;
   } catch (const InputError& error) {
@@ -388,6 +423,8 @@ LevelSurface mesh_surface(const TriangleMesh& mesh, const std::string& key) {
     try {
       const LevelSurface surface = mesh_surface(mesh, longest / cells, key);
       if (std::abs(volume_change(surface)) < right) return surface;
+    } catch (const OverlapError&) {
+      throw;
     } catch (const InputError&) {  // too coarse
     }
   }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "grin/media/geometry/shapes.h"
 #include "grin/rays/surfaces/level_surface.h"
 
@@ -17,18 +18,19 @@ struct TriangleMesh {
   std::vector<std::array<int, 3>> triangles;
 };
 
-/// Of triangles that are given by three corners each: equal corners become one, triangles without
-/// an area go, and if they enclose a negative volume all are turned over. Throws InputError for a
-/// corner that is not finite or beyond 1e50, no triangle, and for a surface that is not closed:
-/// each edge must be passed as often one way as the other.
+/// Makes a mesh of triangles that are given by three corners each. Equal corners become one; where
+/// the surface closes only so, also those within 1e-5 of its size. Triangles without an area go,
+/// and those back to back; if the others enclose a negative volume all are turned over. Throws
+/// InputError for a corner that is not finite or beyond 1e50, no triangle, no volume, and for a
+/// surface that is not closed: each edge must be passed as often one way as the other.
 TriangleMesh closed_mesh(const std::vector<Vec3>& corners);
 
 Box bounds(const TriangleMesh& mesh);
 double volume(const TriangleMesh& mesh);
 double area(const TriangleMesh& mesh);
 
-/// The triangles of an STL file, binary or text, made closed_mesh(); the normals in it are not
-/// read. Every InputError names the key and the file.
+/// Reads the triangles of an STL file, binary or text, into a closed_mesh(); the normals in it are
+/// not read. Every InputError names the key and the file.
 TriangleMesh read_stl(const std::string& key, const std::filesystem::path& path);
 
 /// Distances to the triangles of a mesh through a tree of boxes.
@@ -64,11 +66,16 @@ class MeshDistance {
   std::vector<Node> nodes_;
 };
 
+/// A mesh whose parts lie in or over one another, or are turned inside out.
+struct OverlapError : InputError {
+  using InputError::InputError;
+};
+
 /// A smooth surface in place of a mesh, of cubic B-splines of the mesh's signed distances at the
 /// nodes of a grid: planes stay as they are, spheres are off by the fourth power of the spacing,
 /// and edges are rounded over one spacing, beside which faces swell by a twentieth of it. Throws
 /// InputError, naming `key` of the spacing, where that is so large that 5 % of the volume would be
-/// lost or won, or so small that the grid would have more than 2e7 nodes.
+/// lost or won, or so small that the grid would have more than 2e7 nodes; and OverlapError.
 LevelSurface mesh_surface(const TriangleMesh& mesh, double spacing, const std::string& key);
 
 /// The same with a spacing of 1/64 of the longest side, or 1/128 or 1/256 where it takes that for

@@ -75,7 +75,11 @@ LevelSurface mesh_body(const Keys& keys, const FieldBodyValues& values, const st
                      listed(box.high) + ", must be inside of the stage");
   const std::string name = keys.name(values.body_mesh_spacing);
   const std::optional<double>& spacing = keys.read(values.body_mesh_spacing);
-  return spacing ? mesh_surface(mesh, *spacing, name) : mesh_surface(mesh, name);
+  try {
+    return spacing ? mesh_surface(mesh, *spacing, name) : mesh_surface(mesh, name);
+  } catch (const OverlapError& error) {
+    throw InputError(keys.name(values.body_mesh), file, error.what());
+  }
 }
 
 }  // namespace

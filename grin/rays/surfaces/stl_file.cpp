@@ -1,0 +1,126 @@
+#include <cctype>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "grin/rays/surfaces/mesh_surface.h"
+
+namespace flatspeckle::grin {
+
+namespace {
+
+constexpr std::size_t stl_header = 80, bytes_per_triangle = 50;
+
+std::string contents(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file || std::filesystem::is_directory(path)) throw InputError("cannot be read");
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+template <class Number>
+Number number_at(const std::string& bytes, std::size_t at) {
+  Number number;
+  std::memcpy(&number, bytes.data() + at, sizeof number);
+  return number;
+}
+
+constexpr std::size_t first_triangle = stl_header + sizeof(std::uint32_t);
+
+/// Triangles that a binary file's header counts.
+std::size_t counted_triangles(const std::string& bytes) {
+  return bytes.size() < first_triangle ? 0 : number_at<std::uint32_t>(bytes, stl_header);
+}
+std::size_t bytes_of(std::size_t triangles) {
+  return first_triangle + bytes_per_triangle * triangles;
+}
+
+std::string lower_case(std::string word) {
+  for (char& letter : word)
+    letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return word;
+}
+
+/// Binary files may begin with "solid" too, but their size follows from the count in their header.
+bool is_text(const std::string& bytes) {
+  if (bytes.size() >= first_triangle && bytes.size() == bytes_of(counted_triangles(bytes)))
+    return false;
+  return bytes.find('\0') == std::string::npos;
+}
+
+/// Bytes after the last triangle that the header counts are left out.
+void check_size(const std::string& bytes) {
+  const std::size_t triangles = counted_triangles(bytes), size = bytes_of(triangles);
+  if (bytes.size() >= size) return;
+  std::ostringstream text;
+  text << "is cut short, or its header is wrong: the header counts " << triangles
+       << " triangles, which take " << size << " bytes, and the file has " << bytes.size();
+  throw InputError(text.str());
+}
+
+/// Of each triangle a normal, its corners, and two bytes of anything.
+std::vector<Vec3> corners_of_binary(const std::string& bytes) {
+  check_size(bytes);
+  std::vector<Vec3> corners;
+  const std::size_t end = bytes_of(counted_triangles(bytes));
+  for (std::size_t at = first_triangle; at < end; at += bytes_per_triangle)
+    for (std::size_t corner = 1; corner <= 3; ++corner) {
+      Vec3& x = corners.emplace_back();
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        x[axis] = number_at<float>(bytes, at + (3 * corner + axis) * sizeof(float));
+    }
+  return corners;
+}
+
+/// Reads numbers by strtod, which accepts nan and inf. Words may be in capitals, and a byte order
+/// mark may come before them.
+std::vector<Vec3> corners_of_text(const std::string& bytes) {
+  const std::string mark = "\xEF\xBB\xBF";
+  std::istringstream words(bytes.starts_with(mark) ? bytes.substr(mark.size()) : bytes);
+  std::vector<Vec3> corners;
+  std::string word;
+  if (!(words >> word) || lower_case(word) != "solid")
+    throw InputError("is not an STL file: text must begin with solid");
+  while (words >> word) {
+    if (lower_case(word) != "vertex") continue;
+    Vec3& x = corners.emplace_back();
+    for (double& number : x) {
+      char* end = nullptr;
+      words >> word;
+      number = std::strtod(word.c_str(), &end);
+      if (!words || *end != '\0')
+        throw InputError("is not an STL file: a vertex must be three numbers");
+    }
+  }
+  if (corners.size() % 3 != 0)
+    throw InputError("is not an STL file: a facet must have three vertices");
+  return corners;
+}
+
+/// Where a file goes on after the triangles that its header counts.
+std::string left_out(const std::string& bytes) {
+  const std::size_t size = bytes_of(counted_triangles(bytes));
+  if (is_text(bytes) || bytes.size() <= size) return {};
+  return " (" + std::to_string(bytes.size() - size) + " bytes after the " +
+         std::to_string(counted_triangles(bytes)) +
+         " triangles that the header counts are left out)";
+}
+
+}  // namespace
+
+TriangleMesh read_stl(const std::string& key, const std::filesystem::path& path) {
+  std::string bytes;
+  try {
+    bytes = contents(path);
+    return closed_mesh(is_text(bytes) ? corners_of_text(bytes) : corners_of_binary(bytes));
+  } catch (const InputError& error) {
+    throw InputError(key, path.string(), error.what() + left_out(bytes));
+  }
+}
+
+}  // namespace flatspeckle::grin
