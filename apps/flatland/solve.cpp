@@ -167,18 +167,6 @@ void print_summary(const wave::WaveSolution& solution) {
               solution.method().c_str(), diagnosis.residual);
   if (diagnosis.condition >= 0) std::printf("condition %.1e, ", diagnosis.condition);
   std::printf("boundary residual %.1e\n", diagnosis.boundary_residual);
-  if (diagnosis.truncation >= 0)
-    std::printf("higher orders change the fields by %.1e\n", diagnosis.truncation);
-  std::printf("a rounding of the radius changes the fields by %.1e; power balance off by %.1e\n",
-              diagnosis.rounding, diagnosis.power_balance);
-}
-
-/// Exit status of fields with such a fault (wave::Diagnosis), which is told.
-int status_of(const std::string& fault, double tolerance) {
-  if (fault.empty()) return ExitStatus::done;
-  std::printf("not converged to the tolerance %s: %s\n", number_text(tolerance).c_str(),
-              fault.c_str());
-  return ExitStatus::error_not_reached;
 }
 
 /// Far views, near sensors, or both.
@@ -409,8 +397,7 @@ class SolveExperiment : public OneShot {
     write_scene(file);
     const std::string plan = plan_of(found, *wavelengths_, placement_);
     if (tells) std::printf("%sresidual at most %.1e\n", plan.c_str(), found.residual());
-    return Made{plan + "one solution after the other", 1,
-                status_of(found.fault(), values_.tolerance)};
+    return Made{plan + "one solution after the other", 1};
   }
 
   Made make_fields(ResultFile& file, bool tells) const {
@@ -427,8 +414,7 @@ class SolveExperiment : public OneShot {
     write_scene(file);
     if (tells) print_summary(solution);
     if (tells && grid_) std::printf("%s\n", map_method.c_str());
-    return Made{plan_of(solution, map_method), 1,
-                status_of(solution.diagnosis().fault(), values_.tolerance)};
+    return Made{plan_of(solution, map_method), 1};
   }
 
   void write_scene(ResultFile& file) const {

@@ -239,8 +239,8 @@ std::string Diagnosis::fault() const {
            scientific(truncation);
   if (rounding > tolerance)
     return "a rounding of the radius changes the field by " + scientific(rounding);
-  if (power_balance > power_limit)
-    return "extinction differs from scattering and absorption by " + scientific(power_balance);
+  if (!power.holds())
+    return "extinction differs from scattering and absorption by " + scientific(power.off);
   return "";
 }
 

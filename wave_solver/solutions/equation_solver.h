@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/numbers/complex.h"
+#include "core/result/invariant.h"
 #include "flatland/media/domain.h"
 #include "flatland/placement/placement.h"
 #include "flatland/request/light.h"
@@ -113,8 +114,8 @@ struct Diagnosis {
   double truncation = -1;
   /// Relative change of the far fields where radii and sides change by a rounding.
   double rounding = -1;
-  double power_balance = -1, power_limit = -1;  ///< solution_invariants.h
-  double tolerance = 0;                         ///< asked for
+  Invariant power = {};  ///< solution_invariants.h
+  double tolerance = 0;  ///< asked for
 
   /// Why the fields are not within the tolerance; empty where nothing says so.
   std::string fault() const;

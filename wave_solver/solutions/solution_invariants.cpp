@@ -48,7 +48,7 @@ std::vector<View> directions_around(const TMatrixSystem& system) {
 
 }  // namespace
 
-Imbalance power_balance(const WaveSolution& solution, double tolerance) {
+Invariant power_balance(const WaveSolution& solution, double tolerance) {
   constexpr std::size_t most_lights = 4, uncombined = 8;
   const TMatrixSystem& system = solution.system();
   const auto& lights = solution.light_angles();
@@ -58,7 +58,7 @@ Imbalance power_balance(const WaveSolution& solution, double tolerance) {
                        (lights.size() > uncombined ? 3 * tolerance : 0);
   const auto absorption = absorption_of(system);
   const auto views = directions_around(system);
-  Imbalance worst;
+  Invariant worst;
   for (std::size_t i = 0; i < std::min(lights.size(), most_lights); ++i) {
     const std::size_t light = i * lights.size() / std::min(lights.size(), most_lights);
     double scattered = 0, absorbed = 0, squares = 0;
@@ -74,9 +74,9 @@ Imbalance power_balance(const WaveSolution& solution, double tolerance) {
                             solution.fields(std::vector{far_view(lights[light])}, light)[0];
     const double all = std::max(-forward.real(), scattered + absorbed);
     if (all == 0) continue;
-    const Imbalance found{std::abs(-forward.real() - scattered - absorbed) / all,
+    const Invariant found{std::abs(-forward.real() - scattered - absorbed) / all,
                           slack * (std::abs(forward) + squares) / all};
-    if (i == 0 || found.off / found.limit > worst.off / worst.limit) worst = found;
+    if (i == 0 || found.is_worse_than(worst)) worst = found;
   }
   return worst;
 }

@@ -33,7 +33,13 @@ const DatasetTable spectrum_table{
      {"solve/residual", Data::real, "wavelength", "1",
       "relative residual of the unscaled equations"},
      {"solve/boundary_residual", Data::real, "wavelength", "1",
-      "largest mismatch of the boundary conditions, unit incident waves"}}};
+      "largest mismatch of the boundary conditions, unit incident waves"},
+     {"invariants/power", Data::invariant, "wavelength", "1",
+      "difference between extinction and scattering with absorption, over the extinction"},
+     {"invariants/rounding", Data::invariant, "wavelength", "1",
+      "relative change of the fields with all radii rounded"},
+     {"invariants/truncation", Data::invariant, "wavelength", "1",
+      "relative change of the fields from lower orders, where gap plasmons may resonate"}}};
 
 Spectrum::Spectrum(const std::vector<double>& view_angles, const std::vector<Vec2>& sensors)
     : far_views_(column(view_angles, far_view)), near_sensors_(column(sensors, near_sensor)) {}
@@ -54,8 +60,10 @@ void Spectrum::add(double wavelength, const WaveSolution& solution) {
                                    : static_cast<std::uint64_t>(*std::ranges::max_element(orders)));
   residual_.push_back(solution.diagnosis().residual);
   boundary_residual_.push_back(solution.diagnosis().boundary_residual);
-  if (const auto fault = solution.diagnosis().fault(); fault_.empty() && !fault.empty())
-    fault_ = "wavelength " + number_text(wavelength) + ": " + fault;
+  const Diagnosis& diagnosis = solution.diagnosis();
+  power_.push_back(diagnosis.power);
+  rounding_.push_back({diagnosis.rounding, diagnosis.tolerance});
+  truncation_.push_back({std::max(0.0, diagnosis.truncation), diagnosis.tolerance});
 }
 
 double Spectrum::residual() const {
@@ -82,6 +90,9 @@ void Spectrum::write(ResultFile& file) const {
   root.put("solve/highest_order", orders_);
   root.put("solve/residual", residual_);
   root.put("solve/boundary_residual", boundary_residual_);
+  root.check("invariants/power", power_);
+  root.check("invariants/rounding", rounding_);
+  root.check("invariants/truncation", truncation_);
   write_placement(file, placement_);
 }
 
@@ -257,7 +268,13 @@ const DatasetTable solution_table{
      {"solve/condition", Data::real, "", "1",
       "condition of the scaled matrix, Frobenius norm, estimated"},
      {"solve/boundary_residual", Data::real, "", "1",
-      "largest mismatch of the boundary conditions, unit incident waves"}}};
+      "largest mismatch of the boundary conditions, unit incident waves"},
+     {"invariants/power", Data::invariant, "", "1",
+      "difference between extinction and scattering with absorption, over the extinction"},
+     {"invariants/rounding", Data::invariant, "", "1",
+      "relative change of the fields with all radii rounded"},
+     {"invariants/truncation", Data::invariant, "", "1",
+      "relative change of the fields from lower orders, where gap plasmons may resonate"}}};
 
 namespace {
 
@@ -339,6 +356,10 @@ void write_diagnosis(const ResultGroup& root, const Diagnosis& diagnosis) {
   root.put("solve/residual", diagnosis.residual);
   if (diagnosis.condition >= 0) root.put("solve/condition", diagnosis.condition);
   root.put("solve/boundary_residual", diagnosis.boundary_residual);
+  root.check("invariants/power", diagnosis.power);
+  root.check("invariants/rounding", Invariant{diagnosis.rounding, diagnosis.tolerance});
+  if (diagnosis.truncation >= 0)
+    root.check("invariants/truncation", Invariant{diagnosis.truncation, diagnosis.tolerance});
 }
 
 }  // namespace
@@ -411,9 +432,7 @@ WaveSolution solve(const Placement& placement, double k, const std::vector<doubl
     }
   if (!options.diagnose) return solution;
   solution.diagnosis_.boundary_residual = boundary_residual(solution);
-  const auto [off, limit] = power_balance(solution, options.tolerance);
-  solution.diagnosis_.power_balance = off;
-  solution.diagnosis_.power_limit = limit;
+  solution.diagnosis_.power = power_balance(solution, options.tolerance);
   return solution;
 }
 

@@ -92,8 +92,6 @@ class Spectrum {
 
   /// The worst residual so far.
   double residual() const;
-  /// Why the first solution that is not within the tolerance is not; empty where all are.
-  const std::string& fault() const { return fault_; }
   /// Of the largest system so far.
   std::size_t unknowns() const;
 
@@ -103,7 +101,7 @@ class Spectrum {
   std::vector<Complex> far_, near_;
   std::vector<std::uint64_t> unknowns_, orders_;
   std::vector<double> residual_, boundary_residual_;
-  std::string fault_;
+  std::vector<Invariant> power_, rounding_, truncation_;
   Placement placement_;
 };
 
