@@ -25,8 +25,6 @@ const DatasetTable power_table{
 
 namespace {
 
-using std::numbers::pi;
-
 /// The scene with the intensities of its first light alone, seen from far away.
 Scene seen_from(const Scene& scene, const std::vector<double>& angles) {
   const Light& first = scene.request.lights.front();
@@ -77,14 +75,15 @@ double seen_share(const Scene& scene, double samples, std::uint64_t seed, std::u
   RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), group);
   const double first = random.uniform();
   std::vector<double> angles;
-  for (int view = 0; view < views; ++view) angles.push_back(2 * pi * (view + first) / views - pi);
+  for (int view = 0; view < views; ++view)
+    angles.push_back(2 * std::numbers::pi * (view + first) / views - std::numbers::pi);
   const Scene lit = seen_from(scene, angles);
   const FieldJob job =
       mc::covariance_job(lit, mc::make_plan(lit, mc::ReversedPaths::no), seed + group);
   const GroupedSums sums = sums_of(job.batches, samples);
   double power = 0;
   for (const Complex intensity : job.covariance(sums.total_samples(), sums.total()))
-    power += intensity.real() * 2 * pi / views;
+    power += intensity.real() * 2 * std::numbers::pi / views;
   return power / aperture(lit);
 }
 
@@ -120,14 +119,16 @@ std::optional<Invariant> transport_power(const Scene& slab, double tolerance) {
   const auto power = [&](int count) -> Share {
     const QuadratureRule rule = gauss_legendre(count);
     std::vector<double> angles;
-    for (const double quadrant : {-pi, -pi / 2, 0.0, pi / 2})
-      for (const double node : rule.node) angles.push_back(quadrant + node * pi / 2);
+    for (const double quadrant :
+         {-std::numbers::pi, -std::numbers::pi / 2, 0.0, std::numbers::pi / 2})
+      for (const double node : rule.node) angles.push_back(quadrant + node * std::numbers::pi / 2);
     lit = seen_from(slab, angles);
     const FieldJob job = mc::slab_covariance_job(lit, false, refinement);
     const Estimate found = jackknife(sums_of(job.batches, 2), job.covariance);
     Share share;
     for (std::size_t view = 0; view < angles.size(); ++view) {
-      const double weight = rule.weight[view % rule.weight.size()] * pi / 2 / aperture(lit);
+      const double weight =
+          rule.weight[view % rule.weight.size()] * std::numbers::pi / 2 / aperture(lit);
       share.value += weight * found.value[view].real();
       share.error += weight * found.error[view];
     }
