@@ -8,11 +8,12 @@ import h5py
 from program import BOX, CYLINDERS, SLAB, ProgramTest
 
 HG = {"width": 20, "depth": 10, "scatterer": "hg", "optical_depth": 2, "g": 0.5}
-RAYS = {"field": "gaussian", "light": "line", "ray_count": 3, "beam_radius": 0.4, "origin": [0, 0, -2],
+RAYS = {"field": "luneburg", "light": "line", "ray_count": 3, "beam_radius": 0.4, "origin": [0, 0, -2],
         "stop_plane": [0, 0, 2, 0, 0, 1], "max_length": 10}
 IMAGE = {"domain": "box", **HG, "width": 60, "object_x": [0, 20], "object_depth": -500, "camera": [-0.3, 0.3],
          "pixels": 128, "repeats": 2, "paths_per_field": 20, "prediction_paths": 4000}
-STAGE = {"stage_box": [-1, -1, 0, 1, 1, 4], "mu_s": 0.5, "g": 0.5, "point_light": [0, 0, 1, 1], "pixels": [8, 8],
+STAGE = {"stage_box": [-1, -1, 0, 1, 1, 4], "mu_s": 0.5, "point_light": [0, 0, 1, 1], "sensor": "area", "sensor_at": [0, 0, 4],
+         "sensor_size": [2, 2], "pixels": [8, 8],
          "method": "analog", "samples": 20000}
 
 RUNS = {  # invariant: subcommand, keys
