@@ -69,7 +69,6 @@ struct LensParts {
   Long3 vertex;
   Number radius;
   std::array<Number, 2> curved, z;  ///< radii of curvature, and where the faces' vertices are
-  static constexpr std::array<Number, 2> outwards{-1, 1};
 
   explicit LensParts(const std::array<double, 7>& s)
       : vertex{s[0], s[1], s[2]},
