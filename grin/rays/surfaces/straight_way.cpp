@@ -54,10 +54,10 @@ struct LineThroughFace {
   }
 };
 
-/// Whether a place on the sphere of a convex face is on its cap.
-bool is_on_cap(const LensFace& face, double z) {
-  return face.outwards * (z - face.edge) >=
-         -crossing_accuracy(std::max(std::abs(face.edge), std::abs(face.vertex[2])));
+/// Whether a line meets the sphere of a convex face on its cap, to the accuracy of that place.
+bool is_on_cap(const LensFace& face, const Vec3& x, const Vec3& d, double way) {
+  const double beyond = face.outwards * (x[2] + way * d[2] - face.edge);
+  return beyond >= -crossing_accuracy(std::max(std::abs(face.edge), std::abs(x[2])));
 }
 
 /// To where a line from inside of the lens leaves it through a face.
@@ -66,7 +66,7 @@ double way_out(const LensFace& face, const Vec3& x, const Vec3& d) {
   const LineThroughFace line(face, x, d);
   if (line.within.is_empty()) return no_way;
   const double way = face.is_concave() ? line.within.from : line.within.to;
-  const bool leaves = face.is_concave() ? line.away < 0 : is_on_cap(face, x[2] + way * d[2]);
+  const bool leaves = face.is_concave() ? line.away < 0 : is_on_cap(face, x, d, way);
   return leaves ? std::max(0.0, way) : no_way;
 }
 
@@ -76,8 +76,8 @@ Stretch before(const LensFace& face, const Vec3& x, const Vec3& d) {
   if (face.is_plane() || face.is_concave()) return inside;
   const Stretch within = LineThroughFace(face, x, d).within;
   if (within.is_empty()) return inside;
-  if (is_on_cap(face, x[2] + within.from * d[2])) inside.from = within.from;
-  if (is_on_cap(face, x[2] + within.to * d[2])) inside.to = within.to;
+  if (is_on_cap(face, x, d, within.from)) inside.from = within.from;
+  if (is_on_cap(face, x, d, within.to)) inside.to = within.to;
   return inside;
 }
 
