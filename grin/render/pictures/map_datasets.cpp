@@ -1,7 +1,6 @@
 #include "grin/render/pictures/map_datasets.h"
 
 #include "core/result/result_group.h"
-#include "grin/render/methods/tracer.h"
 #include "grin/render/pictures/render_job.h"
 
 namespace flatspeckle::grin {
@@ -82,7 +81,7 @@ void write_map(ResultFile& file, const RenderScene& scene, const RenderJob& job,
   const ResultGroup root(file, is_box ? box_map_table : ring_map_table);
   std::visit([&](const auto& of) { write_axes(root, of); }, map);
   root.put("map/fluence", fluence(sums, job.first_of_map(), map));
-  if (render_plan(scene).absorbs) root.put("map/absorbed", absorbed(sums, job.first_of_map(), map));
+  root.put("map/absorbed", absorbed(sums, job.first_of_map(), map));
 }
 
 }  // namespace flatspeckle::grin
