@@ -86,6 +86,15 @@ BoundedLeastSquares problem_of(const FitTask& task, const SlabModel& model, cons
   return problem;
 }
 
+/// The likelihood of fields is not defined where their covariance, or its square, vanishes.
+void require_light(const VectorXd& covariance) {
+  constexpr double least = 1e-140;
+  if (!(covariance.cwiseAbs().maxCoeff() > least))
+    throw InputError(
+        "measurement: no light reaches the views of such patterns in the middle of the ranges of "
+        "free; the medium there is too deep or absorbs too much");
+}
+
 /// Other starts are gone on from where the best one does not end in a likely medium. The search is
 /// by as many ordinates as a thousandth of the values needs; it goes on where errors ask for more.
 LeastSquaresFit refined_fit(const FitTask& task, const BoundedLeastSquares& problem,
@@ -174,6 +183,7 @@ MediumFit fit_medium(const FitTask& task) {
   if (task.paths) return fit_by_paths(task);
   FitData data(task);
   SlabModel model(curves_of(task), media_at(task, middle(task)));
+  if (data.has_fields()) require_light(model.values(media_at(task, middle(task))));
   const BoundedLeastSquares problem = problem_of(task, model, data);
   MediumFit fit;
   LeastSquaresFit best = refined_fit(task, problem, model, data, fit);
