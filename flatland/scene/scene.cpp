@@ -131,6 +131,18 @@ class LayerTable {
     refuse("index_re", spec.index);
   }
 
+  /// The optical depth or the density of layers for which 0 is given: so little that it changes
+  /// results by less than their rounding, in proportion to all other layers.
+  double clear() const {
+    constexpr double share = 1e-15;
+    double all = 0;
+    for (const char* name : {"optical_depth", "density"})
+      if (table_.has(name))
+        for (const double value : table_.column(name)) all += value;
+    if (!(all > 0)) throw InputError("at least one layer must scatter or absorb");
+    return share * all;
+  }
+
   /// Of the layer as a slab of its own, all of whose keys must be of use.
   Material material(const SceneSpec& spec, std::size_t layer) const {
     SceneSpec own;
@@ -141,6 +153,8 @@ class LayerTable {
       if (table_.has(column.name)) own.*column.member = table_.column(column.name)[layer];
     };
     for (const Column& column : densities) take(column);
+    for (auto* extinction : {&own.optical_depth, &own.density})
+      if (*extinction == 0.0) *extinction = clear();
     for (const Column& column : scatterer_columns) take(column);
     if (table_.has("index_re"))
       own.index =
@@ -295,7 +309,9 @@ void make_phase_of_bulk(const Keys& keys, const SceneSpec& spec, Scene& scene) {
 /// Keys that all layers share.
 void read_layer_keys(const Keys& keys, const SceneSpec& spec, const Scatterer& scatterer) {
   if (scatterer.is_bulk()) make_phase(keys, spec.bulk, spec.scatterer);
-  if (spec.dimension == 3) throw InputError("dimension", 3, "is of slabs without layers");
+  if (spec.dimension == 3)
+    throw InputError("dimension", 3,
+                     "requires a slab without layers; leave out layers, or take dimension = 2");
 }
 
 /// Where nearly all is refused that can be, before the bulk is derived.
