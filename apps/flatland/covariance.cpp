@@ -24,7 +24,7 @@ void print_medium(const Scene& scene) {
 
 StopRule stop_of(const std::string& method, const Keys& keys, const RunSettings& run,
                  const MethodSettings& methods) {
-  if (method == "transport") return both_batches();
+  if (method == "transport") return both_batches(methods.tolerance);
   const bool own = method == "wave" && methods.wave_samples;
   const StopRule stop = own ? stop_rule(keys, run, methods.wave_samples) : stop_rule(keys, run);
   keys.read(run.samples);  // one of both, in a scene for several methods

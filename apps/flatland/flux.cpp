@@ -57,12 +57,14 @@ class FluxExperiment : public Experiment {
   void read(const Keys& keys) override {
     choose_method(keys, method_, spec_, run_);
     if (!by_mc()) read_transport(keys, methods_, spec_, run_);
-    stop_ = by_mc() ? stop_rule(keys, run_) : both_batches();
+    stop_ = by_mc() ? stop_rule(keys, run_) : both_batches(methods_.tolerance);
     keys.read(angle_bins_);
-    if (by_mc() && spec_.dimension == 3)
-      throw InputError("method", method_, "walks in the plane; flux in space is by transport");
     keys.read(spec_.dimension);
     scene_ = with_dimension(make_scene(keys, spec_), spec_);
+    if (by_mc() && spec_.dimension == 3)
+      throw InputError("dimension", 3,
+                       "flux in space is by transport, which takes a tolerance; leave out "
+                       "method = mc, samples and seconds");
     job_ = made_job();
     inputs_ = inputs_text(*scene_) + inputs_text(keys);
   }

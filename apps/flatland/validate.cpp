@@ -296,7 +296,7 @@ Refer by_transport(const Keys& keys, MethodSettings& methods, const SceneSpec& s
                      shifts.empty()
                          ? without_change(transport_estimation(scene, reversed, tolerance))
                          : transport_frequencies(scene, reversed, shifts, tolerance),
-                     both_batches(), tolerance};
+                     both_batches(tolerance), tolerance};
   };
 }
 

@@ -80,8 +80,8 @@ void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec&
   settings.tolerance = std::min(keys.read(settings.tolerance), std::max(asked, least_tolerance));
 }
 
-StopRule both_batches() {
-  return {.samples = 2, .seconds = {}, .target_error = {}};
+StopRule both_batches(double tolerance) {
+  return {.samples = 2, .seconds = {}, .target_error = tolerance};
 }
 
 void note_rounding(const Scene& scene) {
@@ -110,8 +110,8 @@ void refuse_absurd(const MethodSettings& settings, const Neglected& neglected) {
   if (settings.neglect_k_shift || !(neglected.k_shift > absurd)) return;
   std::ostringstream text;
   text << "neglect_k_shift = false: the scatterers shift the wavenumber by " << neglected.k_shift
-       << " of it, which Monte Carlo and transport neglect; take fewer or weaker ones, method = "
-          "wave, or neglect_k_shift = true";
+       << " of it, which Monte Carlo and transport neglect; take fewer or weaker ones, in a box "
+          "method = wave, or neglect_k_shift = true";
   throw InputError(text.str());
 }
 

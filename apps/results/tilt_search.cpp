@@ -56,7 +56,7 @@ mc::Range pilot_range(const Scene& scene, bool transport, int threads, std::uint
                                      : mc_estimation(scene, reversed, seed);
   RunOptions options;
   if (transport)
-    options.stop = both_batches();
+    options.stop = both_batches(tolerance);
   else
     options.stop.samples = paths;
   options.threads = threads;

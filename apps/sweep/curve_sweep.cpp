@@ -161,7 +161,7 @@ Estimation CurveSweep::estimation(std::size_t run, const Scene& scene) const {
 }
 
 StopRule CurveSweep::stop(std::size_t run) const {
-  if (method(run) == "transport") return both_batches();
+  if (method(run) == "transport") return both_batches(methods.tolerance);
   return method(run) == "wave" ? wave_stop_ : mc_stop_;
 }
 

@@ -420,10 +420,13 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
               << " MB of sums that extend it (--keep_state)";
   std::cout << '\n';
   if (converged_) return ExitStatus::done;
+  const auto is_deterministic = [](const PlannedRun& run) { return run.job.one_by_one; };
   if (!reached)
-    std::cout << (blind_ ? "not converged: no error can be taken from equal batches"
-                         : "stopped before the target error was reached")
-              << "; --resume goes on\n";
+    std::cout
+        << (std::ranges::all_of(runs_, is_deterministic)
+                ? "not converged: the error is more than the tolerance\n"
+            : blind_ ? "not converged: no error can be taken from equal batches; --resume goes on\n"
+                     : "stopped before the target error was reached; --resume goes on\n");
   return ExitStatus::error_not_reached;
 }
 

@@ -52,7 +52,15 @@ Refined by_parameter(Refined all, double unit) {
   return all;
 }
 
-BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve) {
+double worst_difference(const Refined& refined, const std::vector<double>& scales) {
+  double worst = 0;
+  for (std::size_t i = 0; i < scales.size(); ++i)
+    if (scales[i] > 0) worst = std::max(worst, std::abs(refined.difference[i]) / scales[i]);
+  return worst;
+}
+
+BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve,
+                     const Scales& scales) {
   struct Solution {
     std::once_flag once;
     Refined refined;
@@ -68,8 +76,9 @@ BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve) {
     for (std::size_t e = 0; e < sums.size(); ++e)
       sums[e] += solution->refined.value[e] + sign * solution->refined.difference[e];
   };
-  job.relative_error = [](const GroupedSums& sums) {
-    return relative_error(jackknife(sums, sample_mean));
+  job.relative_error = [scales](const GroupedSums& sums) {
+    const Estimate all = jackknife(sums, sample_mean);
+    return worst_difference({all.value, {all.error.begin(), all.error.end()}}, scales(all.value));
   };
   return job;
 }

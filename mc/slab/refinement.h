@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,12 @@ struct Refined {
   void append(const Refined& other);
 };
 
+/// What the tolerance of each value is relative to, where values are those of one solution.
+using Scales = std::function<std::vector<double>(std::span<const Complex> values)>;
+
+/// The largest difference over its scale; 0 where a scale is 0.
+double worst_difference(const Refined& refined, const std::vector<double>& scales);
+
 /// What the tolerance of each entry is relative to: its value, or the root of its two intensities
 /// (or that which there is) where that is more.
 std::vector<double> scales(const std::vector<Entry>& entries, std::span<const Complex> values);
@@ -47,8 +54,9 @@ Refined by_parameter(Refined all, double unit);
 
 /// A solution as a job of two batches, the values plus and minus their difference: what the
 /// statistics of batches call the standard error of any function of them is its difference then.
-/// Solved when the first batch runs.
-BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve);
+/// Solved when the first batch runs. The relative error of the job is the worst of any value, which
+/// is more than the tolerance where that is not reached.
+BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve, const Scales& scales);
 
 extern const DatasetTable numerical_table;
 /// Says of a result, or of a group of it, that its errors are such differences.

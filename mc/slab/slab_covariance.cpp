@@ -189,6 +189,7 @@ class CovarianceRefiner {
     std::vector<Complex> value;
     bool done = false, near = false;  ///< near: the last step came close to the tolerance
     bool moved = false;               ///< to a resolution at which it has not been solved
+    double imbalance = 0;             ///< of what lights scatter on the ordinates, relative
   };
 
   /// Paths of two scatterings have a closed form in the plane.
@@ -250,10 +251,32 @@ class CovarianceRefiner {
     if (part.moved) part.coarse = solved(part.group, part.at);
     part.finer = solved(part.group, part.at.finer_order());
     part.value = part.finer.value;
+    part.imbalance = imbalance(part.group, part.at.finer_order().order);
     if (!Geometry::refines_modes) return;
     part.wider = solved(part.group, part.at.finer_modes());
     for (std::size_t i = 0; i < part.value.size(); ++i)
       part.value[i] += part.wider.value[i] - part.coarse.value[i];
+  }
+
+  /// By how much the power that ordinates receive of light, or of a view turned round, that is
+  /// scattered once differs from what is scattered, relative; of laws with a sharp peak, which
+  /// ordinates may not resolve.
+  double imbalance(const Group& group, int order) const {
+    double worst = 0;
+    for (const auto& ordinates : grids_.at({group.foci, order})->layers()) {
+      if (!ordinates.law().has_sharp_peak()) continue;
+      for (const auto* pairs : {&group.lights, &group.views})
+        for (const auto& pair : *pairs) {
+          const auto fed = Geometry::template fed<Number>(ordinates, group.momentum, 0,
+                                                          {{pair.first, pair.first}});
+          const Rows both = value_of(fed.down) + value_of(fed.up);
+          const double power =
+              Geometry::all_directions() *
+              (both.leftCols(ordinates.root().size()).real() * ordinates.root())(0);
+          worst = std::max(worst, std::abs(power / value_of(ordinates.albedo()) - 1));
+        }
+    }
+    return worst;
   }
 
   /// Of two scatterings and more, or where those of two are apart, of three.
@@ -359,10 +382,16 @@ class CovarianceRefiner {
     return entries;
   }
 
+  /// Of sharp peaks also what their imbalance makes of each entry.
   std::vector<Complex> difference() const {
     auto fine = sum(&Part::value), coarse = few_;
-    for (const Part& part : parts_) add(coarse, part.group, part.coarse.value);
-    for (std::size_t e = 0; e < fine.size(); ++e) fine[e] -= coarse[e];
+    const auto scale = scales_with_slopes(request_.entries, fine);
+    double lost = 0;
+    for (const Part& part : parts_) {
+      add(coarse, part.group, part.coarse.value);
+      lost = std::max(lost, part.imbalance);
+    }
+    for (std::size_t e = 0; e < fine.size(); ++e) fine[e] += lost * scale[e] - coarse[e];
     return fine;
   }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "core/numbers/blas.h"
@@ -21,6 +22,13 @@ namespace {
 
 using std::numbers::pi;
 
+/// Whether a light goes into directions of an interval; of one along its end, a half does.
+double share_between(double light, double from, double to) {
+  constexpr double rounding = 1e-12;
+  if (std::abs(light - from) < rounding || std::abs(light - to) < rounding) return 0.5;
+  return from < light && light < to ? 1 : 0;
+}
+
 /// Of a slab in the plane: power that leaves through a face per ordinate, over its weight and the
 /// power that enters, of directions with sin > 0, and of their mirror images.
 class PlaneExits {
@@ -31,6 +39,8 @@ class PlaneExits {
   PlaneExits(const Discrete& discrete, double light)
       : grid_(discrete.grid()), light_(light), reflected_(grid_.size()), transmitted_(reflected_) {}
 
+  /// Along the light itself.
+  void add_straight(double share) { straight_ = share; }
   /// What leaves in a function of direction: 0 even, 1 odd.
   void add(int function, const LayerResponseOf<double>& leaving) {
     reflected_.add(function, leaving.up);
@@ -42,7 +52,8 @@ class PlaneExits {
   double within(double from, double to) const {
     return quadrant(transmitted_.right, from, to) + quadrant(transmitted_.left, -to, -from) +
            quadrant(reflected_.right, pi - to, pi - from) +
-           quadrant(reflected_.left, from + pi, to + pi);
+           quadrant(reflected_.left, from + pi, to + pi) +
+           straight_ * share_between(light_, from, to);
   }
 
  private:
@@ -68,7 +79,7 @@ class PlaneExits {
   }
 
   const AngularGrid& grid_;
-  double light_;
+  double light_, straight_ = 0;
   Face reflected_, transmitted_;
 };
 
@@ -86,49 +97,110 @@ class SpaceExits {
 
   SpaceExits(const Discrete& discrete, double light)
       : grid_(discrete.grid()),
+        light_(std::abs(light)),
         power_(std::sqrt(2 * pi) * discrete.root() / std::cos(light)),
         per_radian_(power_.array() * grid_.angle().array().sin() * grid_.cosine().array() /
                     discrete.root().array().square()) {}
 
+  /// Along the light itself.
+  void add_straight(double share) { straight_ = share; }
   void add(int, const LayerResponseOf<double>& leaving) {
     up_ = leaving.up.row(0).real();
     down_ = leaving.down.row(0).real();
   }
   double reflected() const { return sum_of_products(up_, power_); }
-  double transmitted() const { return sum_of_products(down_, power_); }
+  double transmitted() const { return sum_of_products(down_, power_) + straight_; }
   /// Exit angles, 0 <= from < to <= pi.
   double within(double from, double to) const {
     const auto radiance = [this](const Eigen::VectorXd& exit) -> Eigen::VectorXd {
       return exit.cwiseProduct(per_radian_);
     };
+    // A light along the axis has no directions on the other side of the first interval's end.
+    const double along = light_ == 0 ? (from == 0 ? 1 : 0) : share_between(light_, from, to);
     return sum_of_products(grid_.interval_integrals(from, to), radiance(down_)) +
-           sum_of_products(grid_.interval_integrals(pi - to, pi - from), radiance(up_));
+           sum_of_products(grid_.interval_integrals(pi - to, pi - from), radiance(up_)) +
+           straight_ * along;
   }
 
  private:
   const AngularGrid& grid_;
+  double light_, straight_ = 0;
   Eigen::VectorXd power_, per_radian_, up_, down_;
 };
 
-/// Shares of one light as the sums of a FluxJob, what is absorbed left out.
+/// A beam that crosses layers, less what it loses on the way but for what their peaks scatter.
+struct Beam {
+  double transmitted = 1, unscattered = 1, absorbed = 0;  ///< shares
+  double thickness = 0;  ///< the optical depth of the layers, by the same extinction
+};
+
+template <typename Geometry>
+Beam through_layers(const SlabOf<Geometry, double>& slab, double light) {
+  Beam beam;
+  for (const auto& layer : slab.layers) {
+    const double path = slab.optical_depth(layer) / std::cos(light),
+                 turned = 1 - layer.albedo * layer.law.peak();
+    beam.absorbed -= beam.transmitted * std::expm1(-path * turned) * (1 - layer.albedo) / turned;
+    beam.transmitted *= std::exp(-path * turned);
+    beam.thickness += slab.optical_depth(layer) * turned;
+    beam.unscattered *= std::exp(-path);
+  }
+  return beam;
+}
+
+/// What a beam scatters in each layer, and a view that collects all that radiance loses by
+/// absorption.
+template <typename Geometry>
+std::vector<EndWavesOf<double>> flux_ends(const SlabOf<Geometry, double>& slab,
+                                          const DiscreteSlabOf<Geometry, double>& discrete,
+                                          double light) {
+  const Eigen::Index n = discrete.grid().size(), functions = Geometry::flux_modes + 1;
+  std::vector<EndWavesOf<double>> ends;
+  for (std::size_t l = 0; l < slab.layers.size(); ++l) {
+    const auto& ordinates = discrete.layers()[l];
+    const double extinction = 1 - ordinates.not_turned();
+    const Eigen::VectorXd lost = (1 - ordinates.albedo()) * ordinates.all_directions();
+    Rows down(1, functions * n), up = down, absorbed = Rows::Zero(1, functions * n);
+    for (int m = 0; m < functions; ++m) {
+      const auto [forward, backward] = ordinates.of_beam(light, m);
+      down.middleCols(m * n, n) = forward.transpose();
+      up.middleCols(m * n, n) = backward.transpose();
+      absorbed.middleCols(m * n, n).real() = lost.transpose();
+    }
+    ends.push_back(
+        {{{-extinction / std::cos(light)}, {0}, down, up}, {{0}, {0}, absorbed, absorbed}});
+  }
+  return ends;
+}
+
+/// Shares of one light as the sums of a FluxJob.
 struct FluxSolution {
   std::vector<Complex> shares;
   int ordinates;
 };
 
 template <typename Geometry, typename Exits>
-FluxSolution solved(const SlabOf<Geometry, double>& slab, double light, std::size_t bins,
-                    int order) {
-  const typename Exits::Discrete discrete(slab, light_foci({light, light}, slab.width()), order);
-  const auto direction = Geometry::direction(light);
-  const DirectionModesOf<Geometry, double> modes(slab, discrete, Geometry::flux_modes, {},
-                                                 {{direction, direction}}, {});
-  Exits exits(discrete, light);
-  for (const auto& part : modes.parts())
-    if (const auto layers = modes.layers(part); !layers.empty())
-      exits.add(part.functions.front(), response_of(layers));
+FluxSolution solved(SlabOf<Geometry, double> slab, double light, std::size_t bins, int order) {
+  for (auto& layer : slab.layers) layer.law = layer.law.truncated(kept_moments(order));
+  const Beam beam = through_layers(slab, light);
+  auto foci = light_foci({light, light}, slab.width());
+  // What a thin slab scatters changes where its path along a direction is a mean free path.
+  foci.push_back({pi / 2, beam.thickness});
+  const typename Exits::Discrete discrete(slab, foci, order);
+  const DirectionModesOf<Geometry, double> modes(slab, discrete, Geometry::flux_modes,
+                                                 flux_ends(slab, discrete, light));
   FluxSolution found{std::vector<Complex>(flux_shares + bins),
                      static_cast<int>(2 * discrete.grid().size())};
+  found.shares[absorbed] = beam.absorbed;
+  Exits exits(discrete, light);
+  exits.add_straight(beam.transmitted - beam.unscattered);
+  for (const auto& part : modes.parts())
+    if (const auto layers = modes.layers(part); !layers.empty()) {
+      const auto leaving = response_of(layers);
+      exits.add(part.functions.front(), leaving);
+      if (part.functions.front() == 0)
+        found.shares[absorbed] += leaving.collected(0, 0).real() / std::cos(light);
+    }
   found.shares[reflected] = exits.reflected();
   found.shares[transmitted] = exits.transmitted();
   const double width = Exits::angles / static_cast<double>(bins);
@@ -139,42 +211,37 @@ FluxSolution solved(const SlabOf<Geometry, double>& slab, double light, std::siz
   return found;
 }
 
-/// Of what leaves through a face relative to itself; of bins relative to all that leaves, and a
-/// hundredth of it, for peaks of large disks would take a hundred times as long.
-double worst_difference(const Refined& shares) {
-  double worst = 0, leaving = 0;
-  for (const FluxShare share : {reflected, transmitted}) {
-    worst = std::max(worst, std::abs(shares.difference[share] / shares.value[share]));
-    leaving += shares.value[share].real();
-  }
-  for (std::size_t i = flux_shares; i < shares.value.size(); ++i)
-    worst = std::max(worst, std::abs(shares.difference[i]) / leaving / 100);
-  return worst;
+/// What the tolerance of each share of one light is relative to: itself, and for bins all that
+/// leaves, a hundred times, for peaks of large disks would take a hundred times as long.
+std::vector<double> scales_of_shares(std::span<const Complex> shares) {
+  constexpr double least = 1e-290;  // where digits are lost
+  std::vector<double> scale;
+  for (const Complex share : shares.first(flux_shares))
+    scale.push_back(std::max(std::abs(share), least));
+  const double leaving = scale[reflected] + scale[transmitted];
+  scale.resize(shares.size(), 100 * leaving);
+  return scale;
 }
 
-/// Of one light. solve: of panels with so many nodes.
+/// Of one light. solve: of panels with so many nodes, at most `most_order` and what follows it.
 template <typename Solve>
-Refined refined_shares(const Scene& scene, double light, const Refinement& refinement, int order,
+Refined refined_shares(const Refinement& refinement, int order, int most_order,
                        const Solve& solve) {
-  const auto solved_with_absorbed = [&] {
-    FluxSolution found = solve(order);
-    auto& shares = found.shares;
-    if (scene.medium.albedo < 1)
-      shares[absorbed] =
-          1 - direct_transmittance(scene, light) - shares[reflected] - shares[transmitted];
-    return found;
-  };
-  FluxSolution before = solved_with_absorbed();
+  FluxSolution before = solve(order);
   Refined found{before.shares, std::vector<Complex>(before.shares.size()), before.ordinates};
-  for (double last = 1, worst = 1;
-       worst > refinement.tolerance || last > 100 * refinement.tolerance;) {
+  auto last = std::vector<double>(before.shares.size(), 1);
+  for (double worst = 1; worst > refinement.tolerance;) {
     stop_if_interrupted();
-    if (4 * found.ordinates > 3 * refinement.most_ordinates) break;
+    if (4 * found.ordinates > 3 * refinement.most_ordinates || order >= most_order) break;
     order = Refinement::next_order(order);
-    FluxSolution finer = solved_with_absorbed();
+    FluxSolution finer = solve(order);
     found = {finer.shares, finer.shares, finer.ordinates};
-    for (std::size_t i = 0; i < before.shares.size(); ++i) found.difference[i] -= before.shares[i];
-    last = std::exchange(worst, worst_difference(found));
+    for (std::size_t i = 0; i < before.shares.size(); ++i) {
+      const double change = std::abs(finer.shares[i] - before.shares[i]);
+      // One small difference may be chance: the one before must have been small too.
+      found.difference[i] = std::max(change, std::exchange(last[i], change) / 10);
+    }
+    worst = worst_difference(found, scales_of_shares(found.value));
     before = std::move(finer);
   }
   return found;
@@ -185,10 +252,14 @@ Refined refined_flux(const Scene& scene, std::size_t bins, const Refinement& ref
   blas_single_thread();
   const auto slab = slab_of<Geometry>(scene);
   const int order = std::max(refinement.first_order(), slab.least_order());
+  // Beyond, the moments of a sharp peak are refined no more.
+  const bool sharp =
+      std::ranges::any_of(slab.layers, [](const auto& one) { return one.law.has_sharp_peak(); });
+  const int most_order = sharp ? most_order_of_moments : refinement.most_ordinates;
   const auto lights = scene.request.lights.angles();
   std::vector<Refined> each(lights.size());
   parallel_for(lights.size(), [&](std::size_t i) {
-    each[i] = refined_shares(scene, lights[i], refinement, order, [&](int nodes) {
+    each[i] = refined_shares(refinement, order, most_order, [&](int nodes) {
       return solved<Geometry, Exits>(slab, lights[i], bins, nodes);
     });
   });
@@ -224,8 +295,17 @@ FluxJob slab_flux_job(const Scene& scene, std::size_t angle_bins, const Refineme
   job.plan =
       std::string("intensity alone in ") + (in_space ? "space" : "the plane") + ", by doubling";
   job.angles = in_space ? SpaceExits::angles : PlaneExits::angles;
-  job.batches = two_batches(job.lights * (flux_shares + angle_bins),
-                            [=] { return slab_flux(scene, angle_bins, refinement); });
+  const std::size_t shares = flux_shares + angle_bins;
+  job.batches = two_batches(
+      job.lights * shares, [=] { return slab_flux(scene, angle_bins, refinement); },
+      [=](std::span<const Complex> all) {
+        std::vector<double> scales;
+        for (std::size_t first = 0; first < all.size(); first += shares) {
+          const auto own = scales_of_shares(all.subspan(first, shares));
+          scales.insert(scales.end(), own.begin(), own.end());
+        }
+        return scales;
+      });
   return job;
 }
 

@@ -1,10 +1,14 @@
 #include "mc/slab/slab_jobs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <span>
 
 #include "core/error.h"
 #include "flatland/media/layers.h"
+#include "mc/slab/adding/plane.h"
+#include "mc/slab/adding/space.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/theory/memory_effect.h"
 
@@ -20,10 +24,26 @@ void require_layers(const Scene& scene) {
     throw InputError("layers: by transport take plane waves and far views");
 }
 
-/// Solutions of several quantities, [quantity][entry], of which the first is the covariance.
-PathJob two_batch_job(const Scene& scene, std::size_t quantities,
+/// Pairs of lights are scattered by the phase function itself, whose peak ordinates must resolve.
+template <typename Geometry>
+void require_resolved_peaks(const Scene& scene, double least_width) {
+  for (const auto& layer : slab_of<Geometry>(scene).layers)
+    if (layer.law.has_sharp_peak() && layer.law.width() < least_width)
+      throw InputError("method", "transport",
+                       "does not resolve so narrow a forward or backward peak of the phase "
+                       "function; take mc");
+}
+
+/// Solutions of several quantities, [quantity][entry], of which the first is the covariance. units:
+/// of derivatives, per quantity: what they are multiplied by to be compared with the entries; 0 of
+/// covariances, which are compared with themselves.
+PathJob two_batch_job(const Scene& scene, const std::vector<double>& units,
                       const std::function<Refined()>& solve) {
   require_layers(scene);
+  if (scene.medium.mu_s > 0)
+    scene.medium.dimension == 3 ? require_resolved_peaks<SpaceGeometry>(scene, 1e-3)
+                                : require_resolved_peaks<PlaneGeometry>(scene, 1e-4);
+  const std::size_t quantities = units.size();
   const std::size_t entries = scene.request.entries.size();
   PathJob job;
   job.entries = entries;
@@ -31,7 +51,19 @@ PathJob two_batch_job(const Scene& scene, std::size_t quantities,
   job.field.covariance = [entries](double samples, std::span<const Complex> sums) {
     return sample_mean(samples, sums.first(entries));
   };
-  job.field.batches = two_batches(quantities * entries, solve);
+  const auto list = scene.request.entries;
+  job.field.batches =
+      two_batches(quantities * entries, solve, [=](std::span<const Complex> values) {
+        const auto of_entries = scales(list, values.first(entries));
+        std::vector<double> all;
+        for (std::size_t quantity = 0; quantity < quantities; ++quantity) {
+          auto own = scales(list, values.subspan(quantity * entries, entries));
+          for (std::size_t e = 0; e < entries && units[quantity] > 0; ++e)
+            own[e] = std::max(own[e], of_entries[e] / units[quantity]);
+          all.insert(all.end(), own.begin(), own.end());
+        }
+        return all;
+      });
   return job;
 }
 
@@ -70,12 +102,13 @@ std::vector<BulkParameter> slab_parameters(const Scene& scene) {
 }  // namespace
 
 FieldJob slab_covariance_job(const Scene& scene, bool reversed, const Refinement& refinement) {
-  return two_batch_job(scene, 1, [=] { return refined_range(scene, reversed, refinement); }).field;
+  return two_batch_job(scene, {0}, [=] { return refined_range(scene, reversed, refinement); })
+      .field;
 }
 
 PathJob slab_change_job(const Scene& scene, bool reversed, const Refinement& refinement,
                         const std::vector<FieldChange>& changes) {
-  return two_batch_job(scene, 1 + changes.size(), [=] {
+  return two_batch_job(scene, std::vector<double>(1 + changes.size()), [=] {
     Refined all = slab_covariance(scene, reversed, refinement);
     for (const FieldChange& change : changes)
       all.append(slab_covariance(scene, reversed, refinement, change));
@@ -95,7 +128,9 @@ GradientJob slab_gradient_job(const Scene& scene, bool reversed, const Refinemen
     }
     return all;
   };
-  return gradient_job(two_batch_job(scene, 1 + parameters.size(), solve), parameters, scene);
+  std::vector<double> units{0};
+  for (const BulkParameter parameter : parameters) units.push_back(unit_of(scene, parameter));
+  return gradient_job(two_batch_job(scene, units, solve), parameters, scene);
 }
 
 }  // namespace flatspeckle::mc

@@ -8,6 +8,7 @@
 #include "core/algebra/dual.h"
 #include "flatland/scene/scene.h"
 #include "mc/jobs/bulk_parameter.h"
+#include "mc/slab/adding/phase_moments.h"
 
 namespace flatspeckle::mc {
 
@@ -31,7 +32,9 @@ class SlopeOf {
 
   /// Does not know of the parameter.
   explicit SlopeOf(const Law& law)
-      : law_(law), moments_{law.moments(), std::vector<double>(law.moments().size())} {}
+      : law_(law),
+        moments_{law.moments(), std::vector<double>(law.moments().size())},
+        peak_{law.peak(), 0} {}
 
   SlopeOf(const Law& law, std::vector<Neighbour> neighbours) : SlopeOf(law) {
     neighbours_ = std::move(neighbours);
@@ -40,6 +43,7 @@ class SlopeOf {
       moments.resize(std::max(moments.size(), near.moments().size()));
       for (std::size_t m = 0; m < near.moments().size(); ++m)
         moments[m] += weight * near.moments()[m];
+      peak_.slope += weight * near.peak();
     }
   }
 
@@ -52,7 +56,21 @@ class SlopeOf {
     moments.assign(law.moments().size() + 1, 0);
     for (std::size_t m = 1; m < moments.size(); ++m)
       moments[m] = static_cast<double>(m) * std::pow(g, static_cast<double>(m - 1));
+    const KeptMoments& kept = law.kept();
+    if (kept.tail == 0) return slope;
+    if (kept.peak > 0) slope.peak_.slope = kept.peak_degree * std::pow(g, kept.peak_degree - 1);
+    moments.pop_back();
+    for (std::size_t m = 0; m < moments.size(); ++m)
+      moments[m] = kept.less_peak(m, moments[m], slope.peak_.slope);
     return slope;
+  }
+
+  SlopeOf truncated(int count) const {
+    const Law law = law_.truncated(count);
+    if (by_g_) return by_g(law, g_);
+    std::vector<Neighbour> near;
+    for (const auto& [weight, own] : neighbours_) near.push_back({weight, own.truncated(count)});
+    return SlopeOf(law, std::move(near));
   }
 
   /// turns: as those of the law's own pair().
@@ -65,6 +83,8 @@ class SlopeOf {
     return pair;
   }
   const Dual<std::vector<double>>& moments() const { return moments_; }
+  const Dual<double>& peak() const { return peak_; }
+  bool has_sharp_peak() const { return law_.has_sharp_peak(); }
   double width() const { return law_.width(); }
   int least_order() const { return law_.least_order(); }
 
@@ -74,6 +94,7 @@ class SlopeOf {
   double g_ = 0;
   std::vector<Neighbour> neighbours_;
   Dual<std::vector<double>> moments_;
+  Dual<double> peak_;
 };
 
 /// A scattering law of calculations with a Number.
@@ -101,6 +122,20 @@ inline Scatterer with_size(Scatterer scatterer, BulkParameter parameter, double 
   return scatterer;
 }
 
+/// The unit of derivatives by a parameter.
+inline double unit_of(const Scene& scene, BulkParameter parameter) {
+  switch (parameter) {
+    case BulkParameter::mu_t:
+      return scene.medium.mu_t;
+    case BulkParameter::albedo:
+      return scene.medium.albedo;
+    case BulkParameter::g:
+      return 1;
+    default:
+      return scatterer_unit(scene.scatterer, parameter);
+  }
+}
+
 /// By what describes the scatterers as a bulk: mu_t, albedo, g. By the logarithm of a scatterer's
 /// radius or index, by differences of fourth order, to 1e-10 or so. law: the scene's.
 template <typename Geometry>
@@ -109,9 +144,10 @@ BulkSlopeOf<typename Geometry::Law> bulk_slope(const Scene& scene,
                                                BulkParameter parameter) {
   using Slope = SlopeOf<typename Geometry::Law>;
   const BulkMedium& bulk = scene.medium;
-  if (parameter == BulkParameter::mu_t) return {bulk.mu_t, 1, 0, Slope(law)};
-  if (parameter == BulkParameter::albedo) return {bulk.albedo, 0, bulk.albedo, Slope(law)};
-  if (parameter == BulkParameter::g) return {1, 0, 0, Slope::by_g(law, bulk.g)};
+  const double unit = unit_of(scene, parameter);
+  if (parameter == BulkParameter::mu_t) return {unit, 1, 0, Slope(law)};
+  if (parameter == BulkParameter::albedo) return {unit, 0, bulk.albedo, Slope(law)};
+  if (parameter == BulkParameter::g) return {unit, 0, 0, Slope::by_g(law, bulk.g)};
   const Scatterer& scatterer = scene.scatterer;
   const double size = scene.k * scatterer.radius * std::abs(scatterer.index),
                step = 1e-3 / std::max(1.0, size);
@@ -125,8 +161,7 @@ BulkSlopeOf<typename Geometry::Law> bulk_slope(const Scene& scene,
     albedo += weight * near.medium.albedo;
     neighbours.push_back({weight, Geometry::law(near)});
   }
-  return {scatterer_unit(scatterer, parameter), log_mu_t, albedo,
-          Slope(law, std::move(neighbours))};
+  return {unit, log_mu_t, albedo, Slope(law, std::move(neighbours))};
 }
 
 }  // namespace flatspeckle::mc

@@ -107,11 +107,16 @@ bool DirectionModesOf<Geometry, Number>::is_dark(const Part& part,
 }
 
 template <typename Geometry, typename Number>
+Number DirectionModesOf<Geometry, Number>::extinction(std::size_t layer) const {
+  return slab_.departure.extinction(slab_.k / slab_.layers[layer].mu_t) -
+         discrete_.layers()[layer].not_turned();
+}
+
+template <typename Geometry, typename Number>
 TransportOperatorOf<Number> DirectionModesOf<Geometry, Number>::transport(std::size_t layer,
                                                                           const Part& part) const {
   const AngularGrid& grid = discrete_.grid();
-  const double extinction =
-      std::abs(value_of(slab_.departure.extinction(slab_.k / slab_.layers[layer].mu_t)));
+  const double extinction = std::abs(value_of(this->extinction(layer)));
   return {block(layer, part, &Scattering::difference), block(layer, part, &Scattering::sum),
           part.even * grid.size(),
           (extinction + std::abs(q(layer))) /
@@ -143,8 +148,7 @@ MatrixOf<Number> DirectionModesOf<Geometry, Number>::block(
     return all;
   });
   const Departure<Number>& departure = slab_.departure;
-  return times(departure.extinction(slab_.k / slab_.layers[layer].mu_t), extinction) - scattered +
-         times(departure.length, across);
+  return times(this->extinction(layer), extinction) - scattered + times(departure.length, across);
 }
 
 template <typename Geometry, typename Number>

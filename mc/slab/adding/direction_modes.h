@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "mc/slab/adding/layer.h"
@@ -24,6 +25,11 @@ class DirectionModesOf {
   DirectionModesOf(const Slab& slab, const Discrete& discrete, int highest,
                    const Momentum& momentum, const Pairs& lights, const Pairs& views);
 
+  /// Without transverse momentum: of lights and views of all functions, per layer.
+  DirectionModesOf(const Slab& slab, const Discrete& discrete, int highest,
+                   std::vector<EndWavesOf<Number>> ends)
+      : slab_(slab), discrete_(discrete), highest_(highest), q_(0), ends_(std::move(ends)) {}
+
   /// Functions that no other ones are coupled to, those of even modes first.
   struct Part {
     std::vector<int> functions;
@@ -40,6 +46,8 @@ class DirectionModesOf {
   using Scattering = typename Discrete::Ordinates::Scattering;
   int mode(int function) const { return function > highest_ ? function - highest_ : function; }
   double q(std::size_t layer) const;
+  /// Per mu_t of the layer, without what its peak scatters.
+  Number extinction(std::size_t layer) const;
   EndWavesOf<Number> ends(std::size_t layer, const Momentum& momentum, const Pairs& lights,
                           const Pairs& views) const;
   TransportOperatorOf<Number> transport(std::size_t layer, const Part& part) const;

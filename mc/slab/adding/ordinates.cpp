@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mc/slab/adding/plane.h"
 #include "mc/slab/adding/space.h"
@@ -37,10 +38,11 @@ Dual<Matrix> gram(const Matrix& integrals, const Dual<std::vector<double>>& mome
 
 template <typename Geometry, typename Real>
 OrdinatesOf<Geometry, Real>::OrdinatesOf(const std::vector<Focus>& foci, int order, double fine,
-                                         const Law& law, Real albedo)
+                                         Law law, Real albedo)
     : grid_(foci, order, fine),
-      law_(law),
+      law_(std::move(law)),
       albedo_(albedo),
+      fine_(fine),
       root_(Geometry::weights(grid_).cwiseProduct(grid_.cosine()).unaryExpr([](double square) {
         return std::sqrt(square);
       })) {}
@@ -53,13 +55,34 @@ auto OrdinatesOf<Geometry, Real>::of_mode(int m) const -> const Scattering& {
   return of_mode_[static_cast<std::size_t>(m)];
 }
 
+template <typename Geometry, typename Real>
+Matrix OrdinatesOf<Geometry, Real>::integrals(int m) const {
+  const int last = degree(law_.moments());
+  return grid_.integrals_of(std::max(last - m + 1, 0), [&](const Eigen::VectorXd& angles) {
+    return Geometry::functions(angles, m, last);
+  });
+}
+
+template <typename Geometry, typename Real>
+std::array<Eigen::VectorXcd, 2> OrdinatesOf<Geometry, Real>::of_beam(double light, int m) const {
+  const Matrix integrals = this->integrals(m);
+  const auto shares = Geometry::beam(light, m, degree(law_.moments()));
+  Eigen::VectorXcd forward = Eigen::VectorXcd::Zero(grid_.size()), backward = forward;
+  for (Eigen::Index i = 0; i < integrals.cols(); ++i) {
+    const auto l = static_cast<std::size_t>(i);
+    const double moment = value_of(law_.moments())[l + static_cast<std::size_t>(m)];
+    const Eigen::VectorXcd part = (moment * shares[l]) * integrals.col(i);
+    forward += part;
+    backward += i % 2 == 0 ? part : Eigen::VectorXcd(-part);
+  }
+  const Eigen::VectorXd scale = value_of(albedo_) * root_.cwiseInverse();
+  return {scale.asDiagonal() * forward, scale.asDiagonal() * backward};
+}
+
 /// Backwards, theta -> pi - theta, functions of degree l have the sign (-1)^(l + m).
 template <typename Geometry, typename Real>
 auto OrdinatesOf<Geometry, Real>::scattering(int m) const -> Scattering {
-  const int last = degree(law_.moments());
-  const Matrix integrals = grid_.integrals_of(
-      std::max(last - m + 1, 0),
-      [&](const Eigen::VectorXd& angles) { return Geometry::functions(angles, m, last); });
+  const Matrix integrals = this->integrals(m);
   const Eigen::VectorXd scale = root_.cwiseInverse();
   const auto scaled = [&](const Matrix& a) -> Matrix {
     return scale.asDiagonal() * a * scale.asDiagonal();

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <deque>
 #include <mutex>
 #include <vector>
 
 #include "core/algebra/dual_dense.h"
 #include "mc/slab/adding/angular_grid.h"
+#include "mc/slab/adding/phase_moments.h"
 #include "mc/slab/adding/slab.h"
 
 namespace flatspeckle::mc {
@@ -21,8 +23,8 @@ class OrdinatesOf {
  public:
   using Law = LawOf<Geometry, Real>;
 
-  /// fine: the angle within which phase functions change. The law must outlive it.
-  OrdinatesOf(const std::vector<Focus>& foci, int order, double fine, const Law& law, Real albedo);
+  /// fine: the angle within which phase functions change.
+  OrdinatesOf(const std::vector<Focus>& foci, int order, double fine, Law law, Real albedo);
 
   struct Scattering {
     MatrixOf<Real> difference, sum;  ///< forward minus, plus backward, times the albedo
@@ -33,15 +35,27 @@ class OrdinatesOf {
   const AngularGrid& grid() const { return grid_; }
   const Law& law() const { return law_; }
   const Real& albedo() const { return albedo_; }
+  /// The angle within which phase functions change.
+  double fine() const { return fine_; }
+  /// What the law's peak scatters, which goes on as if it were not scattered.
+  Real not_turned() const { return albedo_ * law_.peak(); }
+  /// What a beam scatters into mode m, down and up, by the moments that are kept.
+  std::array<Eigen::VectorXcd, 2> of_beam(double light, int m) const;
+  /// What the unknowns of mode 0 weigh in the integral of radiance over all directions.
+  Eigen::VectorXd all_directions() const {
+    return Geometry::all_directions() * root_.cwiseQuotient(grid_.cosine());
+  }
   /// sqrt(weight cos(theta)), the weight that of a polynomial over cos(theta).
   const Eigen::VectorXd& root() const { return root_; }
 
  private:
   Scattering scattering(int m) const;
+  Matrix integrals(int m) const;
 
   AngularGrid grid_;
-  const Law& law_;
+  Law law_;
   Real albedo_;
+  double fine_;
   Eigen::VectorXd root_;
   mutable std::mutex making_;
   mutable std::deque<Scattering> of_mode_;
@@ -55,7 +69,10 @@ class DiscreteSlabOf {
 
   DiscreteSlabOf(const SlabOf<Geometry, Number>& slab, const std::vector<Focus>& foci, int order) {
     for (const auto& layer : slab.layers)
-      layers_.emplace_back(foci, order, slab.width(), layer.law, layer.albedo);
+      layers_.emplace_back(
+          foci, order, slab.width(),
+          layer.law.has_sharp_peak() ? layer.law.truncated(kept_moments(order)) : layer.law,
+          layer.albedo);
   }
   const std::deque<Ordinates>& layers() const { return layers_; }
   const AngularGrid& grid() const { return layers_.front().grid(); }

@@ -198,6 +198,16 @@ double PlaneGeometry::weight(int l) {
   return (l == 0 ? 2 : 4) / pi;
 }
 
+std::vector<Complex> PlaneGeometry::beam(double light, int m, int last) {
+  std::vector<Complex> shares;
+  for (int l = m; l <= last; ++l) {
+    const double weight = (l == 0 ? 0.5 : 1) * std::numbers::sqrt2 / pi;
+    shares.push_back(weight *
+                     (m == 0 ? Complex(std::cos(l * light)) : Complex(0, std::sin(l * light))));
+  }
+  return shares;
+}
+
 template <typename Number>
 PairWavesOf<Number> PlaneGeometry::fed(const OrdinatesOf<PlaneGeometry, RealOf<Number>>& ordinates,
                                        Momentum, int, const std::vector<Pair>& pairs) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/numbers/complex.h"
@@ -10,6 +11,7 @@
 #include "mc/slab/adding/bulk_slope.h"
 #include "mc/slab/adding/layer.h"
 #include "mc/slab/adding/pair_wave.h"
+#include "mc/slab/adding/phase_moments.h"
 
 namespace flatspeckle::mc {
 
@@ -37,7 +39,13 @@ class ScatteringLaw {
   /// Of Henyey-Greenstein's function without delay: d log pair / d g.
   double pair_slope(double g, double a, double b, double theta) const;
 
-  const std::vector<double>& moments() const { return moments_; }
+  /// Those that are kept, less the peak of those that are not.
+  const std::vector<double>& moments() const { return moments_.kept().list; }
+  double peak() const { return moments_.kept().peak; }
+  const KeptMoments& kept() const { return moments_.kept(); }
+  bool has_sharp_peak() const { return moments_.kept().is_sharp(); }
+  /// The law whose first `count` moments are kept, with the width of these.
+  ScatteringLaw truncated(int count) const;
   /// The angle within which p changes.
   double width() const { return width_; }
   /// Narrower than what a quadrant's polynomials see.
@@ -47,10 +55,12 @@ class ScatteringLaw {
 
  private:
   void tabulate(const Scene& scene);
+  std::vector<double> first_moments(int count) const;
 
   std::function<double(double)> density_;  ///< of a bulk: p of an angle in [0, pi]
   std::vector<Complex> table_;             ///< of scatterers: A at equal steps over [0, pi]
-  std::vector<double> moments_;
+  std::optional<double> g_;                ///< of Henyey-Greenstein's function
+  PhaseMoments moments_;
   double delay_, width_ = 0;
   int least_order_ = 0;
 };
@@ -138,6 +148,10 @@ struct PlaneGeometry {
   /// Of a moment in the scattering between such functions.
   static double weight(int l);
   static Eigen::VectorXd weights(const AngularGrid& grid) { return grid.weight(); }
+  /// A beam's share in mode m of what it scatters, by degrees m .. last (of_beam()).
+  static std::vector<Complex> beam(double light, int m, int last);
+  /// What radiance in mode 0 weighs in the integral over all directions.
+  static double all_directions() { return std::numbers::sqrt2; }
   /// What pairs scatter into directions down and up, a row each, function by function.
   template <typename Number>
   static PairWavesOf<Number> fed(const OrdinatesOf<PlaneGeometry, RealOf<Number>>& ordinates,

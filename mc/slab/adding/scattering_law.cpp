@@ -29,27 +29,14 @@ std::vector<double> cosine_modes(const std::function<double(double)>& p, int int
   return line;
 }
 
-/// The modes above rounding, normalised; of a table with kinks the first 4096.
-std::vector<double> significant_modes(const std::function<double(double)>& p) {
-  constexpr double rounding = 1e-13;
-  constexpr int most = 4096;
-  for (int intervals = 64;; intervals *= 4) {
-    auto modes = cosine_modes(p, intervals);
-    for (auto mode = modes.rbegin(); mode != modes.rend(); ++mode) *mode /= modes.front();
-    const auto small = [&](double mode) { return std::abs(mode) < rounding; };
-    const auto end = std::find_if_not(modes.rbegin(), modes.rend(), small).base();
-    modes.erase(end, modes.end());
-    if (static_cast<int>(modes.size()) <= intervals / 2) return modes;
-    if (intervals < 4 * most) continue;
-    modes.resize(most);
-    return modes;
-  }
-}
+constexpr int most_cosine_moments = 4096;
 
 }  // namespace
 
 ScatteringLaw::ScatteringLaw(const Scene& scene, double delay) : delay_(delay) {
   const Scatterer& scatterer = scene.scatterer;
+  if (scatterer.kind == Scatterer::Kind::hg) g_ = scatterer.g;
+  if (scatterer.kind == Scatterer::Kind::point) g_ = 0;
   if (scatterer.kind == Scatterer::Kind::hg)
     density_ = [g = scatterer.g](double theta) { return henyey_greenstein(g, theta); };
   else if (scatterer.kind == Scatterer::Kind::point)
@@ -58,22 +45,37 @@ ScatteringLaw::ScatteringLaw(const Scene& scene, double delay) : delay_(delay) {
     density_ = scene.medium.phase.density;
   else
     tabulate(scene);
-  const auto p = [this](double theta) { return std::norm(amplitude(theta)); };
-  moments_ = significant_modes(p);
-  if (delay > 0) {
-    const auto decayed = [&](double theta) { return p(theta) * decay(theta); };
-    const int intervals = 4 * static_cast<int>(moments_.size() + 16);
-    const double share =
-        cosine_modes(decayed, intervals).front() / cosine_modes(p, intervals).front();
-    moments_ = significant_modes(decayed);
-    for (double& mode : moments_) mode *= share;
+  moments_ = {[law = *this](int count) { return law.first_moments(count); }, most_cosine_moments};
+  width_ = moments_.kept().width;
+  if (has_sharp_peak()) {
+    const auto p = [this](double theta) { return std::norm(amplitude(theta)); };
+    width_ = std::min(width_, peak_width(p));
   }
-  constexpr double moments_per_width = 30;  // g^m of Henyey-Greenstein is then 1e-13
-  width_ = std::min(pi, moments_per_width / static_cast<double>(moments_.size()));
-  const auto large = [](double mode) { return std::abs(mode) > 0.01; };
+  const auto large = [](double moment) { return std::abs(moment) > 0.01; };
   const auto lobes =
-      std::find_if(moments_.rbegin(), moments_.rend(), large).base() - moments_.begin();
+      std::find_if(moments().rbegin(), moments().rend(), large).base() - moments().begin();
   if (!is_peaked()) least_order_ = static_cast<int>(std::min<std::ptrdiff_t>(lobes / 2, 16));
+}
+
+std::vector<double> ScatteringLaw::first_moments(int count) const {
+  if (g_ && delay_ == 0) return henyey_greenstein_moments(*g_, count);
+  const auto p = [this](double theta) { return std::norm(amplitude(theta)); };
+  const auto decay = [this](double theta) { return this->decay(theta); };
+  if (density_) return mc::first_moments(2, p, decay, count);
+  int intervals = 64;
+  while (intervals < 2 * count) intervals *= 4;
+  const double all = cosine_modes(p, intervals).front();
+  auto modes = cosine_modes([&](double theta) { return p(theta) * decay(theta); }, intervals);
+  modes.resize(static_cast<std::size_t>(count));
+  for (double& mode : modes) mode /= all;
+  return modes;
+}
+
+ScatteringLaw ScatteringLaw::truncated(int count) const {
+  ScatteringLaw law = *this;
+  law.moments_ = moments_.truncated(count);
+  law.width_ = law.moments_.kept().width;
+  return law;
 }
 
 double ScatteringLaw::pair_slope(double g, double a, double b, double theta) const {

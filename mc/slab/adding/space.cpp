@@ -60,38 +60,7 @@ void set_phase(BulkMedium& medium, const Scatterer& scatterer, const ScattererVa
 
 using std::numbers::pi;
 
-constexpr int moments_per_panel = 4;  // 16 nodes see two periods of P_l to rounding
-
-/// int p P_l over the sphere, l = 0 .. 4 panels - 1.
-std::vector<double> legendre_moments(const std::function<double(double)>& p, int panels) {
-  static const QuadratureRule rule = gauss_legendre(16);
-  std::vector<double> moments(static_cast<std::size_t>(moments_per_panel) * panels);
-  for (int panel = 0; panel < panels; ++panel)
-    for (std::size_t i = 0; i < rule.node.size(); ++i) {
-      const double angle = pi * (panel + rule.node[i]) / panels, cosine = std::cos(angle),
-                   share = 2 * pi * pi / panels * rule.weight[i] * std::sin(angle) * p(cosine);
-      double before = 0, legendre = 1;
-      for (std::size_t l = 0; l < moments.size(); ++l) {
-        moments[l] += share * legendre;
-        const double n = static_cast<double>(l);
-        before = std::exchange(legendre, ((2 * n + 1) * cosine * legendre - n * before) / (n + 1));
-      }
-    }
-  return moments;
-}
-
-std::vector<double> significant_moments(const std::function<double(double)>& p) {
-  constexpr double rounding = 1e-13;
-  constexpr int most_panels = 512;
-  for (int panels = 16;; panels *= 2) {
-    auto moments = legendre_moments(p, panels);
-    const auto small = [&](double m) { return std::abs(m) < rounding * moments.front(); };
-    const auto end = std::find_if_not(moments.rbegin(), moments.rend(), small).base();
-    moments.erase(end, moments.end());
-    const bool all = moments.size() <= static_cast<std::size_t>(moments_per_panel / 2 * panels);
-    if (all || panels == most_panels) return moments;
-  }
-}
+constexpr int most_legendre_moments = 2048;
 
 /// i^m
 Complex power_of_i(int m) {
@@ -156,17 +125,38 @@ Scene in_space(Scene slab, const ScattererValues& values) {
   return slab;
 }
 
+SpaceLaw SpaceGeometry::law(const Scene& scene, double delay) {
+  const auto& density = scene.medium.space_phase.density;
+  if (scene.scatterer.kind != Scatterer::Kind::hg) return SpaceLaw(density, delay);
+  return SpaceLaw(density, delay, [g = scene.scatterer.g](int count) {
+    return henyey_greenstein_moments(g, count);
+  });
+}
+
 Scene SpaceGeometry::with_scatterer(Scene scene, const Scatterer& scatterer) {
   set_spheres(scene.medium, scatterer, scene.k);
   return scene;
 }
 
-SpaceLaw::SpaceLaw(std::function<double(double)> density, double delay)
-    : density_(std::move(density)), total_(significant_moments(density_).front()), delay_(delay) {
-  moments_ = significant_moments(
-      [this](double cosine) { return decay(cosine) * density_(cosine) / total_; });
-  constexpr double moments_per_width = 30;  // g^l of Henyey-Greenstein is then 1e-13
-  width_ = std::min(pi, moments_per_width / static_cast<double>(moments_.size()));
+SpaceLaw::SpaceLaw(std::function<double(double)> density, double delay, FirstMoments moments)
+    : density_(std::move(density)), delay_(delay) {
+  const auto p = [density = density_](double angle) { return density(std::cos(angle)); };
+  if (!moments) total_ = sphere_integral(p);
+  if (!moments || delay > 0)
+    moments = [p, delay](int count) {
+      const auto decay = [=](double angle) { return std::exp(-2 * delay * (1 - std::cos(angle))); };
+      return first_moments(3, p, decay, count);
+    };
+  moments_ = {std::move(moments), most_legendre_moments};
+  width_ = moments_.kept().width;
+  if (has_sharp_peak()) width_ = std::min(width_, peak_width(p));
+}
+
+SpaceLaw SpaceLaw::truncated(int count) const {
+  SpaceLaw law = *this;
+  law.moments_ = moments_.truncated(count);
+  law.width_ = law.moments_.kept().width;
+  return law;
 }
 
 double SpaceLaw::pair_slope(double g, double first, double second) const {
@@ -220,6 +210,14 @@ Matrix SpaceGeometry::functions(const Eigen::VectorXd& angle, int m, int last) {
   return sine.asDiagonal() * associated_legendre(angle, m, last);
 }
 
+std::vector<Complex> SpaceGeometry::beam(double light, int m, int last) {
+  const Matrix values = associated_legendre(Eigen::VectorXd::Constant(1, light), m, last);
+  std::vector<Complex> shares;
+  for (Eigen::Index i = 0; i < values.cols(); ++i)
+    shares.push_back(values(0, i) / std::sqrt(2 * pi));
+  return shares;
+}
+
 Eigen::VectorXd SpaceGeometry::weights(const AngularGrid& grid) {
   return grid.integrals_of(
       1, [](const Eigen::VectorXd& angle) -> Matrix { return angle.array().sin(); });
@@ -234,8 +232,10 @@ PairWavesOf<Number> SpaceGeometry::fed(const OrdinatesOf<SpaceGeometry, RealOf<N
     for (const Eigen::Vector3d& direction : {pair.first, pair.second})
       most_sine = std::max(most_sine, direction.head<2>().norm());
   // Modes of p beyond l sin(theta) have died out at the angle of a light.
-  const int steps = 2 * highest + 32 +
-                    static_cast<int>(1.2 * most_sine * (1 + degree(ordinates.law().moments())));
+  constexpr double nodes_per_width = 25;
+  const double most_modes = 1.2 * (1 + degree(ordinates.law().moments())),
+               of_peak = ordinates.law().has_sharp_peak() ? nodes_per_width / ordinates.fine() : 0;
+  const int steps = 2 * highest + 32 + static_cast<int>(most_sine * std::max(most_modes, of_peak));
   const Matrix azimuthal = azimuthal_functions(steps, highest),
                directions = azimuths(steps, momentum);
   const auto projected = [&](const Eigen::VectorXd& angles, const SpacePair& pair, double side,

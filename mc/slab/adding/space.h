@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <functional>
+#include <numbers>
 #include <vector>
 
 #include <Eigen/Core>
@@ -10,6 +12,7 @@
 #include "mc/slab/adding/angular_grid.h"
 #include "mc/slab/adding/layer.h"
 #include "mc/slab/adding/pair_wave.h"
+#include "mc/slab/adding/phase_moments.h"
 
 namespace flatspeckle::mc {
 
@@ -25,8 +28,10 @@ Scene in_space(Scene slab, const ScattererValues& values);
 /// pair: each of its turns loses exp(-2 delay (1 - cos)) (brownian.h), and so does p.
 class SpaceLaw {
  public:
-  /// density: per steradian, by the cosine of the turn, in any unit.
-  explicit SpaceLaw(std::function<double(double)> density, double delay = 0);
+  /// density: per steradian, by the cosine of the turn, in any unit; normalised where its moments
+  /// are known exactly.
+  explicit SpaceLaw(std::function<double(double)> density, double delay = 0,
+                    FirstMoments moments = {});
 
   /// A A' of two turns by their cosines.
   double pair(double first, double second) const {
@@ -34,8 +39,13 @@ class SpaceLaw {
   }
   /// Of Henyey-Greenstein's function without delay: d log pair / d g.
   double pair_slope(double g, double first, double second) const;
-  /// Those above rounding; of a table with kinks the first 2048.
-  const std::vector<double>& moments() const { return moments_; }
+  /// Those that are kept, less the peak of those that are not.
+  const std::vector<double>& moments() const { return moments_.kept().list; }
+  double peak() const { return moments_.kept().peak; }
+  const KeptMoments& kept() const { return moments_.kept(); }
+  bool has_sharp_peak() const { return moments_.kept().is_sharp(); }
+  /// The law whose first `count` moments are kept, with the width of these.
+  SpaceLaw truncated(int count) const;
   /// The angle within which p changes.
   double width() const { return width_; }
   int least_order() const { return 0; }  ///< nodes of a panel
@@ -45,8 +55,8 @@ class SpaceLaw {
   double decay(double cosine) const;
 
   std::function<double(double)> density_;
-  std::vector<double> moments_;
-  double total_, delay_, width_;
+  PhaseMoments moments_;
+  double total_ = 1, delay_, width_;
 };
 
 template <typename Geometry, typename Real>
@@ -69,9 +79,7 @@ struct SpaceGeometry {
     return k * Eigen::Vector2d(momentum[0], momentum[1]).norm();
   }
 
-  static Law law(const Scene& scene, double delay = 0) {
-    return SpaceLaw(scene.medium.space_phase.density, delay);
-  }
+  static Law law(const Scene& scene, double delay = 0);
   /// The scene with other spheres at the same extinction.
   static Scene with_scatterer(Scene scene, const Scatterer& scatterer);
   /// One scattering from lights to views.
@@ -106,6 +114,10 @@ struct SpaceGeometry {
   /// Of a moment in the scattering between such functions.
   static double weight(int) { return 2; }
   static Eigen::VectorXd weights(const AngularGrid& grid);
+  /// A beam's share in mode m = 0 of what it scatters, by degrees 0 .. last (of_beam()).
+  static std::vector<Complex> beam(double light, int m, int last);
+  /// What radiance in mode 0 weighs in the integral over all directions.
+  static double all_directions() { return std::sqrt(2 * std::numbers::pi); }
   /// What pairs scatter into directions down and up, a row each, function by function.
   template <typename Number>
   static PairWavesOf<Number> fed(const OrdinatesOf<SpaceGeometry, RealOf<Number>>& ordinates,
