@@ -34,6 +34,11 @@ class Written(PlaceTest):
             self.assertLessEqual(np.abs(placed["x"]).max(), 6)
             self.assertTrue(0 <= placed["z"].min() and placed["z"].max() <= 8)
 
+    def test_the_smallest_gap_is_told(self):
+        keys = {**DISKS, "placement": "equilibrium", "min_gap": 0.01}
+        told = self.call("place", **keys, out="gap.csv").stdout.split("smallest gap ")[1]
+        self.assertAlmostEqual(float(told.split(",")[0]), self.gaps(self.place(**keys)).min(), places=6)
+
     def test_gap_when_none_is_stated(self):
         placed = self.place(**{**DISKS, "packing_fraction": 0.65}, placement="equilibrium")
         self.assertGreaterEqual(self.gaps(placed).min(), 0.4e-3)

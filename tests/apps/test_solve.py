@@ -75,6 +75,31 @@ class Reference(ProgramTest):
         self.assert_same_data("a.h5", "b.h5")
 
 
+class Believed(ProgramTest):
+    def test_resonance_sharper_than_double_precision(self):
+        """TM, index 2, k radius = 9.335788: order 15 resonates with Q = 4e4."""
+        self.write("disk.csv", "x,z\n0,0\n")
+        disk = {"placement": "disk.csv", "scatterer": "tm", "index": 2,
+                "radius": repr(9.335788 / (2 * np.pi)), "view_angles": [0, 1]}
+        done = self.call("solve", **disk, status=3, out="sharp.h5")
+        self.assertIn("not converged to the tolerance 1e-12: a rounding of the radius", done.stdout)
+        self.assertFalse(attributes(self.folder / "sharp.h5")["converged"])
+        self.call("solve", **disk, tolerance=1e-9, out="rough.h5")
+        self.call("solve", **disk, wavelengths=[1, 1.1], status=3, out="spectrum.h5")
+
+    def test_narrow_gap_of_metals_is_refused(self):
+        self.write("pair.csv", "x,z\n0,0\n0,0.2000001\n")
+        done = self.call("solve", placement="pair.csv", scatterer="te", index="0.05+2.2i",
+                         radius=0.1, status=2, out="pair.h5")
+        self.assertIn("beside a TE disk of Re(index^2) < 0", done.stderr)
+
+    def test_notes(self):
+        self.write("disk.csv", "x,z\n0,0\n")
+        thin = {"placement": "disk.csv", "scatterer": "te", "radius": 0.3}
+        self.assertIn("n - 1", self.call("solve", **thin, index=0.5, out="thin.h5").stderr)
+        self.assertNotIn("n - 1", self.call("solve", **thin, index=1.5, out="thick.h5").stderr)
+
+
 class Few(ProgramTest):
     def test_no_scatterers(self):
         self.write("none.csv", "x,z\n")
@@ -84,6 +109,7 @@ class Few(ProgramTest):
             with self.subTest(keys=keys):
                 done = self.call("solve", **keys, light_angles=[0, 1], out="result.h5")
                 self.assertIn("0 scatterers", done.stdout)
+                self.assertIn("holds no scatterers", done.stderr)
                 field = datasets(self.folder / "result.h5")
                 field = field.get("far_field", field.get("near_field"))
                 np.testing.assert_array_equal(field, [[0], [0]])

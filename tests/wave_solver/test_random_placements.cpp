@@ -39,6 +39,7 @@ enum class Outcome { held, missed, refused, not_converged, large };
 
 // Placements of more unknowns than that are left out.
 Outcome outcome(const Placement& placement, double tolerance, std::size_t most_unknowns) try {
+  check_no_overlap(placement);
   if (TMatrixSystem(placement, two_pi, tolerance).unknowns() > most_unknowns) return Outcome::large;
   const auto solution = solve(placement, two_pi, lights, {.tolerance = tolerance, .sensors = {}});
   if (!solution.diagnosis().fault().empty()) return Outcome::not_converged;

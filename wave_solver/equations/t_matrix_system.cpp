@@ -188,7 +188,8 @@ struct Contact {
   auto operator<=>(const Contact&) const = default;
 };
 constexpr double steps = 8;
-constexpr int last_step = 24;  // farther neighbours count as being there
+constexpr int first_step = -480;  // closer ones are in contact by rounding
+constexpr int last_step = 24;     // farther neighbours count as being there
 
 // xi of the bipolar coordinates
 double xi(double radius, double other_radius, double distance) {
@@ -237,7 +238,7 @@ class BasisOrders {
     const double relative = (neighbour.distance - (a + b)) / (b > 0 ? std::min(a, b) : a);
     const double step = std::floor(steps * std::log2(relative));
     return {species_of_[j], species_of_[neighbour.scatterer],
-            static_cast<int>(std::min<double>(last_step, step))};
+            static_cast<int>(std::clamp<double>(step, first_step, last_step))};
   }
 
   double distance_of(const Contact& contact) const {
@@ -395,8 +396,8 @@ class BasisOrders {
                      "the disk at (" + std::to_string(position.x) + ", " +
                          std::to_string(position.z) +
                          ") is so close to a neighbour that it needs basis order " +
-                         std::to_string(static_cast<long long>(std::ceil(order))) + ", more than " +
-                         std::to_string(highest) +
+                         std::to_string(static_cast<long long>(std::ceil(std::min(order, 1e9)))) +
+                         ", more than " + std::to_string(highest) +
                          (highest < highest_order ? " beside a TE disk of Re(index^2) < 0" : "") +
                          "; widen the gap (min_gap) or allow a larger tolerance");
   }
