@@ -91,6 +91,9 @@ SweepPoints list_of(const std::string& own_key, const std::string& path, const K
   SweepPoints points;
   points.is_list = true;
   for (const std::string& name : table.names()) {
+    if (of.find(key_of({name, {}})) == nullptr)
+      throw InputError(own_key, path,
+                       "column " + name + ": no key of that subcommand" + did_you_mean(of, name));
     if (!varied_key(of, name, name).is_number()) refuse(name, "has no numbers, as a table has");
     points.axes.push_back({name, texts_of(table.column(name))});
   }

@@ -149,6 +149,9 @@ void check_packing(const Domain& box, PlacementRule::Kind kind, double packing, 
 Placement read_placement(const std::string& path, const Scatterer& scatterer) {
   const Table table =
       read_key_table("placement", path, {"x", "z", "radius", "index_re", "index_im"}, true);
+  for (const char* name : {"x", "z"})
+    if (!table.has(name))
+      throw InputError("placement", path, std::string("column ") + name + " is missing");
   if (table.has("index_im") && !table.has("index_re"))
     throw InputError(path + ": column index_re is missing beside index_im");
   if (scatterer.is_disk() && !table.has("radius") && scatterer.radius <= 0)

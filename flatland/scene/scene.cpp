@@ -82,7 +82,8 @@ class LayerTable {
  public:
   /// Reads the key and the file. Throws InputError.
   LayerTable(const Keys& keys, const SceneSpec& spec)
-      : path_(keys.read(spec.layers)), table_(read_key_table("layers", path_, all_columns())) {
+      : path_(keys.read(spec.layers)),
+        table_(read_key_table("layers", path_, all_columns(), true)) {
     constexpr std::size_t most = 1000;
     if (table_.rows() == 0 || table_.rows() > most)
       throw InputError("layers", path_, "must hold 1 to " + std::to_string(most) + " layers");

@@ -145,10 +145,18 @@ Numbers blurred(const Numbers& values, int pixels, std::size_t stride, std::size
   return blurred;
 }
 
+std::vector<std::vector<double>> rows_of(const std::string& path) {
+  try {
+    return read_rows(path);
+  } catch (const InputError& error) {
+    throw InputError(std::string("pictures = ") + error.what());
+  }
+}
+
 /// A picture of a file of numbers, a line for each row. Throws InputError for one that is not
 /// square, has fewer than 4 rows, is dark or holds anything else than numbers from 0 to 1e50.
 ScreenPicture read_picture(const std::string& path, double width) {
-  const auto rows = read_rows(path);
+  const auto rows = rows_of(path);
   const std::size_t columns = rows.empty() ? 0 : rows.front().size();
   if (rows.size() != columns || columns < 4 || columns > 4096)
     throw InputError("pictures", path,
