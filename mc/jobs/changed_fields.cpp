@@ -38,6 +38,12 @@ Values correlation(const CovarianceRequest& request, const Values& all) {
   return correlation;
 }
 
+Values magnitude(const CovarianceRequest& request, const Values& all) {
+  Values sizes = correlation(request, all);
+  for (Complex& value : sizes) value = std::abs(value);
+  return sizes;
+}
+
 }  // namespace
 
 ChangeEstimates change_estimates(const CovarianceRequest& request, const PathJob& job,
@@ -47,7 +53,7 @@ ChangeEstimates change_estimates(const CovarianceRequest& request, const PathJob
       return f(request, job.all(samples, total));
     });
   };
-  return {estimate(changed), estimate(correlation)};
+  return {estimate(changed), estimate(correlation), estimate(magnitude)};
 }
 
 }  // namespace flatspeckle::mc

@@ -16,9 +16,9 @@ struct FieldChange {
 /// has changed. Of a request for intensities, [change][channel]: the covariances, and those over
 /// the intensity without change, 0 where there is none. Of one for a memory effect: the covariances
 /// of the reference with the tilted and changed field, [change][tilt][view], and C_E,
-/// [change][tilt] (C19).
+/// [change][tilt] (C19). magnitude: |correlation|, with the error of the modulus alone.
 struct ChangeEstimates {
-  Estimate covariance, correlation;
+  Estimate covariance, correlation, magnitude;
 };
 ChangeEstimates change_estimates(const CovarianceRequest& request, const PathJob& job,
                                  const GroupedSums& sums);

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "bench/oracles/discrete_ordinates.h"
+#include "mc/paths/dynamics/brownian.h"
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 
@@ -81,6 +82,25 @@ TEST_CASE("error bars are honest behind deep slabs that absorb strongly") {
   }
   CHECK(within > (is_night ? 0.9 : 0.85) * runs);
   CHECK(sum == doctest::Approx(expected).epsilon(0.02));
+}
+
+TEST_CASE("error bars of the modulus of a complex correlation are honest") {
+  // Shear turns the phase; the error of the complex correlation is up to twice that of its modulus.
+  const Scene scene =
+      tests::hg_slab(50, {10, 0.6}, intensity_request({0}, tests::far_views({0.2, pi - 0.5})));
+  const std::vector<double> delays = {0.1, 0.4};
+  double widest = 0;
+  const auto ratios = spread_over_error([&](std::uint64_t seed) {
+    const PathJob own =
+        delay_job(scene, make_plan(scene, ReversedPaths::no), delays, seed, {0.5, {}, 0.06});
+    const auto sums = tests::summed(own.field.batches, 4 * paths);
+    const auto found = change_estimates(scene.request, own, sums);
+    for (std::size_t i = 0; i < found.magnitude.value.size(); ++i)
+      widest = std::max(widest, found.correlation.error[i] / found.magnitude.error[i]);
+    return found.magnitude;
+  });
+  CHECK(widest > 1.5);
+  for (const double ratio : ratios) CHECK(ratio == doctest::Approx(1).epsilon(0.15));
 }
 
 TEST_CASE("error bars of the memory effect and its range are honest") {

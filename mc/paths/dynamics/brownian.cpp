@@ -24,11 +24,6 @@ void check_delays(const Scene& scene, const std::vector<double>& delays) {
       throw InputError("delays", delay, "must not be negative, nor above 1e100");
 }
 
-Estimate magnitude(Estimate estimate) {
-  for (Complex& value : estimate.value) value = std::abs(value);
-  return estimate;
-}
-
 const DatasetTable delays_table{
     "delays",
     {{"delay", Data::scale, "", "1", "k^2 D tau"},
@@ -58,7 +53,7 @@ void write_delays(ResultFile& file, const Scene& scene, const std::vector<double
   if (!motion.only_diffuses(scene)) {
     root.put("complex_covariance", found.covariance);
     root.put("complex_correlation", found.correlation);
-    return root.put("field_correlation", magnitude(found.correlation));
+    return root.put("field_correlation", found.magnitude);
   }
   root.put("covariance", found.covariance);
   root.put("field_correlation", found.correlation);

@@ -15,9 +15,6 @@ namespace flatspeckle::mc {
 /// Throws InputError for a structure factor, and for negative delays.
 void check_delays(const Scene& scene, const std::vector<double>& delays);
 
-/// Of each value; its error is not smaller than that of the magnitude.
-Estimate magnitude(Estimate estimate);
-
 extern const DatasetTable delays_table;
 /// With diffusion theory for light through a slab, where scatterers only diffuse. The request's
 /// axes must have been written.
