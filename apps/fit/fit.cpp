@@ -32,9 +32,8 @@ namespace {
 struct ComparedFit {
   std::string path, scatterer;
   std::vector<double> measured;
-  double chi_squared = 0, parameters = 0;
+  double chi_squared = 0, parameters = 0, freedom = 0;
 
-  double freedom() const { return static_cast<double>(measured.size()) - parameters; }
   double information() const { return chi_squared + 2 * parameters; }
 };
 
@@ -48,6 +47,11 @@ ComparedFit fit_of(const std::string& path) {
   fit.measured = file.dataset<double>("measured");
   fit.chi_squared = file.attribute<double>("/", "chi_squared");
   fit.parameters = static_cast<double>(file.dataset<double>("estimate").size());
+  try {
+    fit.freedom = file.attribute<double>("/", "degrees_of_freedom");
+  } catch (const InputError&) {  // an integer, in results of versions before
+    fit.freedom = static_cast<double>(fit.measured.size()) - fit.parameters;
+  }
   return fit;
 }
 
@@ -132,8 +136,8 @@ void print_comparison(const std::vector<std::string>& paths) {
               "freedom", "chance", "weight");
   for (const ComparedFit& fit : fits)
     std::printf("%-28s %-12s %10g %10.4g %10g %10.2g %10.2g\n", fit.path.c_str(),
-                fit.scatterer.c_str(), fit.parameters, fit.chi_squared, fit.freedom(),
-                chance(fit.chi_squared, fit.freedom()), weight(fit) / sum);
+                fit.scatterer.c_str(), fit.parameters, fit.chi_squared, fit.freedom,
+                chance(fit.chi_squared, fit.freedom), weight(fit) / sum);
 }
 
 /// What would be known, from how many patterns, and which views and tilts matter.
@@ -168,7 +172,11 @@ void print_fit(const mc::FitTask& task, const mc::MediumFit& fit) {
   print_correlations(task, fit);
   std::printf("chi^2 %.4g of %td values less %zu parameters; condition %.3g\n", fit.chi_squared,
               fit.residuals.size(), task.free.size(), fit.condition);
-  if (!mc::is_likely(fit.chi_squared, fit.residuals.size(), fit.estimates.size()))
+  const auto count = static_cast<double>(fit.residuals.size() - fit.estimates.size());
+  if (fit.degrees_of_freedom < 0.95 * count)
+    std::printf("errors of the values are correlated: chi^2 has %.3g degrees of freedom, not %g\n",
+                fit.degrees_of_freedom, count);
+  if (!mc::is_likely(fit.chi_squared, fit.degrees_of_freedom))
     std::printf("chi^2 is unlikely: this model cannot give these measurements with their errors\n");
   if (const std::string words = mc::degeneracy(task, fit); !words.empty())
     std::printf("%s\n", words.c_str());

@@ -331,7 +331,7 @@ mc::Measurement measurement_of_result(const std::string& path, const Keys& asked
   found.values = Eigen::Map<Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
   found.covariance = independent_errors(path, errors);
   if (const Eigen::MatrixXd known = errors_of(there, found.curves); known.size() > 0)
-    found.covariance = known;
+    found.covariance = known, found.shrinkage = mc::shrinkage_of(*there.sums);
   else
     found.guessed_independent = true;
   return found;

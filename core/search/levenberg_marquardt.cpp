@@ -90,8 +90,31 @@ LeastSquaresFit levenberg_marquardt(const BoundedLeastSquares& problem, const Ve
   return at;
 }
 
+namespace {
+
+constexpr double step = 1e-3;  ///< of differences, over the distance of the bounds
+
+}  // namespace
+
+std::optional<SlopeCheck> check_slope(const BoundedLeastSquares& problem,
+                                      const LeastSquaresFit& fit) {
+  const VectorXd range = problem.upper - problem.lower;
+  Index i = 0;
+  (fit.jacobian * range.asDiagonal()).colwise().norm().maxCoeff(&i);
+  const double width = step * range[i], size = fit.jacobian.col(i).norm();
+  VectorXd below = fit.parameters, above = below;
+  below[i] -= width;
+  above[i] += width;
+  if (!(size > 0) || below[i] < problem.lower[i] || above[i] > problem.upper[i])
+    return std::nullopt;
+  const VectorXd low = problem.residuals(below), high = problem.residuals(above);
+  constexpr double rounding = 1e-3;  // of residuals, and of differences of higher order
+  const double bent = (high + low - 2 * fit.residuals).norm() / (2 * width);
+  return SlopeCheck{(fit.jacobian.col(i) - (high - low) / (2 * width)).norm() / size,
+                    rounding + 2 * bent / size};
+}
+
 MatrixXd jacobian(const BoundedLeastSquares& problem, const VectorXd& at, const VectorXd& here) {
-  constexpr double step = 1e-3;  // of the distance of the bounds
   MatrixXd slopes(here.size(), at.size());
   for (Index i = 0; i < at.size(); ++i) {
     const double range = problem.upper[i] - problem.lower[i],
@@ -122,6 +145,12 @@ LeastSquaresFit best_fit(const BoundedLeastSquares& problem, const std::vector<V
   return *std::min_element(fits.begin(), fits.end(), [](const auto& a, const auto& b) {
     return a.converged != b.converged ? a.converged : a.chi_squared() < b.chi_squared();
   });
+}
+
+double expected_chi_squared(const MatrixXd& errors, const MatrixXd& jacobian) {
+  const MatrixXd inverse = inverse_symmetric(jacobian.transpose() * jacobian);
+  const double fitted = (inverse * jacobian.transpose() * errors * jacobian).trace();
+  return std::max(errors.trace() - fitted, 0.0);
 }
 
 Information information(const BoundedLeastSquares& problem, const MatrixXd& jacobian) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -47,6 +48,15 @@ Eigen::VectorXd damped_step(const BoundedLeastSquares& problem, const LeastSquar
 Eigen::MatrixXd jacobian(const BoundedLeastSquares& problem, const Eigen::VectorXd& at,
                          const Eigen::VectorXd& here);
 
+/// How far derivatives are off differences, over their size, and what their own steps make of it.
+struct SlopeCheck {
+  double off = 0, limit = 0;
+};
+/// Holds the jacobian of a fit against central differences of the residuals, by the parameter that
+/// these tell most of; the limit follows from the curvature there. Nothing beside a bound.
+std::optional<SlopeCheck> check_slope(const BoundedLeastSquares& problem,
+                                      const LeastSquaresFit& fit);
+
 /// Of all starts, those of the least chi^2.
 std::vector<Eigen::VectorXd> best_starts(const BoundedLeastSquares& problem,
                                          const std::vector<Eigen::VectorXd>& starts,
@@ -67,6 +77,10 @@ struct Information {
 
   Eigen::VectorXd errors() const { return covariance.diagonal().cwiseSqrt(); }
 };
+
+/// The mean of chi^2 at the best fit of a linear model, its degrees of freedom: of residuals whose
+/// errors have this covariance. Residuals less parameters, where that is the identity.
+double expected_chi_squared(const Eigen::MatrixXd& errors, const Eigen::MatrixXd& jacobian);
 
 /// An infinite condition where a combination is not known at all.
 Information information(const BoundedLeastSquares& problem, const Eigen::MatrixXd& jacobian);

@@ -55,7 +55,9 @@ const DatasetTable fit_table{
          {"trace_chi_squared", Data::real, "iteration", "1", "chi^2 there"},
          {"trace_cpu_s", Data::real, "iteration", "s", "processor time until there"}},
     .attributes = {{"", "chi_squared", "float64", "sum of the squared residuals"},
-                   {"", "degrees_of_freedom", "int64", "values less parameters"},
+                   {"", "degrees_of_freedom", "float64",
+                    "mean of chi_squared where the medium is right: values less parameters, or "
+                    "less where their errors are strongly correlated"},
                    {"", "condition", "float64",
                     "largest over least eigenvalue of the information, parameters in distances of "
                     "their bounds; absent where a combination is not known at all"},
@@ -167,7 +169,7 @@ void write_fit(ResultFile& file, const FitTask& task, const MediumFit& fit) {
   write_data(root, task, fit);
   write_trace(root, fit);
   root.attribute("chi_squared", fit.chi_squared);
-  root.attribute("degrees_of_freedom", static_cast<std::int64_t>(fit.degrees_of_freedom()));
+  root.attribute("degrees_of_freedom", fit.degrees_of_freedom);
   if (std::isfinite(fit.condition)) root.attribute("condition", fit.condition);
   root.attribute("numerical_error", fit.numerical);
   root.attribute("degeneracy", degeneracy(task, fit));

@@ -95,6 +95,12 @@ void require_light(const VectorXd& covariance) {
         "free; the medium there is too deep or absorbs too much");
 }
 
+/// Of residuals that `data` has made independent, as far as its covariance does.
+double degrees_of_freedom(const LeastSquaresFit& fit, const FitData& data) {
+  return expected_chi_squared(data.whitened(data.whitened(data.scatter()).transpose()),
+                              fit.jacobian);
+}
+
 /// Other starts are gone on from where the best one does not end in a likely medium. The search is
 /// by as many ordinates as a thousandth of the values needs; it goes on where errors ask for more.
 LeastSquaresFit refined_fit(const FitTask& task, const BoundedLeastSquares& problem,
@@ -105,8 +111,7 @@ LeastSquaresFit refined_fit(const FitTask& task, const BoundedLeastSquares& prob
   auto starts = best_starts(problem, grid_of_starts(task), 3);
   LeastSquaresFit best =
       levenberg_marquardt(problem, starts.front(), task.most_iterations, tolerance);
-  if (!(best.converged &&
-        is_likely(best.chi_squared(), best.residuals.size(), best.parameters.size())))
+  if (!(best.converged && is_likely(best.chi_squared(), degrees_of_freedom(best, data))))
     best = best_fit(problem, starts, task.most_iterations, tolerance);
   const int before = model.order();
   fit.numerical = model.refine(media_at(task, best.parameters), data.errors(), share);
@@ -163,9 +168,8 @@ MatrixXd covariance_of_values(const FitTask& task, const VectorXd& coordinates,
   return slopes.asDiagonal() * covariance * slopes.asDiagonal();
 }
 
-bool is_likely(double chi_squared, Index values, Index parameters) {
-  const auto degrees = static_cast<double>(values - parameters);
-  return chi_squared < degrees + 4 * std::sqrt(2 * degrees) + 4;
+bool is_likely(double chi_squared, double degrees_of_freedom) {
+  return chi_squared < degrees_of_freedom + 4 * std::sqrt(2 * degrees_of_freedom) + 4;
 }
 
 void check(const FitTask& task) {
@@ -193,6 +197,8 @@ MediumFit fit_medium(const FitTask& task) {
   fit.residuals = best.residuals;
   fit.pulls = (data.values() - fit.model).cwiseQuotient(data.errors());
   fit.chi_squared = best.chi_squared();
+  fit.degrees_of_freedom = degrees_of_freedom(best, data);
+  fit.slope = check_slope(problem, best);
   fit.converged = best.converged;
   fit.reversed = model.reversed();
   fit.trace = best.trace;

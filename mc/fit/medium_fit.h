@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,14 +29,16 @@ struct MediumFit {
   Eigen::VectorXd residuals;  ///< whitened: independent, in standard errors
   Eigen::VectorXd pulls;      ///< (measured - model) / error of each value
   double chi_squared = 0;
+  /// Its mean if the medium is right: values less parameters, or less where their errors are so
+  /// correlated that some combinations of them hardly count.
+  double degrees_of_freedom = 0;
+  std::optional<SlopeCheck> slope;  ///< of the derivatives, by transport
   double numerical = 0;  ///< largest numerical error of the model, in standard errors
   // By Monte Carlo, parts of the covariance: of chance, and of what paths neglect of waves.
   Eigen::MatrixXd by_chance, by_neglect;
   double paths = 0;  ///< by Monte Carlo: those of each run at the best medium
   bool converged = false, reversed = false;
   std::vector<LeastSquaresFit::Step> trace;  ///< with values of the parameters
-
-  Eigen::Index degrees_of_freedom() const { return residuals.size() - estimates.size(); }
 };
 
 /// Throws InputError for what the measurements cannot tell, or the scene cannot be.
@@ -65,6 +68,6 @@ Eigen::MatrixXd covariance_of_values(const FitTask& task, const Eigen::VectorXd&
                                      const Eigen::MatrixXd& covariance);
 
 /// Whether chi^2 is no more than noise makes it, to four standard deviations.
-bool is_likely(double chi_squared, Eigen::Index values, Eigen::Index parameters);
+bool is_likely(double chi_squared, double degrees_of_freedom);
 
 }  // namespace flatspeckle::mc

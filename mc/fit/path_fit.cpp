@@ -140,6 +140,11 @@ struct Round {
     return at.chi_squared() + 2 * triangle.diagonal().array().log().sum();
   }
 
+  double degrees_of_freedom() const {
+    const MatrixXd half = root.matrixL().solve(data.scatter() + noise + neglected);
+    return expected_chi_squared(root.matrixL().solve(half.transpose()), at.jacobian);
+  }
+
   /// What errors of the model, noise or neglected, add to the covariance of the estimates'
   /// coordinates.
   MatrixXd by(const MatrixXd& errors) const {
@@ -160,8 +165,7 @@ class PathSearch {
     std::size_t number = 0;
     for (const VectorXd& start : starts()) {
       MediumFit one = from(start, number++);
-      const bool likely =
-          one.converged && is_likely(one.chi_squared, data_.values().size(), start.size());
+      const bool likely = one.converged && is_likely(one.chi_squared, one.degrees_of_freedom);
       if (!best || (one.converged && !best->converged) ||
           (one.converged == best->converged && one.chi_squared < best->chi_squared))
         best = std::move(one);
@@ -269,6 +273,7 @@ class PathSearch {
     fit.model = here.model.values + here.model.slopes * step;
     fit.residuals = here.at.residuals + here.at.jacobian * step;
     fit.chi_squared = fit.residuals.squaredNorm();
+    fit.degrees_of_freedom = here.degrees_of_freedom();
     const VectorXd errors =
         (here.data.errors().cwiseAbs2() + (here.noise + here.neglected).diagonal()).cwiseSqrt();
     fit.pulls = (here.data.values() - fit.model).cwiseQuotient(errors);

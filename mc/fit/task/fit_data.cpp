@@ -110,6 +110,20 @@ MatrixXd FitData::whitened(const MatrixXd& of) const {
   return white;
 }
 
+MatrixXd FitData::scatter() const {
+  MatrixXd all = covariance();
+  Index first = 0;
+  for (const Measurement& one : *measurements_) {
+    const Index size = one.values.size();
+    auto block = all.block(first, first, size, size);
+    const VectorXd variance = block.diagonal();
+    block.diagonal() -= one.shrinkage * variance;
+    block /= 1 - one.shrinkage;
+    first += size;
+  }
+  return all;
+}
+
 MatrixXd FitData::covariance() const {
   MatrixXd all = MatrixXd::Zero(values_.size(), values_.size());
   Index first = 0;

@@ -42,6 +42,8 @@ class FitData {
   Eigen::MatrixXd whitened(const Eigen::MatrixXd& of) const;
   /// Of all values.
   Eigen::MatrixXd covariance() const;
+  /// The same before it was shrunk: how the values scatter, in place of how they weigh.
+  Eigen::MatrixXd scatter() const;
 
  private:
   const std::vector<Measurement>* measurements_;

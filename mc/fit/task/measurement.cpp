@@ -78,11 +78,15 @@ MatrixXd correlated_errors(const GroupedSums& sums, const Estimator& theta) {
   const double of_inverse =
       static_cast<double>(groups - 1) / static_cast<double>(groups - size - 2);
   MatrixXd covariance = of_inverse * found * found.transpose();
-  const double shrinkage = 1 / static_cast<double>(groups);
+  const double shrinkage = shrinkage_of(sums);
   const VectorXd variance = covariance.diagonal();
   covariance *= 1 - shrinkage;
   covariance.diagonal() += shrinkage * variance;
   return covariance;
+}
+
+double shrinkage_of(const GroupedSums& sums) {
+  return 1 / static_cast<double>(sums.groups());
 }
 
 std::vector<double> packed(std::span<const Complex> lower_triangle) {

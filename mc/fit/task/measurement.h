@@ -19,9 +19,11 @@ Eigen::MatrixXd deviations(const GroupedSums& sums, const Estimator& theta);
 /// The covariance of the errors of what an estimator makes of sums, real parts, by leaving one
 /// group out at a time as jackknife() does; its inverse is that of Hartlap, Simon and Schneider
 /// 2007 (eq. 17), for so many groups and values. Shrunk towards its diagonal (Ledoit and Wolf 2004)
-/// by 1/groups: sums of values whose errors all but cancel rest on a few strong paths, and on the
+/// by shrinkage_of(sums): sums of values whose errors all but cancel rest on a few strong paths, and on the
 /// rounding of models. Empty where groups are fewer than values and ten.
 Eigen::MatrixXd correlated_errors(const GroupedSums& sums, const Estimator& theta);
+/// The share of the diagonal in it: 1/groups.
+double shrinkage_of(const GroupedSums& sums);
 
 /// Fields of circular Gaussian statistics in independent patterns, of so many channels that are
 /// correlated. The likelihood of a covariance C depends on their sample covariance S alone,
@@ -88,6 +90,7 @@ struct Measurement {
   std::vector<Curve> curves;
   Eigen::VectorXd values;              ///< of all curves, one after the other
   Eigen::MatrixXd covariance;          ///< of their errors
+  double shrinkage = 0;                ///< of that covariance towards its diagonal
   bool guessed_independent = false;    ///< the file does not tell how its errors are correlated
   std::vector<FieldSample> samples{};  ///< of fields: each curve is the covariance of one
   bool by_paths = false;               ///< made by Monte Carlo, which neglects what the model does

@@ -1,7 +1,12 @@
+#include <cmath>
 #include <random>
+#include <vector>
 
+#include <Eigen/LU>
 #include <doctest/doctest.h>
 
+#include "core/search/levenberg_marquardt.h"
+#include "mc/fit/task/fit_data.h"
 #include "mc/fit/task/measurement.h"
 
 namespace flatspeckle::mc::test_correlated_errors {
@@ -60,6 +65,50 @@ TEST_CASE("errors that all but cancel in a difference are not believed to the la
   const double groups = static_cast<double>(sums.groups());
   CHECK(difference.dot(found * difference) ==
         doctest::Approx((found(0, 0) + found(1, 1)) / groups).epsilon(0.01));
+}
+
+TEST_CASE("the mean of chi^2 is its degrees of freedom, however the errors are correlated") {
+  // Six points of a line whose errors are a smooth curve and a little noise: shrunk, most of their
+  // combinations hardly count. chi^2 of independent errors has 4 degrees.
+  constexpr int runs = 400, batches = 256, points = 6;
+  std::mt19937_64 random(6);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd basis(points, 2);
+  for (int i = 0; i < points; ++i) basis.row(i) << 1, i;
+  for (const double noise : {1e-4, 0.03, 10.0}) {
+    double sum = 0, squares = 0, degrees = 0;
+    for (int run = 0; run < runs; ++run) {
+      GroupedSums sums(points);
+      for (int batch = 0; batch < batches; ++batch) {
+        const double a = normal(random), b = normal(random), c = normal(random);
+        std::vector<Complex> values;
+        for (int i = 0; i < points; ++i)
+          values.emplace_back(a + 0.3 * b * i + 0.05 * c * i * i + noise * normal(random));
+        sums.add(1, values);
+      }
+      FitTask task;
+      task.measurements.resize(1);
+      Measurement& one = task.measurements.front();
+      const auto mean = real_parts(sample_mean(sums.total_samples(), sums.total()));
+      one.values = Eigen::Map<const Eigen::VectorXd>(mean.data(), points);
+      one.covariance = correlated_errors(sums, sample_mean);
+      one.shrinkage = shrinkage_of(sums);
+      const FitData data(task);
+      const Eigen::MatrixXd slopes = data.whitened(basis);
+      const Eigen::VectorXd white = data.whitened(one.values);
+      const Eigen::VectorXd best =
+          (slopes.transpose() * slopes).inverse() * slopes.transpose() * white;
+      const double chi_squared = (white - slopes * best).squaredNorm();
+      sum += chi_squared / runs;
+      squares += chi_squared * chi_squared / runs;
+      degrees +=
+          expected_chi_squared(data.whitened(data.whitened(data.scatter()).transpose()), slopes) /
+          runs;
+    }
+    CAPTURE(noise);
+    CHECK(std::abs(sum - degrees) < 4 * std::sqrt((squares - sum * sum) / runs));
+    CHECK(degrees < (noise < 1e-3 ? 1.5 : 4.1));
+  }
 }
 
 TEST_CASE("too few groups tell nothing of correlations") {

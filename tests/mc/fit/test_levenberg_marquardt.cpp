@@ -129,4 +129,24 @@ TEST_CASE("what cannot be told apart is named, not hidden") {
   CHECK(known.worst[0] == doctest::Approx(-known.worst[1]));
 }
 
+TEST_CASE("a jacobian that is off by a hundredth is seen in differences") {
+  const VectorXd x{{0, 0.5, 1, 2, 4}};
+  const VectorXd y = 3 * (-0.7 * x.array()).exp();
+  for (const double factor : {1.0, 1.01}) {
+    auto problem = decay(x, y, 0.01);
+    problem.lower = VectorXd{{0.1, 0.1}}, problem.upper = VectorXd{{10, 2}};
+    problem.jacobian = [own = problem.jacobian, factor](const VectorXd& p, const VectorXd& r) {
+      return MatrixXd(factor * own(p, r));
+    };
+    const auto fit = levenberg_marquardt(problem, VectorXd{{2, 1}});
+    const auto found = check_slope(problem, fit);
+    REQUIRE(found.has_value());
+    CHECK(found->limit < 0.01);
+    CHECK((found->off < found->limit) == (factor == 1));
+  }
+  Line line;
+  const auto at_bound = line.problem(VectorXd{{5, 3}}, VectorXd{{9, 5}});
+  CHECK_FALSE(check_slope(at_bound, levenberg_marquardt(at_bound, VectorXd{{6, 4}})).has_value());
+}
+
 }  // namespace flatspeckle::mc::test_levenberg_marquardt
