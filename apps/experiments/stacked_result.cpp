@@ -13,7 +13,8 @@ namespace flatspeckle::apps {
 
 const DatasetTable stacked_table{
     .name = "sweep of results",
-    .rows = {{"relative_error", Data::real, "SWEPT", "1", "RMS error relative to the RMS value"},
+    .rows = {{"relative_error", Data::real, "SWEPT", "1",
+              "RMS error relative to the RMS value; 1e300 where none is known"},
              {"samples", Data::real, "SWEPT", "1", "samples"},
              {"cpu_s", Data::real, "SWEPT", "s", "processor time, all threads"},
              {"wall_s", Data::real, "SWEPT", "s",

@@ -61,7 +61,8 @@ const DatasetTable sweep_table{
               "difference between the power scattered into all directions and what neither passes "
               "nor is absorbed, relative"},
              {"relative_error", Data::real, "GRID", "1",
-              "RMS standard error of the covariances relative to their RMS magnitude"},
+              "RMS standard error of the covariances relative to their RMS magnitude; 1e300 where none "
+              "is known"},
              {"samples", Data::real, "GRID", "1", "samples"},
              {"cpu_s", Data::real, "GRID", "s", "processor time, all threads"},
              {"wall_s", Data::real, "GRID", "s",

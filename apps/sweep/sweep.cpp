@@ -73,15 +73,17 @@ class SweepWork {
   }
 
   void ended(std::size_t number) {
+    constexpr double unknown = 1e300;  // files hold no infinity
     const auto& [run, state, started] = find(number);
     FinishedPoint point{.plan = run.plan,
                         .started = started,
                         .samples = state.sums.total_samples(),
                         .cpu_s = state.cpu_s,
                         .wall_s = state.wall_s,
-                        .relative_error = state.trace.relative_error.back(),
+                        .relative_error = std::min(state.trace.relative_error.back(), unknown),
                         .result = {}};
-    point.reached = !run.stop.target_error || point.relative_error <= *run.stop.target_error;
+    point.reached = (!run.stop.target_error || point.relative_error <= *run.stop.target_error) &&
+                    !found_nothing(run.batches, state.sums);
     ResultFile collecting(point.result);
     run.write(collecting, state);
     point.reached =

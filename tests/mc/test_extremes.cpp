@@ -94,6 +94,19 @@ TEST_CASE("without scattering there is no covariance, and no NaN") {
   for (const Complex value : coherent_field(empty_box)) CHECK(value == 0.0);
 }
 
+TEST_CASE("paths of two scatterers are found in the thinnest media") {
+  const auto request = intensity_request({0}, tests::far_views({0.4, 2}));
+  for (const double optical_depth : {1e-12, 1e-9, 1e-6}) {
+    CAPTURE(optical_depth);
+    const Scene slab = tests::hg_slab(10, {10 / optical_depth, 0, 0.9}, request);
+    const auto found = tests::run(slab, ReversedPaths::no, 40000, 7).entries();
+    for (std::size_t e = 0; e < found.value.size(); ++e) {
+      CHECK(found.error[e] > 0.01 * optical_depth * found.value[e].real());
+      CHECK(found.error[e] < optical_depth * found.value[e].real());
+    }
+  }
+}
+
 TEST_CASE("extreme asymmetry: finite, and the power adds up") {
   for (const double g : {-0.999, 0.999}) {
     // around the lobe at 0 or pi finely, elsewhere coarsely

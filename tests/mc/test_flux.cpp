@@ -280,6 +280,16 @@ TEST_CASE("direct transmittance of a box is the mean over its chords") {
   }
 }
 
+TEST_CASE("a share of the light that no path has reached meets no target error") {
+  const auto request = intensity_request({0}, tests::far_views({0}));
+  StopRule stop;
+  stop.target_error = 0.05;
+  const auto dark = tests::run_flux(tests::layered({{10, 60, 0, 0.3}}, request), stop, 14);
+  CHECK(dark.flux.transmittance.value[0] == 0.0);
+  CHECK(dark.flux.reflectance.error[0] < 0.01 * dark.flux.reflectance.value[0].real());
+  CHECK(std::isinf(dark.job.batches.relative_error(dark.sums)));
+}
+
 TEST_CASE("flux in the extremes: almost nothing there, nothing scattered, hardly absorbed") {
   const auto thin = tests::run_flux(tests::lit_slab(1e-3, 0.7, 0.5, {0.4}), paths(50000), 11).flux;
   const SlabTransport theory({1e-3, 0.7, henyey_greenstein(0.5)}, {0.4}, 30);

@@ -266,6 +266,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   const int paths =
       paths_per_batch(tracer, tracers.plan().scatters, tracers.cost_of_flight(), job.batches.size);
   job.batches.samples_per_batch = paths;
+  job.batches.deterministic = !tracers.plan().scatters;
   if (tracer.method == RenderMethod::analog) job.batches.trusted_batches = 64;  // no path is strong
   const auto counts = std::make_shared<TransportCounts>();
   job.counts = counts;

@@ -45,6 +45,7 @@ PathJob path_job(const Scene& scene, const Plan& plan, std::size_t quantities,
     };
   job.field.batches = {quantities * entries, static_cast<double>(plan.paths_per_batch), batches,
                        relative_error_of(job.field.covariance)};
+  job.field.batches.deterministic = scene.medium.mu_s == 0;
   return job;
 }
 

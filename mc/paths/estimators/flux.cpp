@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <sstream>
 
@@ -127,15 +128,27 @@ std::string describe(const Scene& scene, double kappa) {
   return text.str();
 }
 
-/// The largest relative error of the shares that are not 0.
-double worst_relative_error(const FluxJob& job, const GroupedSums& sums) {
+/// The largest relative error of the shares; infinite where no path has come to one that light
+/// can come to.
+double worst_relative_error(const FluxJob& job, const Scene& scene, double kappa,
+                            const GroupedSums& sums) {
+  constexpr double deepest = 700;  // decay lengths: beyond them light is 0 in double precision
   const FluxEstimates flux = flux_estimates(job, sums);
+  const bool scatters = scene.medium.mu_s > 0;
   double worst = 0;
-  for (const Estimate* share :
-       {&flux.reflectance, &flux.transmittance, &flux.side_loss, &flux.absorptance})
-    for (std::size_t light = 0; light < job.lights; ++light)
-      if (const double value = std::abs(share->value[light]); value > 0)
-        worst = std::max(worst, share->error[light] / value);
+  const auto look_at = [&](const Estimate& share, bool is_open) {
+    for (std::size_t light = 0; light < job.lights; ++light) {
+      const double value = std::abs(share.value[light]);
+      if (value > 0)
+        worst = std::max(worst, share.error[light] / value);
+      else if (is_open)
+        worst = std::numeric_limits<double>::infinity();
+    }
+  };
+  look_at(flux.reflectance, scatters);
+  look_at(flux.transmittance, scatters && kappa * scene.domain.depth < deepest);
+  look_at(flux.side_loss, scatters && scene.domain.kind == Domain::Kind::box);
+  look_at(flux.absorptance, false);
   return worst;
 }
 
@@ -151,9 +164,10 @@ FluxJob flux_job(const Scene& original, std::size_t angle_bins, std::uint64_t se
   FluxJob job{{}, scene->request.lights.size(), angle_bins, describe(*scene, kappa)};
   job.batches.size = job.lights * (flux_shares + angle_bins);
   job.batches.samples_per_batch = static_cast<double>(walks_per_batch);
-  job.batches.relative_error = [shape = job](const GroupedSums& sums) {
-    return worst_relative_error(shape, sums);
+  job.batches.relative_error = [shape = job, scene, kappa](const GroupedSums& sums) {
+    return worst_relative_error(shape, *scene, kappa, sums);
   };
+  job.batches.deterministic = medium.mu_s == 0;
   job.batches.run = batches(scene, kappa, seed);
   return job;
 }

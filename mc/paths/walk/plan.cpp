@@ -34,6 +34,17 @@ double score_level(double g, int dimension) {
   return 2 * (1 + square) / std::pow(1 - square, dimension - 1);
 }
 
+/// Paths of thin media promise little each: the level falls with the share of flights that end
+/// inside, or none of them would be scored.
+double level_of(const Scene& scene) {
+  constexpr double thin = 1e-3;
+  const double across = scene.domain.kind == Domain::Kind::box
+                            ? std::min(scene.domain.depth, scene.domain.width)
+                            : scene.domain.depth;
+  return score_level(scene.medium.g, scene.medium.dimension) *
+         std::min(1.0, scene.medium.mu_t * across / thin);
+}
+
 /// Whether a box is so narrow that little reaches the views without absorption either.
 bool loses_by_the_sides(const Scene& scene) {
   if (scene.domain.kind != Domain::Kind::box || scene.medium.mu_s == 0) return false;
@@ -75,7 +86,7 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
                                                      can_see_backscattering(request, scene.domain));
   plan.near = has_near_ends(request);
   plan.rank_k = request.kind == CovarianceRequest::Kind::full;
-  plan.score_level = score_level(scene.medium.g, scene.medium.dimension);
+  plan.score_level = level_of(scene);
   plan.phases = plan.reversed || request.kind != CovarianceRequest::Kind::intensity;
   plan.weighted = scene.medium.albedo < 1 - 1e-12 || loses_by_the_sides(scene);
   constexpr std::size_t few = 20000;  // entries; a millisecond each at the most
