@@ -100,6 +100,7 @@ class CovarianceExperiment : public Experiment {
       print_medium(*scene_);
       if (request.kind != CovarianceRequest::Kind::tilt_shift)
         print_entries(request, moments.covariance);
+      if (method_ != "transport") print_errors(request, moments.covariance);
     }
     write_medium(file, *scene_);
     write_axes(file, *scene_);

@@ -109,12 +109,17 @@ void check_memory(const Scene& scene, const mc::FieldDemand& demand) {
 /// How the statistics of all fields compare with those of a circular Gaussian field.
 void print_summary(const mc::DrawnFields& drawn, const mc::FieldSummary& summary) {
   const auto& [contrast, circularity, found, grain] = summary;
-  std::printf("contrast %.4f +- %.2g, |<u u>| / <I> %.2g +- %.2g (Gaussian: 1 and 0)\n",
-              contrast.value[0].real(), contrast.error[0], std::abs(circularity.value[0]),
+  const Complex pseudo = circularity.value[0];
+  std::printf("contrast %.4f +- %.2g, <u u> / <I> %.2g%+.2gi +- %.2g (Gaussian: 1 and 0)\n",
+              contrast.value[0].real(), contrast.error[0], pseudo.real(), pseudo.imag(),
               circularity.error[0]);
   if (grain)
     std::printf("grain width %.4g +- %.2g (of its autocorrelation, at half maximum)\n",
                 grain->value[0].real(), grain->error[0]);
+  else if (!found.value.empty())
+    std::puts(
+        "grain width not resolved: the autocorrelation falls to half within one step of the views, "
+        "or not at all");
   const Estimate& siegert = drawn.siegert;
   if (found.value.empty() || siegert.value.empty()) return;
   const bool by_paths = drawn.plan.method == mc::FieldMethod::paths;
@@ -164,9 +169,15 @@ class FieldExperiment : public OneShot {
                              : static_cast<double>(drawn.plan.paths_per_field * demand_.fields);
     check_power(file, "", *scene_, {"mc", paths, 0, seed()});
     if (tells) print_summary(drawn, summary);
+    const bool is_dark =
+        scene_->medium.mu_s > 0 &&
+        std::ranges::all_of(drawn.intensity.value, [](Complex value) { return value == 0.0; });
+    if (is_dark)
+      std::fputs("note: no light path has reached the views: fields of 0 say nothing\n", stderr);
     return Made{"mc: " + mc::make_plan(*scene_, settings_.reversed).describe() + "; " +
                     drawn.plan.describe(),
-                static_cast<double>(demand_.fields)};
+                static_cast<double>(demand_.fields),
+                is_dark ? ExitStatus::error_not_reached : ExitStatus::done};
   }
 
   FieldKeys values_;

@@ -364,6 +364,7 @@ int compare_methods(const Subcommand& command, ValidateKeys& values) {
         if (name == "wave") comparison.apart = forward_entries(scene);
         print_agreement(scene, comparison, entry_names(scene.request),
                         shown_entries(scene.request));
+        print_errors(scene.request, mc_moments.covariance);
         write_medium(file, scene);
         write_axes(file, scene);
         print_ranges("mc", mc::write_moments(file, "mc", mc.job.field, scene, mc_sums, mc_moments));

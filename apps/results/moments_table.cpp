@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "mc/slab/refinement.h"
+
 namespace flatspeckle::apps {
 
 std::string shown_value(Complex value) {
@@ -50,6 +52,19 @@ void print_entries(const CovarianceRequest& request, const Estimate& estimate,
                 estimate.error[e]);
   }
   if (entries > most_rows) std::printf("... and %zu more\n", entries - most_rows);
+}
+
+void print_errors(const CovarianceRequest& request, const Estimate& estimate) {
+  if (estimate.value.size() < 2) return;
+  const auto scale = mc::scales(request.entries, estimate.value);
+  std::size_t worst = 0;
+  const auto size = [&](std::size_t e) { return scale[e] > 0 ? estimate.error[e] / scale[e] : 0; };
+  for (std::size_t e = 0; e < scale.size(); ++e)
+    if (size(e) > size(worst)) worst = e;
+  const auto [a, b] = request.entries[worst];
+  std::printf("errors: RMS %.2g %% of the RMS value; largest of one entry %.2g %%: %s %s\n",
+              100 * relative_error(estimate), 100 * size(worst), shown_channel(request, a).c_str(),
+              a == b ? "" : shown_channel(request, b).c_str());
 }
 
 namespace {

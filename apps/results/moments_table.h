@@ -27,6 +27,10 @@ inline constexpr std::size_t most_rows = 60;
 void print_entries(const CovarianceRequest& request, const Estimate& estimate,
                    const std::string& name = "covariance");
 
+/// Prints the RMS error, which a target error is compared with, and the largest error of a single
+/// entry: relative to it or, where that is larger, to the root of the product of its intensities.
+void print_errors(const CovarianceRequest& request, const Estimate& estimate);
+
 /// The ranges of a group of a file (empty: the root), and on standard error which rest on too few
 /// steps.
 void print_ranges(const std::string& group, const std::vector<mc::WrittenMoves>& groups);
