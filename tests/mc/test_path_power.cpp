@@ -1,0 +1,118 @@
+#include <cmath>
+
+#include <doctest/doctest.h>
+
+#include "mc/paths/estimators/path_power.h"
+#include "tests/mc/estimates.h"
+
+namespace flatspeckle::mc::test_path_power {
+
+namespace {
+
+using tests::pi;
+
+constexpr std::uint64_t paths = 20000;
+
+/// Walks with a factor for every path, and one for each of its inner scatterers.
+class PlantedWalks : public PathWalks {
+ public:
+  PlantedWalks(std::shared_ptr<const PathWalks> walks, double factor, double inner)
+      : PathWalks(walks->scene(), walks->plan(), 1),
+        walks_(walks),
+        factor_(factor),
+        inner_(inner) {}
+
+  void batch(std::uint64_t number, PathScorer& scorer) const override {
+    Planted planted(scorer, factor_, inner_);
+    walks_->batch(number, planted);
+  }
+  Complex amplitude(Vec2 x, Vec2 from, Vec2 to) const override {
+    return walks_->amplitude(x, from, to);
+  }
+  void towards(Vec2 x, const SpaceDirection& from, const Directions& to,
+               std::span<Complex> out) const override {
+    walks_->towards(x, from, to, out);
+  }
+  std::unique_ptr<EndFactors> factors(const Scene& scene, const std::vector<End>& ends,
+                                      bool phases) const override {
+    return walks_->factors(scene, ends, phases);
+  }
+
+ private:
+  class Planted : public PathScorer {
+   public:
+    Planted(PathScorer& scorer, double factor, double inner)
+        : scorer_(scorer), factor_(factor), inner_(inner) {}
+
+    void single(Vec2 x, double weight) override { scorer_.single(x, factor_ * weight); }
+    void multiple(const Path& path) override {
+      Path changed = path;
+      changed.weight *= factor_ * std::pow(inner_, steps_);
+      scorer_.multiple(changed);
+    }
+    bool has_tally() const override { return true; }
+    void begin(Vec2 x, const SpaceDirection& w, double length) override {
+      steps_ = 0;
+      scorer_.begin(x, w, length);
+    }
+    void step(Vec2 x, const SpaceDirection& from, const SpaceDirection& to,
+              double length) override {
+      ++steps_;
+      scorer_.step(x, from, to, length);
+    }
+
+   private:
+    PathScorer& scorer_;
+    double factor_, inner_;
+    int steps_ = 0;
+  };
+
+  std::shared_ptr<const PathWalks> walks_;
+  double factor_, inner_;
+};
+
+}  // namespace
+
+TEST_CASE("paths carry the power that light loses, in slabs, boxes and layers") {
+  const auto request = intensity_request({0.3, -0.9}, tests::far_views({0}));
+  const Scene scenes[] = {tests::hg_slab(10, {5, 0}, request),
+                          tests::hg_slab(10, {1, 0.9}, request),
+                          tests::hg_slab(10, {2, 0.5, 0.7}, request),
+                          tests::hg_box(20, 10, {4, -0.4, 0.9}, request),
+                          tests::hg_box(20, 10, {1e6, 0.9}, request),
+                          tests::layered({{3, 2, 0.5, 0.9}, {4, 0.5, 0, 0.6}}, request)};
+  for (const Scene& scene : scenes) {
+    CAPTURE(scene.medium.mu_t);
+    const auto found = path_power(power_walks(scene, 3), paths, 2);
+    REQUIRE(found.has_value());
+    for (const PowerBalance& one : {found->first, found->second, found->later})
+      CHECK(one.off < one.limit());
+    for (const PowerBalance& one : {found->first, found->second}) CHECK(one.limit() < 0.006);
+    CHECK(found->later.limit() < 0.06);
+  }
+}
+
+TEST_CASE("a factor of 1.01 in the weights of paths is seen in the power that they carry") {
+  const auto request = intensity_request({0.3}, tests::far_views({0}));
+  for (const Scene& scene :
+       {tests::hg_slab(10, {5, 0.5}, request), tests::hg_slab(10, {5, 0, 0.8}, request),
+        tests::hg_box(20, 10, {3, 0.8}, request)}) {
+    const auto walks = power_walks(scene, 3);
+    const auto planted =
+        path_power(std::make_shared<PlantedWalks>(walks, 1.01, 1), paths, 2).value();
+    CHECK(planted.first.off > planted.first.limit());
+    CHECK(planted.second.off > planted.second.limit());
+  }
+  const auto deep = power_walks(tests::hg_slab(10, {1, 0}, request), 3);
+  const auto inner = path_power(std::make_shared<PlantedWalks>(deep, 1, 1.01), paths, 2).value();
+  CHECK(inner.later.off > inner.later.limit());
+}
+
+TEST_CASE("power of paths needs plane waves and scattering") {
+  const auto request = intensity_request({0}, tests::far_views({0}));
+  CHECK(power_walks(tests::hg_slab(10, {4, 0, 0}, request), 1) == nullptr);
+  const auto near = intensity_request({point_source({0, -5})}, tests::far_views({0}));
+  CHECK(power_walks(tests::hg_box(20, 10, {4}, near), 1) == nullptr);
+}
+
+}  // namespace flatspeckle::mc::test_path_power
