@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +10,7 @@
 #include "core/keys/number_text.h"
 #include "core/result/result_group.h"
 #include "core/session/session.h"
+#include "grin/render/methods/method_choice.h"
 #include "grin/render/pictures/map_datasets.h"
 #include "grin/render/pictures/render_datasets.h"
 #include "grin/render/values/render_values.h"
@@ -36,6 +39,20 @@ void note_smoothing(const grin::LevelSurface& surface) {
       "note: in place of body_mesh there is a smooth surface of spacing %.3g, whose volume "
       "differs by %+.2g %%\n",
       surface.spacing(), 100 * change);
+}
+
+/// Runs of very long paths look as if nothing happened.
+void note_long_paths(const grin::Stage& stage, std::int64_t max_scatterings) {
+  constexpr double many = 1e6, seconds_each = 3e-7;
+  const double scatterings = std::min(
+      most_scatterings(stage), max_scatterings > 0 ? static_cast<double>(max_scatterings)
+                                                   : std::numeric_limits<double>::infinity());
+  if (scatterings > many)
+    std::fprintf(
+        stderr,
+        "note: light scatters up to %.2g times: a path may take %.1g s (with mu_s (1 - g) in "
+        "place of mu_s and g = 0 it diffuses alike)\n",
+        scatterings, seconds_each * scatterings);
 }
 
 /// A dark picture is more often a mistake than a result.
@@ -76,7 +93,8 @@ std::size_t largest_of(const Estimate& estimate) {
 }
 
 void print_pixels(const Estimate& image) {
-  std::printf("pixels: relative error %.2g %%", 100 * relative_error(image));
+  std::printf("pixels: relative error %.2g %% (RMS error over RMS value: dark ones may be far off)",
+              100 * relative_error(image));
   double all = 0, marked = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < image.rare.size(); ++i) {
@@ -116,10 +134,12 @@ bool print_sensor(const std::string& name, const grin::Sensor& sensor,
   if (!(image.value[brightest].real() > 0)) return false;
   std::printf("%-16s %-13s %-10s\n", name.c_str(), "value", "error");
   if (result.total) print_found("total power", *result.total, "");
-  if (result.within)
+  if (result.within) {
     for (std::size_t i = 0; i < result.within->radii.size(); ++i)
       print_row(("within " + number_text(result.within->radii[i])).c_str(), result.within->power, i,
                 "");
+    std::puts("target_error: largest error of these, relative to the power or 1 % of the light");
+  }
   print_found("mean of pixels", result.mean, units);
   print_row("brightest pixel", image, brightest, units);
   if (result.gradients) print_gradients(result, parameters, units);
@@ -136,6 +156,18 @@ bool print_map(const grin::LightMap& map, const grin::RenderJob& job, const Grou
   return is_lit;
 }
 
+/// Light that the method has missed, or found twice.
+void note_checks(const grin::RenderScene& scene, const std::vector<grin::LightCheck>& checks) {
+  for (std::size_t i = 0; i < checks.size(); ++i)
+    if (!checks[i].holds())
+      std::fprintf(
+          stderr,
+          "note: the mean of sensor %s, %.4g, is not that of light paths that hit it, %.4g: "
+          "they differ by %.2g times what errors allow; take another method\n",
+          sensor_name(scene, i).c_str(), checks[i].mean, checks[i].other,
+          checks[i].off / checks[i].limit);
+}
+
 /// What each sensor and the map have found, and what the search for curves cost.
 void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
                   const GroupedSums& sums, const grin::RenderResult& result) {
@@ -148,9 +180,11 @@ void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
   }
   if (scene.map && !print_map(*scene.map, job, sums)) dark.emplace_back("the map");
   note_darkness(dark);
-  if (job.counts) note_losses(*job.counts);
-  if (!grin::has_trials(job)) return;
-  const auto& joins = job.counts->connections;
+  note_checks(scene, light_checks(job, sums));
+  const grin::TransportCounts counts = transport_counts(job, sums);
+  note_losses(counts);
+  const auto& joins = counts.connections;
+  if (joins.pairs == 0) return;
   std::printf("joins: %llu pairs, %.3g %% of trials converged, %.3g further trials each\n",
               static_cast<unsigned long long>(joins.pairs), 100 * joins.success_rate(),
               joins.mean_refind());
@@ -185,12 +219,14 @@ class RenderExperiment : public Experiment {
     request_ = make_render_request(keys, request_values_);
     scene_ = make_render_scene(keys, values_);
     check(*scene_, request_);
+    check_target();
     inputs_ = inputs_text(keys);
   }
 
   void note() const override {
     if (scene_->is_silent)
       std::fputs("note: the sound turns no ray by 1e-5, and is left out\n", stderr);
+    note_long_paths(scene_->stage, request_.max_scatterings);
     for (const grin::Body& body : scene_->stage.bodies)
       if (const auto* level = std::get_if<grin::LevelSurface>(&body.surface))
         note_smoothing(*level);
@@ -206,11 +242,19 @@ class RenderExperiment : public Experiment {
   }
 
  private:
-  void write(ResultFile& file, grin::RenderJob job, const GroupedSums& sums, bool tells) const {
-    if (!tells) job.counts = nullptr;
+  /// Throws InputError for a target that no error of the method can be trusted to have reached.
+  void check_target() const {
+    if (stop_.target_error && request_.method && !has_finite_variance(*scene_, *request_.method))
+      throw InputError("target_error", number_text(*stop_.target_error),
+                       "needs a method of finite variance, which " + method_word(*request_.method) +
+                           " is not with these lights and sensors: take bidirectional or auto");
+  }
+  void write(ResultFile& file, const grin::RenderJob& job, const GroupedSums& sums,
+             bool tells) const {
     const grin::RenderResult result = render_result(*scene_, job, sums);
     if (tells) print_render(*scene_, job, sums, result);
     write_render(file, *scene_, job, result, scene_->length_unit);
+    if (tells) write_counts(file, transport_counts(job, sums));
     if (const auto energy = energy_result(job, sums)) {
       if (tells) print_energy(*energy);
       write_energy(file, *scene_, request_, *energy);

@@ -129,6 +129,23 @@ class Scenes(RenderTest):
             ended = self.call("render", **dark, **BEAM, target_error=0.1, **limit, status=3)
             self.assertNotIn("error 0", ended.stderr)
 
+    def test_a_target_needs_finite_variance(self):
+        """Path tracing to a lamp has none, and is refused a target; a number of samples it may have."""
+        lamp = {**BOX, **FOG, **AREA, "point_light": [0, 0, 1, 1], "method": "path", "out": "lamp.h5"}
+        refused = self.call("render", **lamp, target_error=0.1, status=2)
+        self.assertIn("target_error = 0.1: needs a method of finite variance", refused.stderr)
+        self.call("render", **lamp, samples=100)
+
+    def test_light_that_a_method_misses_is_told(self):
+        """A thin beam in fog by path tracing: one run ends in vain, the other with the difference as its error."""
+        wide = {"stage_box": [-500, -500, 0, 500, 500, 2], "mu_s": 0.9, "mu_a": 0.1, "beam_light": [0, 0, 0, 0, 0, 1, 1e-3, 1],
+                "sensor": "area", "sensor_at": [0, 0, 2], "sensor_size": [1000, 1000], "pixels": [1, 1], "method": "path"}
+        told = self.call("render", **wide, target_error=0.01, out="beam.h5", status=3).stderr
+        self.assertIn("is not that of light paths that hit it", told)
+        found = datasets(self.folder / "beam.h5")
+        self.assertGreater(found["total_error"], 0.2)
+        self.assertEqual(found["total_rare"], 1)
+
     def test_a_light_is_seen_through_a_body(self):
         """By a pinhole, whatever the method."""
         keys = {**BOX, **CAMERA, "body_sphere": [0, 0, 2, 0.5], "index": 1.5,
@@ -403,6 +420,15 @@ class SameNumbers(RenderTest):
             self.render("parts.h5", **keys, threads=3, samples=samples // 2)
             self.render("parts.h5", **keys, samples=samples, resume=True)
             self.assert_same("parts.h5", "1.h5")
+            self.assert_same_work("parts.h5", "1.h5")
+
+    def assert_same_work(self, first, second):
+        """Counts are of all batches, of those before a resumption too."""
+        first, second = (datasets(self.folder / name, ()) for name in (first, second))
+        counts = [name for name in first if name.startswith(("transport/", "trials/"))]
+        self.assertGreater(first["transport/flights"], 0)
+        for name in counts:
+            self.assertEqual(first[name], second[name], name)
 
     def test_another_scene_may_not_resume(self):
         write_density(self.folder / "d.h5", np.ones((5, 5, 5)))

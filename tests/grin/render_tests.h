@@ -49,7 +49,8 @@ inline Rendered rendered(const RenderScene& scene, const RenderRequest& request,
                          const StopRule& stop, std::uint64_t seed = 1) {
   const RenderJob job = render_job(scene, request, flatspeckle::tests::fresh_seed(seed));
   const RunState state = run_render(job, stop);
-  return {rendered_picture(job, state.sums), *job.counts, state.cpu_s, state.sums.total_samples()};
+  return {rendered_picture(job, state.sums), transport_counts(job, state.sums), state.cpu_s,
+          state.sums.total_samples()};
 }
 inline Rendered rendered(const RenderScene& scene, const RenderRequest& request, double samples,
                          std::uint64_t seed = 1) {

@@ -23,7 +23,7 @@ Mapped mapped(RenderScene scene, const LightMap& map, double samples) {
   scene.map = map;
   const RenderJob job = render_job(scene, {}, 1);
   const RunState state = run_render(job, samples);
-  CHECK(job.counts->lost_values == 0);
+  CHECK(transport_counts(job, state.sums).lost_values == 0);
   const std::size_t first = job.first_of_map();
   return {fluence(state.sums, first, map), absorbed(state.sums, first, map),
           energy_result(job, state.sums).value()};

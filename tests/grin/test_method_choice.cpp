@@ -61,7 +61,8 @@ double cost(const RenderScene& scene, RenderMethod method) {
   const Estimate picture = rendered_picture(job, state.sums).steady;
   double variance = 0;
   for (const double error : picture.error) variance += error * error;
-  return variance * static_cast<double>(job.counts->flights + job.counts->joins);
+  const TransportCounts counts = transport_counts(job, state.sums);
+  return variance * static_cast<double>(counts.flights + counts.joins);
 }
 
 }  // namespace
@@ -151,8 +152,8 @@ TEST_CASE("joins are made for what they bring, not for what the straight line pr
     for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {
       CAPTURE(method_word(method));
       const RenderJob job = render_job(scene, {method}, 3);
-      run_render(job, 2000, 1);
-      CHECK(static_cast<double>(job.counts->joins) > 200);
+      const RunState state = run_render(job, 2000, 1);
+      CHECK(static_cast<double>(transport_counts(job, state.sums).joins) > 200);
     }
   }
 }

@@ -38,7 +38,8 @@ RunState run_state(const RenderJob& job, std::uint64_t samples) {
 using Chosen = std::optional<RenderMethod>;
 Rendering rendered(const RenderScene& scene, Chosen method, std::uint64_t samples) {
   const RenderJob job = render_job(scene, {method}, 1);
-  return {rendered_picture(job, run_state(job, samples).sums).steady, *job.counts};
+  const GroupedSums sums = run_state(job, samples).sums;
+  return {rendered_picture(job, sums).steady, transport_counts(job, sums)};
 }
 
 /// The mean of n^2 over the face at z = 1, and a camera that reads 1 (C24).

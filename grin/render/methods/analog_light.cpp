@@ -169,8 +169,7 @@ class AnalogWalk {
     if (moving_)
       branch.flight =
           moving_->go_on(branch.flight, branch.from.point.x, branch.from.arrived, flown, direction);
-    if (batch_.film.has_derivatives())
-      branch.score.turned(medium, branch.from.arrived.dot(direction));
+    if (batch_.film.has_derivatives()) branch.score.turned(medium, branch.from.arrived, direction);
   }
 
   /// Into as many as it is worth, of which those stay that head for the sensors. Whether one does.
@@ -212,6 +211,7 @@ class AnalogWalk {
       sensor.hit(batch_.space, last.point.x, last.arrived, [&](const EndHit& hit) {
         const double value = last.weight * hit.value;
         deposit(batch_.film, batch_.counts, hit.direction.pixel, value, last.optical_path);
+        batch_.film.add_hit(hit.direction.pixel, value);
         if (batch_.film.has_derivatives())
           now.score.add_to(batch_.film, hit.direction.pixel, value,
                            batch_.transport.medium(last.point.part));

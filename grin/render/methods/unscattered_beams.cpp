@@ -5,8 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
+#include <vector>
 
 #include "grin/render/methods/beam_edges.h"
+#include "grin/render/transport/beam_join.h"
 #include "grin/render/transport/light_tally.h"
 #include "grin/render/transport/path_score.h"
 
@@ -24,15 +27,38 @@ double fraction(double x) {
   return x - std::floor(x);
 }
 
-/// Rays do not say all of what this sensor sees of beams.
-bool needs_ways(const Space& space, const SensorEnd& sensor) {
-  return !sensor.can_be_hit() || space.joins_through();
+/// Whether rays miss what this sensor sees of a beam, or hit it rarely: light that is refracted or
+/// reflected, and straight light to places that few of the rays go to.
+bool needs_ways(const Space& space, const SensorEnd& sensor, const StageLights::Beam& beam) {
+  constexpr double much = 4;
+  constexpr int some = 16;
+  if (!sensor.can_be_hit() || space.joins_through()) return true;
+  if (space.has_curves()) return false;
+  RandomStream random(0, static_cast<std::uint64_t>(Stream::render), 0);
+  for (int i = 0; i < some; ++i) {
+    const EndPosition z = sensor.sample_position(space, random);
+    const auto place = straight_place(beam.light(), z.point.x);
+    if (place && beam.disk.contains(*place) &&
+        z.position_density > much * beam.disk.density(*place))
+      return true;
+  }
+  return false;
 }
 
-/// Where searches for ways from a sensor to a beam begin, of each sensor and beam; and whether any
-/// light may come that way, as far as a search tells.
+/// The probability that a search finds a way, as weights take it. Ways with few passages that do
+/// not spread light too much are among the seeds. Of others, which through rows of balls are more
+/// than any search can list, a random trial finds one if it starts in the right direction, within a
+/// solid angle that falls with the spread of the light, and takes the right passages.
+double found_probability(const BeamWay& way) {
+  const int further = std::max(way.passages.count - 2, 0);
+  if (way.thinning < 1e4 * std::pow(0.03, further)) return 1;
+  return 0.03 * std::pow(0.2, further) / std::max(way.thinning, 1.0);
+}
+
+/// Where searches for ways from a sensor to a beam begin, of each sensor and beam, if there are to
+/// be any; and whether any light may come that way, as far as a search tells.
 struct BeamSeeds {
-  std::vector<std::vector<BeamSeed>> of_pair;
+  std::vector<std::optional<std::vector<BeamSeed>>> of_pair;
   bool is_any_seen = false;
 };
 
@@ -87,9 +113,10 @@ BeamSeeds all_seeds(const Transport& transport, const Space& space, int trials) 
   for (const SensorEnd& sensor : transport.sensors)
     for (std::size_t beam = 0; beam < transport.lights.beams(); ++beam)
       seeds.of_pair.push_back(
-          needs_ways(space, sensor)
-              ? seeds_of(space, sensor, transport.lights.beam_at(beam), trials, seeds.is_any_seen)
-              : std::vector<BeamSeed>());
+          needs_ways(space, sensor, transport.lights.beam_at(beam))
+              ? std::optional(seeds_of(space, sensor, transport.lights.beam_at(beam), trials,
+                                       seeds.is_any_seen))
+              : std::nullopt);
   return seeds;
 }
 
@@ -102,9 +129,9 @@ struct BeamsSetup {
 };
 
 /// Light of beams that meets no collision: rays from the beams that hit sensors, and ways from
-/// places of the sensors back to the beams, ways_per_ray of them. A way that the body's surface
-/// refracts or reflects can be found by both, and is shared by multiple importance sampling; of
-/// sensors that can be hit the others are the rays' alone.
+/// places of the sensors back to the beams, ways_per_ray of them. What both can find is shared by
+/// multiple importance sampling; curved rays that no surface refracts or reflects are the rays'
+/// alone where the sensor can be hit.
 class UnscatteredBeams {
  public:
   UnscatteredBeams(const Transport& transport, const BeamsSetup& setup, const Space& space,
@@ -128,15 +155,13 @@ class UnscatteredBeams {
     if (setup_.books) book(start, flight);
     if (flight.end == Flight::End::lost) return;
     if (moving_) move(start, flight);
-    for (const SensorEnd& sensor : transport_.sensors)
-      sensor.hit(space_, flight.point.x, flight.direction, [&](const EndHit& hit) {
-        const double value = worth_ * transport_.lights.beam_power() * flight.weight * hit.value *
-                             weight_of_ray(flight, hit, transport_.lights.beam(stratum));
-        add(hit.direction.pixel, value, flight.optical_path);
-        if (!film_.has_derivatives()) return;
-        PathScore score;
-        score.flew(flight.arc_length);
-        score.add_to(film_, hit.direction.pixel, value, transport_.medium(start.point.part));
+    const StageLights::Beam beam = transport_.lights.beam(stratum);
+    for (std::size_t i = 0; i < transport_.sensors.size(); ++i)
+      transport_.sensors[i].hit(space_, flight.point.x, flight.direction, [&](const EndHit& hit) {
+        const double value = worth_ * transport_.lights.beam_power() * flight.weight * hit.value;
+        const double weight = seeds(i, beam) ? weight_of_ray(start, flight, hit, beam) : 1;
+        film_.add_hit(hit.direction.pixel, value);
+        add(hit.direction.pixel, value * weight, flight.optical_path, flight.arc_length);
       });
   }
 
@@ -150,12 +175,14 @@ class UnscatteredBeams {
   void add_ways(double stratum) {
     const StageLights::Beam beam = transport_.lights.beam(stratum);
     for (std::size_t i = 0; i < transport_.sensors.size(); ++i)
-      if (needs_ways(space_, transport_.sensors[i]))
-        add_ways(transport_.sensors[i], beam,
-                 setup_.seeds.of_pair[i * transport_.lights.beams() + beam.number]);
+      if (const auto& known = seeds(i, beam)) add_ways(transport_.sensors[i], beam, *known);
   }
 
  private:
+  const std::optional<std::vector<BeamSeed>>& seeds(std::size_t sensor,
+                                                    const StageLights::Beam& beam) const {
+    return setup_.seeds.of_pair[sensor * transport_.lights.beams() + beam.number];
+  }
   void move(const EndPosition& start, const Flight& flight) {
     moving_->land(moving_->begin(start.point.x, start.inward), flight.point.x, flight.direction,
                   flight.arc_length, worth_ * transport_.lights.beam_power() * flight.weight);
@@ -186,30 +213,44 @@ class UnscatteredBeams {
                          (z.position_density * z.index * z.index * way.thinning);
     double weight = 1;
     if (sensor.can_be_hit()) {
-      if (way.passages.count == 0) return;
+      if (way.passages.count == 0 && space_.has_curves()) return;
       weight = 1 / (1 + 1 / heuristic(ways_over_rays(z, way, beam)));
     }
     add(to.pixel, worth_ * value * weight * way.multiplicity / setup_.ways_per_ray,
-        way.optical_path);
+        way.optical_path, way.arc_length);
   }
 
-  double weight_of_ray(const Flight& flight, const EndHit& hit,
+  double weight_of_ray(const EndPosition& start, const Flight& flight, const EndHit& hit,
                        const StageLights::Beam& beam) const {
-    if (flight.passages.count == 0 || !flight.is_joinable) return 1;
+    if (!flight.is_joinable) return 1;
+    if (flight.passages.count == 0) {
+      if (space_.has_curves()) return 1;
+      return 1 / (1 + heuristic(
+                          ways_over_rays(hit.position, -flight.direction, start.point.x, 1, beam)));
+    }
     const auto way = space_.beam_way(hit.position.point, beam.light(), -flight.direction,
                                      flight.passages.reversed(), random_);
     return way ? 1 / (1 + heuristic(ways_over_rays(hit.position, *way, beam))) : 1;
   }
 
-  /// Of the densities with which both find a way, per area of the beam.
+  /// The ratio of the densities with which both find a way, per area of the beam. thinning: of the
+  /// light on it, times the probability that a search finds it.
+  double ways_over_rays(const EndPosition& z, const Vec3& direction, const Vec3& place,
+                        double thinning, const StageLights::Beam& beam) const {
+    const double by_ways = z.position_density * thinning / z.inward.dot(direction);
+    return setup_.ways_per_ray * by_ways / beam.disk.density(place);
+  }
   double ways_over_rays(const EndPosition& z, const BeamWay& way,
                         const StageLights::Beam& beam) const {
-    const double by_rays = beam.disk.density(way.place);
-    const double by_ways = z.position_density * way.thinning / z.inward.dot(way.start_direction);
-    return setup_.ways_per_ray * by_ways / by_rays;
+    return ways_over_rays(z, way.start_direction, way.place, found_probability(way) * way.thinning,
+                          beam);
   }
-  void add(int pixel, double value, double optical_path) {
+  void add(int pixel, double value, double optical_path, double arc_length) {
     deposit(film_, counts_, pixel, value, optical_path);
+    if (!film_.has_derivatives()) return;
+    PathScore score;
+    score.flew(arc_length);
+    score.add_to(film_, pixel, value, transport_.medium(around));
   }
 
   const Transport& transport_;

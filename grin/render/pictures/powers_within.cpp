@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace flatspeckle::grin {
 
@@ -75,6 +76,9 @@ std::optional<PowersWithin> powers_within(
 }
 
 double largest_error(const PowersWithin& powers, double power_of_light) {
+  const double value = powers.power.value.back().real(), error = powers.power.error.back();
+  const double least = powers.power.rare.back() == 0 ? 2 : 10;  // errors
+  if (!(value > 0 && least * error < value)) return std::numeric_limits<double>::infinity();
   double largest = 0;
   for (std::size_t i = 0; i < powers.radii.size(); ++i) {
     const double scale = std::max(powers.power.value[i].real(), 0.01 * power_of_light);

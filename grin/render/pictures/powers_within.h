@@ -25,6 +25,8 @@ std::optional<PowersWithin> powers_within(
 
 /// The largest of the errors, each relative to its power or, if that is less, to a hundredth of the
 /// light's: a disk on which hardly any light falls need not be known as well as the others.
+/// Infinite where the power on the largest disk is not twice its error, or ten times that where a
+/// few paths bring it: darkness is not known by not having found light.
 double largest_error(const PowersWithin& powers, double power_of_light);
 
 }  // namespace flatspeckle::grin

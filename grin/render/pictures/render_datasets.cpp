@@ -291,19 +291,30 @@ void write_sensor(const ResultGroup& group, const SensorPixels& pixels,
   put_paths(group, "mean", result.paths);
 }
 
-void write_counts(ResultFile& file, const RenderJob& job) {
-  if (!job.counts) return;
-  const ResultGroup root(file, render_table);
-  root.put("transport/flights", job.counts->flights);
-  root.put("transport/lost_flights", job.counts->lost_flights);
-  root.put("transport/joins", job.counts->joins);
-  root.put("transport/lost_values", job.counts->lost_values);
-  if (!has_trials(job)) return;
-  write_trials(file, job.counts->connections);
-  write_pairs(file, job.counts->connections);
+/// What fails its invariant is off by as much as that is.
+void doubt(const LightCheck& check, double area, SensorResult& result) {
+  if (check.holds()) return;
+  const auto widen = [](Estimate& one, double off) {
+    one.error[0] = std::max(one.error[0], off);
+    one.rare.assign(1, 1);
+  };
+  widen(result.mean, check.off);
+  if (result.total) widen(*result.total, check.off * area);
+  std::ranges::fill(result.picture.steady.rare, 1);
 }
 
 }  // namespace
+
+void write_counts(ResultFile& file, const TransportCounts& counts) {
+  const ResultGroup root(file, render_table);
+  root.put("transport/flights", counts.flights);
+  root.put("transport/lost_flights", counts.lost_flights);
+  root.put("transport/joins", counts.joins);
+  root.put("transport/lost_values", counts.lost_values);
+  if (!counts.connections.pairs) return;
+  write_trials(file, counts.connections);
+  write_pairs(file, counts.connections);
+}
 
 PowerGradients power_gradients(const Sensor& sensor, std::size_t first_pixel, const TimeBins& bins,
                                const GroupedSums& sums) {
@@ -402,11 +413,13 @@ const DatasetTable render_table{
 RenderResult render_result(const RenderScene& scene, const RenderJob& job,
                            const GroupedSums& sums) {
   const RenderedPicture all = rendered_picture(job, sums);
+  const std::vector<LightCheck> checks = light_checks(job, sums);
   RenderResult result;
   std::size_t first = 0;
   for (const Sensor& sensor : scene.sensors) {
     const Pixels pixels{pixels_of(sensor), first, job.bins};
     result.push_back(sensor_result(table_of(sensor), pixels, job, all, sums));
+    doubt(checks[result.size() - 1], pixels.of.area, result.back());
     result.back().within = powers_within(
         sensor, first, job.bins, sums,
         [&](const GroupedSums& of, const Estimator& theta) { return job.estimate(of, theta); });
@@ -435,11 +448,6 @@ void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& j
     write_sensor({file, table_of(scene.sensors[i]),
                   result.size() > 1 ? "sensors/" + sensor_name(scene, i) : ""},
                  pixels_of(scene.sensors[i]), result[i]);
-  write_counts(file, job);
-}
-
-bool has_trials(const RenderJob& job) {
-  return job.counts && job.counts->connections.pairs > 0;
 }
 
 }  // namespace flatspeckle::grin

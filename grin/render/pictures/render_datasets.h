@@ -59,12 +59,12 @@ struct SensorResult {
 using RenderResult = std::vector<SensorResult>;
 RenderResult render_result(const RenderScene& scene, const RenderJob& job, const GroupedSums& sums);
 
-/// Pictures, what they add up to, and what the paths cost. Of several sensors each has a group,
+/// Pictures, and what they add up to. Of several sensors each has a group,
 /// sensors/NAME. length_unit: metres.
 void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& job,
                   const RenderResult& result, const std::optional<double>& length_unit);
 
-/// Whether curves between two points had to be sought.
-bool has_trials(const RenderJob& job);
+/// What the paths cost.
+void write_counts(ResultFile& file, const TransportCounts& counts);
 
 }  // namespace flatspeckle::grin

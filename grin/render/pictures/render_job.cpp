@@ -4,8 +4,9 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <mutex>
 #include <numeric>
+#include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 
@@ -177,7 +178,61 @@ double largest_error(const Transport& transport, const std::vector<Sensor>& kind
   return largest;
 }
 
+/// Of all pixels of all sensors.
+std::vector<PixelShare> pixel_shares(const std::vector<Sensor>& sensors) {
+  std::vector<PixelShare> shares;
+  for (std::size_t sensor = 0; sensor < sensors.size(); ++sensor) {
+    const SensorPixels pixels = pixels_of(sensors[sensor]);
+    for (int pixel = 0; pixel < pixels.grid.count(); ++pixel)
+      shares.push_back({sensor, pixels.share(static_cast<std::size_t>(pixel))});
+  }
+  return shares;
+}
+
+/// Adds means over the pixels of each sensor by another tracer, which draws a quarter of the paths.
+void add_means_by(const Tracer& tracer, int paths, const TimeBins& bins,
+                  std::span<const PixelShare> shares, RandomStream random,
+                  std::span<double> means) {
+  const int few = std::max(1, paths / 4);
+  std::vector<Complex> sums(shares.size() * static_cast<std::size_t>(bins.sums()));
+  Film film(static_cast<int>(shares.size()), bins, sums);
+  film.shares = shares;
+  TransportCounts counts;
+  tracer.add(few, random, film, counts);
+  std::vector<double> own(means.size());
+  film.add_means(own);
+  for (std::size_t i = 0; i < means.size(); ++i) means[i] += own[i] * paths / few;
+}
+
 }  // namespace
+
+std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& sums) {
+  constexpr double errors = 5, rounding = 1e-9;
+  const std::size_t count = job.sensors;
+  const Estimate all = jackknife(
+      sums,
+      [&](double samples, std::span<const Complex> of) {
+        auto values = sample_mean(samples, of.subspan(job.first_of_checks(), 2 * count));
+        for (std::size_t i = 0; i < count; ++i) values.push_back(values[i] - values[count + i]);
+        return values;
+      },
+      few_of_values);
+  std::vector<LightCheck> checks(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double mean = all.value[i].real(), other = all.value[count + i].real();
+    const bool is_known = sums.groups() > 1 && other > 0 && all.rare[count + i] == 0,
+               is_marked = all.rare[i] != 0 && all.error[i] > mean / 2;
+    if (is_known && !is_marked)
+      checks[i] = {std::abs(all.value[2 * count + i].real()),
+                   errors * all.error[2 * count + i] + rounding * mean, mean, other};
+  }
+  return checks;
+}
+
+TransportCounts transport_counts(const RenderJob& job, const GroupedSums& sums) {
+  const std::vector<Complex> all = sums.total();
+  return TransportCounts::of(std::span(all).subspan(job.first_of_counts(), TransportCounts::size));
+}
 
 void bound_errors(Estimate& picture, const PixelGrid& grid) {
   const std::size_t size = picture.value.size();
@@ -245,6 +300,60 @@ void check(const RenderScene& scene, const RenderRequest& request) {
   if (scene.random_phase) make_ray_field(scene.field)->frozen(0);
 }
 
+namespace {
+
+/// Adds a batch to its sums.
+struct RenderBatch {
+  RenderJob job;  ///< what the sums are
+  Tracer tracer;
+  std::optional<Tracer> other;  ///< to compare with
+  MapKernel map;
+  std::vector<PixelShare> shares;
+  int paths;
+  bool books;  ///< where the power of the tracer's light paths goes
+  std::uint64_t seed;
+
+  void operator()(std::uint64_t number, std::span<Complex> sums) const {
+    Film film(static_cast<int>(shares.size()), job.bins, sums.first(job.pictures));
+    film.shares = shares;
+    film.hits.resize(other ? 0 : job.sensors);
+    TransportCounts counts;
+    EnergyBalance of_map;
+    RandomStream random = stream(Stream::render, number);
+    if (!shares.empty()) tracer.add(paths, random, film, counts);
+    add_checks(film, number, sums.subspan(job.first_of_checks(), 2 * job.sensors));
+    if (job.has_drift) sums.back() += film.drift;
+    if (map) {
+      RandomStream own = stream(Stream::light_map, number);
+      map(paths, own, sums.subspan(job.first_of_map()), of_map, counts);
+    }
+    if (job.has_energy)
+      (books ? film.energy : of_map).add_to(sums.subspan(job.pictures, EnergyBalance::size));
+    counts.add_to(sums.subspan(job.first_of_counts(), TransportCounts::size));
+  }
+
+ private:
+  RandomStream stream(Stream of, std::uint64_t number) const {
+    return {seed, static_cast<std::uint64_t>(of), number};
+  }
+  void add_checks(Film& film, std::uint64_t number, std::span<Complex> sums) const {
+    constexpr std::uint64_t others = std::uint64_t{1} << 62;  // batches of numbers of their own
+    std::vector<double> means(job.sensors);
+    film.add_means(means);
+    if (other) {
+      film.hits.resize(job.sensors);
+      add_means_by(*other, paths, job.bins, shares, stream(Stream::render, others + number),
+                   film.hits);
+    }
+    for (std::size_t i = 0; i < job.sensors; ++i) {
+      sums[i] += means[i];
+      sums[job.sensors + i] += film.hits[i];
+    }
+  }
+};
+
+}  // namespace
+
 RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std::uint64_t seed) {
   check(scene, request);
   const Tracers tracers(scene, request);
@@ -261,6 +370,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   const bool books = walks_light(tracer.method) && pixels > 0;
   job.has_energy = books || map;
   job.has_drift = books && tracers.has_drift();
+  job.sensors = scene.sensors.size();
   job.batches.size =
       job.first_of_map() + (map ? sums_per_cell * cells(*scene.map) : 0) + (job.has_drift ? 1 : 0);
   const int paths =
@@ -268,35 +378,20 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.batches.samples_per_batch = paths;
   job.batches.deterministic = !tracers.plan().scatters;
   if (tracer.method == RenderMethod::analog) job.batches.trusted_batches = 64;  // no path is strong
-  const auto counts = std::make_shared<TransportCounts>();
-  job.counts = counts;
-  const auto counting = std::make_shared<std::mutex>();
-  job.batches.run = [=, bins = scene.bins, pictures = job.pictures, has_energy = job.has_energy,
-                     has_drift = job.has_drift, first_of_map = job.first_of_map()](
-                        std::uint64_t number, std::span<Complex> sums) {
-    Film film(pixels, bins, sums.first(pictures));
-    RandomStream random(seed, static_cast<std::uint64_t>(Stream::render), number);
-    TransportCounts of_batch;
-    EnergyBalance of_map;
-    if (pixels > 0) tracer.add(paths, random, film, of_batch);
-    if (has_drift) sums.back() += film.drift;
-    if (map) {
-      RandomStream own(seed, static_cast<std::uint64_t>(Stream::light_map), number);
-      map(paths, own, sums.subspan(first_of_map), of_map, of_batch);
-    }
-    if (has_energy)
-      (books ? film.energy : of_map).add_to(sums.subspan(pictures, EnergyBalance::size));
-    const std::lock_guard lock(*counting);
-    *counts += of_batch;
-  };
+  RenderBatch batch{job, tracer, {}, map, pixel_shares(scene.sensors), paths, books, seed};
+  if (tracer.method == RenderMethod::path) batch.other = tracers.make(RenderMethod::bidirectional);
+  job.batches.run = batch;
   job.few_of_pictures = few_of(tracer.transport->sensors);
   const EntrySums steady_sums{static_cast<std::size_t>(pixels),
                               static_cast<std::size_t>(scene.bins.sums()),
                               static_cast<std::size_t>(scene.bins.parts())};
-  job.batches.relative_error = [=, kinds = scene.sensors, bins = scene.bins, cells = scene.map,
+  job.batches.relative_error = [=, checked = job, kinds = scene.sensors, bins = scene.bins,
+                                cells = scene.map,
                                 steady = steady_picture(job.pictures, scene.bins),
                                 has_drift = job.has_drift, few = job.few_of_pictures,
                                 first_of_map = job.first_of_map()](const GroupedSums& sums) {
+    if (!std::ranges::all_of(light_checks(checked, sums), &LightCheck::holds))
+      return std::numeric_limits<double>::infinity();
     const Estimate picture = has_drift ? controlled_jackknife(sums, steady, sums.size() - 1, few)
                                        : jackknife(sums, steady_sums, few);
     const auto estimate = [&](const GroupedSums& of, const Estimator& theta) {

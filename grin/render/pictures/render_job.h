@@ -29,8 +29,9 @@ void bound_errors(Estimate& picture, const PixelGrid& grid);
 
 /// samples: light paths and as many paths of each sensor. Sums of a batch, imaginary part 0:
 /// [pixel][TimeBins::sums] with the pixels of one sensor after the other; then [fate], where light
-/// paths are walked to their ends; then those of a map (MapKernel), and last a control variate
-/// (DepthImportance::Drift).
+/// paths are walked to their ends; then TransportCounts; then means over the pixels of each sensor,
+/// and the same found in another way (LightCheck); then those of a map (MapKernel), and last a
+/// control variate (DepthImportance::Drift).
 struct RenderJob {
   BatchJob batches;
   TimeBins bins;
@@ -38,15 +39,31 @@ struct RenderJob {
   bool has_energy = false;   ///< sums by Fate
   bool has_drift = false;    ///< the last of the sums
   std::string plan;          ///< the method, what is left out and what is not
-  std::size_t first_of_map() const { return pictures + (has_energy ? EnergyBalance::size : 0); }
+  std::size_t sensors = 0;
+  std::size_t first_of_counts() const { return pictures + (has_energy ? EnergyBalance::size : 0); }
+  std::size_t first_of_checks() const { return first_of_counts() + TransportCounts::size; }
+  std::size_t first_of_map() const { return first_of_checks() + 2 * sensors; }
   /// Of pictures: jackknife(), with the control variate where there is one; what fewer than so many
   /// groups make up is marked.
   Estimate estimate(const GroupedSums& sums, const Estimator& theta,
                     double few = few_of_values) const;
   double few_of_pictures = few_of_values;
-  /// Of all batches that have run here.
-  std::shared_ptr<const TransportCounts> counts;
 };
+
+/// What the batches in the sums cost, also those of runs that this one resumes.
+TransportCounts transport_counts(const RenderJob& job, const GroupedSums& sums);
+
+/// An invariant of a sensor that light can hit: the mean over its pixels, by weights of all
+/// strategies, is that of the light paths that hit it by themselves. Path tracing has none, and is
+/// compared with some paths of bidirectional tracing. `off` is the difference, `limit` five of its
+/// standard errors; both are 0 where too few paths hit to tell.
+struct LightCheck {
+  double off = 0, limit = 0, mean = 0, other = 0;
+
+  bool holds() const { return off <= limit; }
+};
+/// Of each sensor.
+std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& sums);
 
 /// Throws InputError for lights and sensors that do not fit the stage, for media in which paths do
 /// not end in time, and for a random phase of a field without sound.

@@ -14,11 +14,12 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// Of a path from the middle: diffusion, or what absorption and roulette leave of it.
+/// Of a path from the middle: the way through and diffusion, or what absorption and roulette leave
+/// of it.
 double most_scatterings(const ScatteringMedium& medium, const Surface& within, double density) {
   const auto [low, high] = bounds(within);
   const double depth = medium.mu_s * density * (high - low).minCoeff() / 2;
-  return std::min(1.5 * depth * depth * (1 - medium.phase.mean_cosine()),
+  return std::min(depth + 1.5 * depth * depth * (1 - medium.phase.mean_cosine()),
                   4 / (1 - medium.albedo()));
 }
 
@@ -158,6 +159,14 @@ void check_path_lengths(const Stage& stage, int max_scatterings) {
   for (Part part = around; part < stage.parts(); ++part)
     check_path_lengths(stage.medium_in(part), stage.surface(part), mean_density(stage, part),
                        part == around ? "" : stage.bodies[part - 1].keys);
+}
+
+double most_scatterings(const Stage& stage) {
+  double most = 0;
+  for (Part part = around; part < stage.parts(); ++part)
+    most = std::max(most, most_scatterings(stage.medium_in(part), stage.surface(part),
+                                           mean_density(stage, part)));
+  return most;
 }
 
 }  // namespace flatspeckle::grin

@@ -62,6 +62,10 @@ void check_bodies(const Stage& stage);
 /// boundary, a second one without an index, and a density grid that flights take too long through.
 void check(const Stage& stage);
 
+/// How often light from the middle of a part scatters at the most, roughly: it goes through,
+/// diffuses, or is absorbed.
+double most_scatterings(const Stage& stage);
+
 /// Throws InputError for a medium so dense that a path of at most so many scatterings may not end
 /// within minutes.
 void check_path_lengths(const Stage& stage, int max_scatterings);

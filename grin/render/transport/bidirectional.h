@@ -105,7 +105,10 @@ class Bidirectional {
       if (end.is_beam && last.vertices == 2) return;  // summed apart (unscattered_beams.h)
       for_each_sensor([&] {
         arrive(sensor(), choice, last, before, transport_.strategies.most_sensor(),
-               [&](const EndHit& hit) { return hit.direction.pixel; });
+               [&](const EndHit& hit) {
+                 film_.add_hit(hit.direction.pixel, last.weight * hit.value);
+                 return hit.direction.pixel;
+               });
       });
     };
     const double last_kept = sample_last_kept();

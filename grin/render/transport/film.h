@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cassert>
+#include <cmath>
 #include <span>
+#include <vector>
 
 #include "core/numbers/complex.h"
 
@@ -64,6 +66,12 @@ struct TimeBins {
   int sums() const { return first_by_field() + by_field; }
 };
 
+/// The sensor of a pixel, and the share of its area that the pixel has.
+struct PixelShare {
+  std::size_t sensor;
+  double share;
+};
+
 /// Sums of a batch: [pixel][TimeBins::sums].
 class Film {
  public:
@@ -85,6 +93,26 @@ class Film {
     own[bins_.parts()] += value * optical_path;
     own[bins_.parts() + 1] += value * optical_path * optical_path;
   }
+
+  /// Counts light that hit a pixel by itself, whatever weight it has among the strategies that find
+  /// such light. Nothing is counted where `hits` is empty.
+  void add_hit(int pixel, double value) {
+    if (hits.empty() || pixel < 0 || !std::isfinite(value)) return;
+    const PixelShare& of = shares[static_cast<std::size_t>(pixel)];
+    hits[of.sensor] += of.share * value;
+  }
+  /// The steady light of all pixels so far, to be added to means over the pixels of each sensor.
+  void add_means(std::span<double> means) const {
+    for (std::size_t pixel = 0; pixel < shares.size(); ++pixel)
+      for (int part = 0; part < bins_.parts(); ++part)
+        means[shares[pixel].sensor] +=
+            shares[pixel].share *
+            sums_[pixel * static_cast<std::size_t>(per_pixel_) + static_cast<std::size_t>(part)]
+                .real();
+  }
+
+  std::span<const PixelShare> shares;  ///< of all pixels
+  std::vector<double> hits;            ///< of each sensor
 
   bool has_derivatives() const { return bins_.derivatives > 0; }
   void add_derivative(int pixel, int parameter, double value) {

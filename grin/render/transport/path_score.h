@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "grin/media/geometry/vec3.h"
 #include "grin/media/scattering/scattering_medium.h"
 #include "grin/render/transport/transport_counts.h"
 
@@ -33,11 +34,15 @@ inline std::string name_of(MediumParameter parameter) {
 class PathScore {
  public:
   void flew(double length) { length_ += length; }
-  /// A collision from which the path goes on at this angle.
-  void turned(const ScatteringMedium& medium, double cosine) {
+  /// A collision at which the path turns from one direction, a unit vector, to another.
+  void turned(const ScatteringMedium& medium, const Vec3& from, const Vec3& to) {
     ++collisions_;
-    if (const auto* phase = std::get_if<HgPhase>(&medium.phase.which))
-      by_g_ += slope_of_log(phase->g, cosine);
+    const auto* phase = std::get_if<HgPhase>(&medium.phase.which);
+    if (!phase) return;
+    const bool is_forward = phase->g >= 0;
+    const double slope = slope_of_log(
+        std::abs(phase->g), (is_forward ? Vec3(to - from) : Vec3(to + from)).squaredNorm() / 2);
+    by_g_ += is_forward ? slope : -slope;
   }
 
   double by(MediumParameter parameter, const ScatteringMedium& medium) const {
@@ -53,9 +58,11 @@ class PathScore {
   }
 
  private:
-  /// Of (1 - g^2) / (1 + g^2 - 2 g c)^(3/2) by g.
-  static double slope_of_log(double g, double cosine) {
-    return -2 * g / (1 - g * g) + 3 * (cosine - g) / (1 + g * g - 2 * g * cosine);
+  /// Derivative of log((1 - g^2) / (1 + g^2 - 2 g cosine)^(3/2)) by g >= 0. In the peak of g near
+  /// 1, 1 - cosine keeps the digits that the cosine loses.
+  static double slope_of_log(double g, double one_minus_cosine) {
+    const double beside = 1 - g, square = beside * beside + 2 * g * one_minus_cosine;
+    return 3 * (beside - one_minus_cosine) / square - 2 * g / (beside * (1 + g));
   }
 
   double length_ = 0, collisions_ = 0, by_g_ = 0;

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/run/interrupt.h"
@@ -36,15 +38,31 @@ struct TransportCounts {
     lost_flights += is_lost;
   }
 
-  TransportCounts& operator+=(const TransportCounts& other) {
-    flights += other.flights;
-    lost_flights += other.lost_flights;
-    light_collisions += other.light_collisions;
-    joins_weighed += other.joins_weighed;
-    joins += other.joins;
-    lost_values += other.lost_values;
-    connections += other.connections;
-    return *this;
+ private:
+  template <class Counts>
+  static auto told(Counts& counts) {
+    auto& curves = counts.connections;
+    std::array all{&counts.flights,     &counts.lost_flights, &counts.joins,
+                   &counts.lost_values, &curves.iterations,   &curves.pairs,
+                   &curves.found,       &curves.refind,       &curves.roulette_ends,
+                   &curves.outcomes[0], &curves.outcomes[1],  &curves.outcomes[2],
+                   &curves.outcomes[3], &curves.outcomes[4],  &curves.outcomes[5]};
+    static_assert(all.size() == size);
+    return all;
+  }
+
+ public:
+  /// Of those that a result tells; they add up over batches, as sums do.
+  static constexpr std::size_t size = 9 + trial_outcomes;
+  void add_to(std::span<Complex> sums) const {
+    const auto all = told(*this);
+    for (std::size_t i = 0; i < size; ++i) sums[i] += static_cast<double>(*all[i]);
+  }
+  static TransportCounts of(std::span<const Complex> sums) {
+    TransportCounts counts;
+    const auto all = told(counts);
+    for (std::size_t i = 0; i < size; ++i) *all[i] = static_cast<std::uint64_t>(sums[i].real());
+    return counts;
   }
 };
 
