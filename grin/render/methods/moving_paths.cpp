@@ -19,10 +19,14 @@ std::optional<double> information(const SpacePhaseFunction& phase) {
   const double g = std::abs(hg->g);
   return std::sqrt(0.6 * g) / (1 - g);
 }
-/// Of ln p by the cosine.
-double slope_of_log(const SpacePhaseFunction& phase, double cosine) {
+/// Derivative of ln p by the cosine between two unit vectors. Their difference, or sum for g < 0,
+/// keeps the digits of 1 + g^2 - 2 g cosine in a narrow peak, where the cosine is 1 to rounding.
+double slope_of_log(const SpacePhaseFunction& phase, const Vec3& from, const Vec3& to) {
   const auto* hg = std::get_if<HgPhase>(&phase.which);
-  return hg ? 3 * hg->g / (1 + hg->g * hg->g - 2 * hg->g * cosine) : 0;
+  if (!hg) return 0;
+  const double size = std::abs(hg->g), beside = 1 - size;
+  const Vec3 apart = hg->g > 0 ? Vec3(to - from) : Vec3(to + from);
+  return 3 * hg->g / (beside * beside + size * apart.squaredNorm());
 }
 
 }  // namespace
@@ -174,7 +178,7 @@ void MovingPaths::collide(const Start& next, double scale, Motion& motion) const
   const double tell = told ? *told * scale * turn.norm() : 0;
   const double taken_back = told ? 1 / (1 + tell * tell) : 0;
   const double cosine = next.arrived.dot(next.direction), towards = turn.dot(next.direction);
-  motion.score += taken_back * slope_of_log(phase, cosine) * towards;
+  motion.score += taken_back * slope_of_log(phase, next.arrived, next.direction) * towards;
   motion.direction = (1 - taken_back) * (cosine * turn - towards * next.arrived);
 }
 

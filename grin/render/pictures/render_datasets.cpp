@@ -300,7 +300,9 @@ void doubt(const LightCheck& check, double area, SensorResult& result) {
   };
   widen(result.mean, check.off);
   if (result.total) widen(*result.total, check.off * area);
-  std::ranges::fill(result.picture.steady.rare, 1);
+  Estimate& pixels = result.picture.steady;
+  for (double& error : pixels.error) error = std::max(error, check.off);
+  pixels.rare.assign(pixels.error.size(), 1);
 }
 
 }  // namespace

@@ -207,7 +207,7 @@ void add_means_by(const Tracer& tracer, int paths, const TimeBins& bins,
 }  // namespace
 
 std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& sums) {
-  constexpr double errors = 5, rounding = 1e-9;
+  constexpr double errors = 5;
   const std::size_t count = job.sensors;
   const Estimate all = jackknife(
       sums,
@@ -224,7 +224,7 @@ std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& su
                is_marked = all.rare[i] != 0 && all.error[i] > mean / 2;
     if (is_known && !is_marked)
       checks[i] = {std::abs(all.value[2 * count + i].real()),
-                   errors * all.error[2 * count + i] + rounding * mean, mean, other};
+                   errors * all.error[2 * count + i] + all.error[i], mean, other};
   }
   return checks;
 }

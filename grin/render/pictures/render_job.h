@@ -56,7 +56,7 @@ TransportCounts transport_counts(const RenderJob& job, const GroupedSums& sums);
 /// An invariant of a sensor that light can hit: the mean over its pixels, by weights of all
 /// strategies, is that of the light paths that hit it by themselves. Path tracing has none, and is
 /// compared with some paths of bidirectional tracing. `off` is the difference, `limit` five of its
-/// standard errors; both are 0 where too few paths hit to tell.
+/// standard errors and one of the mean's; both are 0 where too few paths hit to tell.
 struct LightCheck {
   double off = 0, limit = 0, mean = 0, other = 0;
 
