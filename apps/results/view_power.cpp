@@ -12,6 +12,7 @@
 #include "core/run/parallel.h"
 #include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/estimators/flux.h"
+#include "mc/paths/estimators/path_power.h"
 #include "mc/slab/slab_flux.h"
 #include "mc/slab/slab_jobs.h"
 
@@ -21,7 +22,10 @@ const DatasetTable power_table{
     .name = "power",
     .rows = {{"invariants/power", Data::invariant, "", "1",
               "difference between the power scattered into all directions and what neither passes "
-              "nor is absorbed, relative"}}};
+              "nor is absorbed, relative"},
+             {"invariants/path_power", Data::invariant, "", "1",
+              "difference between the power that scatterers along the paths receive and what light "
+              "loses, relative: the first, the second or the later ones, whichever is worst"}}};
 
 namespace {
 
@@ -152,10 +156,25 @@ std::optional<Invariant> view_power(const Scene& scene, const DoneWork& work) {
   return std::nullopt;
 }
 
+std::optional<Invariant> received_power(const Scene& scene, const DoneWork& work) {
+  constexpr double part = 1.0 / 64, least = 2000, most = 20000;
+  if (work.method != "mc") return std::nullopt;
+  const auto walks = mc::power_walks(seen_from(scene, {0}), work.seed);
+  if (!walks) return std::nullopt;
+  const auto paths = static_cast<std::uint64_t>(std::clamp(part * work.samples, least, most));
+  const auto [first, second, later] = mc::path_power(walks, paths);
+  Invariant worst = first;
+  for (const Invariant& each : {second, later})
+    if (each.is_worse_than(worst)) worst = each;
+  return worst;
+}
+
 void check_power(ResultFile& file, const std::string& group, const Scene& scene,
                  const DoneWork& work) {
   if (const auto power = view_power(scene, work))
     ResultGroup(file, power_table, group).check("invariants/power", *power);
+  if (const auto power = received_power(scene, work))
+    ResultGroup(file, power_table, group).check("invariants/path_power", *power);
 }
 
 }  // namespace flatspeckle::apps

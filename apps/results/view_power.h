@@ -32,6 +32,9 @@ struct DoneWork {
   std::uint64_t seed = 0;
 };
 std::optional<Invariant> view_power(const Scene& scene, const DoneWork& work);
+/// What scatterers along light paths receive against what light loses (mc::PathPower), the worst;
+/// nullopt of methods without paths.
+std::optional<Invariant> received_power(const Scene& scene, const DoneWork& work);
 
 extern const DatasetTable power_table;
 /// Checks a result of this scene by view_power(), where it applies. group: of its method, or empty.

@@ -32,45 +32,44 @@ const DatasetTable sweep_axes_table{
 
 const DatasetTable sweep_table{
     .name = "sweep",
-    .rows = {{"density", Data::real, "GRID", "1/length^2", "scatterers per area"},
-             {"radius", Data::real, "GRID", "length", "radius of the disks"},
-             {"index", Data::real, "GRID", "1", "relative index, real part"},
-             {"index_imaginary", Data::real, "GRID", "1", "relative index, imaginary part"},
-             {"optical_depth", Data::real, "GRID", "1", "optical depth mu_t L"},
-             {"g", Data::real, "GRID", "1", "mean cosine of scattering"},
-             {"albedo", Data::real, "GRID", "1", "single-scattering albedo"},
-             {"k_mean_free_path", Data::real, "GRID", "1", "wavenumber times mean free path"},
-             {"diffusion_theory", Data::real, "GRID tilt", "1", "C_E in diffusion theory"},
-             {"diffusion_range", Data::real, "GRID", "1", "q L at C_I = 1/2 in diffusion theory"},
-             {"single_scattering", Data::real, "tilt", "1",
-              "C_E of single scattering in a slab without attenuation"},
-             {"single_scattering_range", Data::real, "", "1",
-              "q L at C_I = 1/2 by single scattering"},
-             {"field_correlation", Data::estimate, "GRID tilt", "1",
-              "field correlation C_E, summed over views"},
-             {"memory_effect_range", Data::estimate, "GRID", "1",
-              "q L at C_I = 1/2 with matched views, L the depth"},
-             {"memory_effect_angle", Data::estimate, "GRID", "rad",
-              "rotation of the light at C_I = 1/2"},
-             {"range_censored", Data::count, "GRID", "1",
-              "0: range found; 1: C_I stays above 1/2, a lower bound; 2: it is below at the first "
-              "step, an upper bound"},
-             {"range_steps", Data::count, "GRID", "1",
-              "tilts between 0 and the range: fewer than 4 are too few to trust its error"},
-             {"invariants/power", Data::invariant, "GRID", "1",
-              "difference between the power scattered into all directions and what neither passes "
-              "nor is absorbed, relative"},
-             {"relative_error", Data::real, "GRID", "1",
-              "RMS standard error of the covariances relative to their RMS magnitude; 1e300 where none "
-              "is known"},
-             {"samples", Data::real, "GRID", "1", "samples"},
-             {"cpu_s", Data::real, "GRID", "s", "processor time, all threads"},
-             {"wall_s", Data::real, "GRID", "s",
-              "time from the first batch to the last, other points' included"},
-             {"trace/of_point", Data::count, "trace/checkpoint", "1",
-              "number of the point, in the order of the grid"},
-             {"deviation", Data::real, "GRID tilt", "1",
-              "mc less wave, in combined standard errors"}},
+    .rows =
+        {{"density", Data::real, "GRID", "1/length^2", "scatterers per area"},
+         {"radius", Data::real, "GRID", "length", "radius of the disks"},
+         {"index", Data::real, "GRID", "1", "relative index, real part"},
+         {"index_imaginary", Data::real, "GRID", "1", "relative index, imaginary part"},
+         {"optical_depth", Data::real, "GRID", "1", "optical depth mu_t L"},
+         {"g", Data::real, "GRID", "1", "mean cosine of scattering"},
+         {"albedo", Data::real, "GRID", "1", "single-scattering albedo"},
+         {"k_mean_free_path", Data::real, "GRID", "1", "wavenumber times mean free path"},
+         {"diffusion_theory", Data::real, "GRID tilt", "1", "C_E in diffusion theory"},
+         {"diffusion_range", Data::real, "GRID", "1", "q L at C_I = 1/2 in diffusion theory"},
+         {"single_scattering", Data::real, "tilt", "1",
+          "C_E of single scattering in a slab without attenuation"},
+         {"single_scattering_range", Data::real, "", "1", "q L at C_I = 1/2 by single scattering"},
+         {"field_correlation", Data::estimate, "GRID tilt", "1",
+          "field correlation C_E, summed over views"},
+         {"memory_effect_range", Data::estimate, "GRID", "1",
+          "q L at C_I = 1/2 with matched views, L the depth"},
+         {"memory_effect_angle", Data::estimate, "GRID", "rad",
+          "rotation of the light at C_I = 1/2"},
+         {"range_censored", Data::count, "GRID", "1",
+          "0: range found; 1: C_I stays above 1/2, a lower bound; 2: it is below at the first "
+          "step, an upper bound"},
+         {"range_steps", Data::count, "GRID", "1",
+          "tilts between 0 and the range: fewer than 4 are too few to trust its error"},
+         {"invariants/power", Data::invariant, "GRID", "1",
+          "difference between the power scattered into all directions and what neither passes "
+          "nor is absorbed, relative; of paths that of what scatterers receive, if worse"},
+         {"relative_error", Data::real, "GRID", "1",
+          "RMS standard error of the covariances relative to their RMS magnitude; 1e300 where none "
+          "is known"},
+         {"samples", Data::real, "GRID", "1", "samples"},
+         {"cpu_s", Data::real, "GRID", "s", "processor time, all threads"},
+         {"wall_s", Data::real, "GRID", "s",
+          "time from the first batch to the last, other points' included"},
+         {"trace/of_point", Data::count, "trace/checkpoint", "1",
+          "number of the point, in the order of the grid"},
+         {"deviation", Data::real, "GRID tilt", "1", "mc less wave, in combined standard errors"}},
     .attributes = {{"", "format", "uint64", "2; sweeps without it have an older layout"},
                    {"", "complete", "bool", "0: points are missing"},
                    {"", "ranks", "int64", "processes that worked on it (MPI)"},
@@ -432,8 +431,11 @@ PointResult curve_of(const FinishedPoint& finished) {
   point.correlation_rare.resize(point.correlation.size());  // none where nothing is marked
   for (const auto& [name, values] : trace_columns)
     point.trace.*values = numbers(std::string("trace/") + name);
-  if (finished.result.find("invariants/power") != nullptr)
-    point.power = {numbers("invariants/power").front(), numbers("invariants/power_limit").front()};
+  for (const std::string name : {"invariants/power", "invariants/path_power"}) {
+    if (finished.result.find(name) == nullptr) continue;
+    const Invariant found{numbers(name).front(), numbers(name + "_limit").front()};
+    if (!(point.power.limit > 0) || found.is_worse_than(point.power)) point.power = found;
+  }
   return point;
 }
 

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <vector>
 
-#include "core/run/interrupt.h"
 #include "core/run/runner.h"
 #include "mc/jobs/flux_job.h"
 #include "mc/paths/estimators/path_ends.h"
@@ -136,14 +135,19 @@ std::shared_ptr<const PathWalks> power_walks(const Scene& scene, std::uint64_t s
   return path_walks(lit, plan, seed);
 }
 
-std::optional<PathPower> path_power(const std::shared_ptr<const PathWalks>& walks,
-                                    std::uint64_t paths, int threads) {
-  RunState state;
-  run_batches(power_job(walks), {{paths, std::nullopt, std::nullopt}, threads, "", {}}, state);
-  if (interrupted()) return std::nullopt;
-  const Estimate found = jackknife(state.sums, sample_mean);
+PathPower path_power(const std::shared_ptr<const PathWalks>& walks, std::uint64_t paths) {
+  constexpr double systematic = 1e-3, errors = 5;
+  const BatchJob job = power_job(walks);
+  GroupedSums sums(job.size);
+  while (sums.batches() < 2 || sums.total_samples() < static_cast<double>(paths)) {
+    std::vector<Complex> batch(job.size);
+    job.run(sums.batches(), batch);
+    sums.add(job.samples_per_batch, batch);
+  }
+  const Estimate found = jackknife(sums, sample_mean);
   const auto balance = [&](Sum sum, double should) {
-    return PowerBalance{std::abs(found.value[sum].real() - should), found.error[sum]};
+    return Invariant{std::abs(found.value[sum].real() - should),
+                     systematic + errors * found.error[sum]};
   };
   PathPower power{balance(by_first, 1), balance(by_second, 1), {}};
   if (walks->scene().medium.dimension == 2) power.later = balance(by_later, 0);
