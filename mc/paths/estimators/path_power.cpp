@@ -30,18 +30,17 @@ struct ScattererCount {
   void scattering(Vec2, const SpaceDirection&, const SpaceDirection&) { ++inner; }
 };
 
-/// What the light loses in the medium.
-double lost_power(const Scene& scene) {
-  const double light = scene.request.lights.front().angle;
-  const LightAperture aperture(scene.domain, direction(light));
-  return (aperture.face() + aperture.side()) * (1 - direct_transmittance(scene, light));
+/// Across the light, what of it meets the medium.
+double met_power(const Scene& scene) {
+  const LightAperture aperture(scene.domain, direction(scene.request.lights.front().angle));
+  return aperture.face() + aperture.side();
 }
 
 enum Sum : std::size_t { by_first, by_second, by_later, power_sums };
 
-/// Adds the power of paths at their last scatterers, over what the light loses. |A|^2 is a density
-/// over directions: all that arrives there and is not absorbed is the light's factor times the
-/// weight.
+/// Adds the power of paths at their last scatterers, over what the ray to the first one loses in
+/// the medium: the same for all first scatterers. |A|^2 is a density over directions: all that
+/// arrives there and is not absorbed is the light's factor times the weight.
 class PowerScorer : public TallyScorer<ScattererCount> {
  public:
   PowerScorer(const PathWalks& walks, const Scene& turned, std::span<Complex> sums)
@@ -50,12 +49,13 @@ class PowerScorer : public TallyScorer<ScattererCount> {
         scene_(walks.scene()),
         extinction_(scene_),
         ends_(walks, turned, false, [](std::size_t ends) { return std::vector<Complex>(ends); }),
-        lost_(lost_power(scene_)),
+        light_(direction(scene_.request.lights.front().angle)),
+        met_(met_power(scene_)),
         sums_(sums) {}
 
   void single(Vec2 x, double weight) override {
     ends_.lights().attenuate(x, ends_.light_last);
-    sums_[by_first] += weight * share_of(ends_.light_last.front()) / albedo(x);
+    sums_[by_first] += weight * share_of(ends_.light_last.front(), x) / albedo(x);
   }
 
   void multiple(const Path& path) override {
@@ -63,7 +63,7 @@ class PowerScorer : public TallyScorer<ScattererCount> {
       ends.attenuate(x, out);
       walks_.towards(x, arrival, ends.directions(), out);
     });
-    const double scattered = path.weight * share_of(ends_.light_first.front()),
+    const double scattered = path.weight * share_of(ends_.light_first.front(), path.first),
                  received = scattered / albedo(path.last),
                  leaves = share_that_leaves(ends_.view_last);
     if (tally().inner == 0)
@@ -74,7 +74,10 @@ class PowerScorer : public TallyScorer<ScattererCount> {
   }
 
  private:
-  double share_of(Complex light) const { return std::norm(light) / lost_; }
+  double share_of(Complex factor, Vec2 first) const {
+    const double back = scene_.domain.distance_to_edge(first, -light_);
+    return std::norm(factor) / (met_ * stays_inside(first - back * light_, light_));
+  }
   static double share_that_leaves(const std::vector<Complex>& views) {
     double sum = 0;
     for (const Complex view : views) sum += std::norm(view);
@@ -91,7 +94,8 @@ class PowerScorer : public TallyScorer<ScattererCount> {
   const Scene& scene_;
   const Extinction extinction_;
   PathEnds<std::vector<Complex>> ends_;
-  double lost_;
+  Vec2 light_;
+  double met_;
   std::span<Complex> sums_;
 };
 
