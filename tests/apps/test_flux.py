@@ -47,6 +47,12 @@ class Flux(ProgramTest):
         done = self.call("flux", **keys, method="mc", out="y.h5", status=2)
         self.assertIn("flux in space is by transport", done.stderr)
 
+    def test_forward_peak_in_space(self):
+        keys = {"domain": "slab", "depth": 1, "optical_depth": 1, "scatterer": "hg", "g": 0.999, "dimension": 3}
+        with self.run_flux(keys) as file:
+            total = sum(file[name][:] for name in ESTIMATES)
+            np.testing.assert_allclose(total, 1, rtol=0, atol=1e-9)
+
     def test_refused(self):
         for keys, words in (({"angle_bins": 0}, "angle_bins = 0"),
                             ({"view_angles": [0.1]}, "view_angles: unknown key"),

@@ -66,6 +66,17 @@ class Layers(ProgramTest):
         (exact, _), (mc, error) = found
         self.assertTrue(np.all(np.abs(mc - exact) <= 4 * error + 1e-4), (mc, exact, error))
 
+    def test_clear_layers_change_nothing(self):
+        """Of light without phases."""
+        found = []
+        for table in ("thickness,optical_depth\n4,0\n3,2\n5,0\n3,1\n", "thickness,optical_depth\n3,2\n3,1\n"):
+            self.write("layers.csv", table)
+            self.call("flux", domain="slab", layers="layers.csv", scatterer="hg", g=0.5, method="transport",
+                      out="flux.h5")
+            with h5py.File(self.folder / "flux.h5") as file:
+                found.append([file[name][0] for name in ("reflectance", "transmittance")])
+        np.testing.assert_allclose(*found, rtol=1e-9)
+
     def test_what_is_in_the_file(self):
         self.write("layers.csv", TISSUE)
         self.call("flux", **SLAB, out="result.h5")
@@ -104,6 +115,7 @@ class Refused(RefusingTest):
         for table, words in {
                 "thickness,optical_depth\n4,-2\n": ["layer 1", "optical_depth", "positive"],
                 "thickness,optical_depth\n0,2\n": ["thickness = 0", "positive"],
+                "thickness,optical_depth\n4,0\n": ["at least one layer must scatter or absorb"],
                 "thickness,optical_depth,density\n1,2,3\n": ["exactly one of"],
                 "optical_depth\n1\n": ["column thickness is missing"],
                 "thickness,optical_depth\n": ["layers", "1 to 1000"],
@@ -113,7 +125,8 @@ class Refused(RefusingTest):
         self.check(["no such file"], layers="none.csv")
 
     def test_what_layers_have_not(self):
-        self.check(["dimension"], dimension=3)
+        self.check(["dimension = 3", "without layers", "leave out layers"], dimension=3)
+        self.check(["dimension = 3", "without layers", "leave out layers"], command="flux", dimension=3)
         self.check(["layers", "gradient", "take mc"], method="transport", samples=None, gradient=True)
         points = "thickness,density\n3,0.05\n3,0.25\n"
         disks = {**BOX, "scatterer": "tm", "radius": 0.2}

@@ -30,6 +30,10 @@ class Maps(RenderTest):
                                    alone[name + "_error"], alone[name])
         np.testing.assert_allclose(alone["map/absorbed"], FOG["mu_a"] * alone["map/fluence"])
 
+    def test_nothing_absorbs(self):
+        clear = self.render(**{**self.LAMP, "mu_a": 0}, **self.RINGS, sensor="none")
+        np.testing.assert_array_equal(clear["map/absorbed"], 0)
+
     def test_target(self):
         """A target is of the fluence."""
         keys = {**self.LAMP, **self.RINGS, "sensor": "none"}
