@@ -49,11 +49,23 @@ double backward_share(int dimension, double g) {
 
 }  // namespace
 
+TEST_CASE("slab transport: the balance of power closes, and shows what is missing") {
+  const Scene scene = slab(2, 2, 0.9, 0.9, 0.5);
+  const PowerBalance solved = slab_power_balance(scene, {1e-6});
+  CHECK(std::abs(solved.imbalance) < 1e-12);
+  CHECK(solved.error < 1e-5);
+  FluxEstimates flux;
+  flux.reflectance = flux.transmittance = flux.absorptance = {{0.2}, {0.01}, {false}};
+  flux.side_loss = {{0.0}, {0.0}, {false}};
+  CHECK(power_balance(scene, flux).imbalance ==
+        doctest::Approx(0.6 + direct_transmittance(scene, 0.5) - 1));
+}
+
 TEST_CASE("slab transport: light that hardly turns is only absorbed") {
   for (const int dimension : {2, 3})
     for (const double g : {1 - 1e-7, 1 - 1e-9})
-      for (const double optical_depth : {1e-6, 1.0, 10.0})
-        for (const double albedo : {1.0, 0.9, 0.01}) {
+      for (const double optical_depth : {1e-6, 10.0})
+        for (const double albedo : {1.0, 0.9}) {
           const double light = albedo == 1 ? 1.2 : 0.3;
           const Shares found = shares(slab(dimension, optical_depth, g, albedo, light), 1e-5);
           const double crossed = std::exp(-(1 - albedo) * optical_depth / std::cos(light));
@@ -65,7 +77,7 @@ TEST_CASE("slab transport: light that hardly turns is only absorbed") {
 
 TEST_CASE("slab transport: a thin slab reflects what one scattering sends back") {
   for (const int dimension : {2, 3})
-    for (const double g : {0.5, 0.9, 0.999, 1 - 1e-6, 1 - 1e-9}) {
+    for (const double g : {0.9, 0.999, 1 - 1e-9}) {
       const double optical_depth = 1e-6;
       const Shares found = shares(slab(dimension, optical_depth, g, 1, 0), 1e-5);
       CHECK(found.error < 1e-5);
