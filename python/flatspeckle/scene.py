@@ -127,7 +127,7 @@ def flat(name, values):
 
 def texts(key, name, value):
     """A value as the program's own texts: one, or a list of them."""
-    if name in OF_KEYS and isinstance(value, Mapping):
+    if name in OF_KEYS and isinstance(value, Mapping) and value:
         return [f"{one}={values_of(key, name, several)}" for one, several in value.items()]
     if not is_many(value):
         return text_of(name, value)
@@ -166,6 +166,8 @@ def text_of(name, value):
 
 def checked(name, text):
     """A text that scene files can have."""
+    if not text:
+        raise InputError(f"{name} = '': must have a value")
     if '"' in text or "\\" in text or not text.isprintable():
         raise InputError(f"{name} = {text!r}: must be without control characters, \" and \\")
     return text

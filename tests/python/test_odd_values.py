@@ -21,7 +21,7 @@ SCALARS = {"masked": np.ma.masked, "none": [None], "empty": [], "set": {1}, "byt
            "numpy time": np.datetime64("2020-01-01", "ns"), "generator": (i for i in range(2)), "function": min,
            "ragged": [[1, 2], [3]], "objects": np.array([object()]), "masked array": MASKED, "list of masked": [MASKED, MASKED],
            "null": "a\0b", "quote": 'a"b', "dict": {"a": 1}, "dataset": xarray.Dataset({"a": ("x", [1])}), "huge": 10 ** 5000,
-           "empty array": np.zeros((0, 2)), "ellipsis": ...}
+           "empty array": np.zeros((0, 2)), "empty text": "", "ellipsis": ...}
 TABLES = {"unequal": {"x": [1, 2], "z": [1]}, "columns of two axes": {"x": np.zeros((2, 2)), "z": [1, 2]}, "no columns": {},
           "not numbers": {"x": ["a"], "z": [1]}, "missing": {"x": [np.nan], "z": [1]}, "masked": {"x": MASKED, "z": [1, 2]},
           "three axes": np.zeros((2, 2, 2)), "too many columns": np.zeros((2, 7)), "none in it": [[1, None]], "ragged": [[1, 2], [3]]}
@@ -59,6 +59,7 @@ class Odd(PackageTest):
         self.refused("recover", "frames", np.ones((2, 8, 8)))
         self.refused("recover", "frames", [np.ones(8), np.ones(9)])
         self.refused("sweep", "vary", {"g": [None]}, SLAB, of="flux")
+        self.refused("sweep", "vary", {}, SLAB, of="flux")
         self.refused("fit", "free", {"g": {0.1}})
 
     def test_scenes(self):
