@@ -1,5 +1,6 @@
 #include "mc/paths/estimators/flux.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "apps/command/experiment.h"
@@ -31,6 +32,18 @@ void print_table(const Scene& scene, const mc::FluxEstimates& flux) {
     print(flux.absorptance, light);
     std::printf("\n");
   }
+}
+
+/// Of a medium that scatters no share is 0: none of the paths has come out there.
+void note_unreached(const Scene& scene, const mc::FluxEstimates& flux) {
+  const auto note = [&](const Estimate& share, const char* name) {
+    if (scene.medium.mu_s > 0 && std::ranges::find(share.value, 0.0) != share.value.end())
+      std::fprintf(stderr, "note: no path has reached the %s of a light; its 0 has no error\n",
+                   name);
+  };
+  note(flux.reflectance, "reflectance");
+  note(flux.transmittance, "transmittance");
+  if (scene.domain.kind == Domain::Kind::box) note(flux.side_loss, "side_loss");
 }
 
 class FluxExperiment : public Experiment {
@@ -89,6 +102,7 @@ class FluxExperiment : public Experiment {
   void write(ResultFile& file, const GroupedSums& sums, bool tells) const {
     const auto estimates = mc::flux_estimates(job_, sums);
     if (tells) print_table(*scene_, estimates);
+    if (tells && by_mc()) note_unreached(*scene_, estimates);
     write_medium(file, *scene_);
     mc::write_flux(file, *scene_, estimates);
     if (!by_mc()) mc::write_numerical(file);
