@@ -45,14 +45,26 @@ bool needs_ways(const Space& space, const SensorEnd& sensor, const StageLights::
   return false;
 }
 
-/// The probability that a search finds a way, as weights take it. Ways with few passages that do
-/// not spread light too much are among the seeds. Of others, which through rows of balls are more
-/// than any search can list, a random trial finds one if it starts in the right direction, within a
-/// solid angle that falls with the spread of the light, and takes the right passages.
+/// How many bodies a way comes to from outside, one after the other, if none lies in another.
+int visits(const Passages& passages) {
+  int count = 0;
+  bool is_outside = true;
+  for (int i = 0; i < passages.count; ++i) {
+    count += is_outside;
+    if (!passages.reflects(i)) is_outside = !is_outside;
+  }
+  return count;
+}
+
+/// The probability that a search finds a way, as weights take it. Ways by one body are among the
+/// seeds, and so are those by two that do not spread light much. Of others, which through rows of
+/// balls are more than any search can list, a random trial finds one if it starts in the right
+/// direction, within a solid angle that falls with the spread of the light, and takes the right
+/// passages.
 double found_probability(const BeamWay& way) {
-  const int further = std::max(way.passages.count - 2, 0);
-  if (way.thinning < 1e4 * std::pow(0.03, further)) return 1;
-  return 0.03 * std::pow(0.2, further) / std::max(way.thinning, 1.0);
+  const int further = std::max(visits(way.passages) - 1, 0);
+  if (further == 0 || way.thinning < 1e4 * std::pow(1e-3, further)) return 1;
+  return 0.03 * std::pow(0.04, further) / std::max(way.thinning, 1.0);
 }
 
 /// Where searches for ways from a sensor to a beam begin, of each sensor and beam, if there are to
