@@ -6,6 +6,7 @@
 #include "apps/command/experiment.h"
 #include "apps/results/estimation.h"
 #include "core/error.h"
+#include "core/result/result_group.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/slab/refinement.h"
@@ -105,6 +106,9 @@ class FluxExperiment : public Experiment {
     if (tells && by_mc()) note_unreached(*scene_, estimates);
     write_medium(file, *scene_);
     mc::write_flux(file, *scene_, estimates);
+    ResultGroup(file, mc::flux_table)
+        .check("invariants/power",
+               mc::power_balance(job_, sums, mc::direct_transmittances(*scene_)));
     if (!by_mc()) mc::write_numerical(file);
   }
 

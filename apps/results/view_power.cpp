@@ -114,10 +114,22 @@ std::optional<Invariant> paths_power(const Scene& scene, double samples, std::ui
       outlier_errors(groups) * std::hypot(error, expected.error) / expected.value + rounding};
 }
 
+namespace {
+
+/// The worst balance of the shares of the slab's light, of which none follows from the others.
+Invariant flux_balance(const Scene& slab, double tolerance) {
+  const Scene lit = seen_from(slab, {0});
+  const auto job = mc::slab_flux_job(lit, 1, {tolerance});
+  return mc::power_balance(job, sums_of(job.batches, 2), mc::direct_transmittances(lit)).front();
+}
+
+}  // namespace
+
 std::optional<Invariant> transport_power(const Scene& slab, double tolerance) {
   constexpr int nodes = 32;  // of a quadrant
   constexpr int most_ordinates = 200;
-  if (slab.profile || slab.medium.dimension == 3 || !(slab.medium.mu_s > 0)) return std::nullopt;
+  if (!(slab.medium.mu_s > 0)) return std::nullopt;
+  if (slab.profile || slab.medium.dimension == 3) return flux_balance(slab, tolerance);
   const mc::Refinement refinement{.tolerance = tolerance, .most_ordinates = most_ordinates};
   Scene lit = seen_from(slab, {0});
   const auto power = [&](int count) -> Share {

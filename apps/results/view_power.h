@@ -20,8 +20,9 @@ namespace flatspeckle::apps {
 /// all groups together.
 std::optional<Invariant> paths_power(const Scene& scene, double samples, std::uint64_t seed);
 
-/// By transport through a slab in the plane. The limit contains the errors of both solutions and of
-/// the quadrature over views.
+/// By transport through a slab. The limit contains the errors of both solutions and of the
+/// quadrature over views. In space and through layers it is the balance of the shares of light
+/// instead (mc::power_balance).
 std::optional<Invariant> transport_power(const Scene& slab, double tolerance);
 
 /// How a result was made, as far as its check depends on it.

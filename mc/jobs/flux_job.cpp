@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 
 #include "core/result/result_group.h"
 #include "flatland/scene/scene_datasets.h"
@@ -24,6 +26,31 @@ FluxEstimates flux_estimates(const FluxJob& job, const GroupedSums& sums) {
     estimate.rare.push_back(all.rare[entry]);
   }
   return flux;
+}
+
+std::vector<Invariant> power_balance(const FluxJob& job, const GroupedSums& sums,
+                                     const std::vector<double>& direct) {
+  constexpr double rounding = 1e-9;
+  const std::size_t size = flux_shares + job.angle_bins;
+  const Estimate found = jackknife(sums, [&](double samples, std::span<const Complex> all) {
+    std::vector<Complex> off;
+    for (std::size_t light = 0; light < direct.size(); ++light) {
+      const auto shares = all.subspan(light * size, flux_shares);
+      off.push_back(std::reduce(shares.begin(), shares.end()) / samples + direct[light] - 1.0);
+    }
+    return off;
+  });
+  const Estimate shares = jackknife(sums, sample_mean);
+  std::vector<Invariant> balances;
+  for (std::size_t light = 0; light < direct.size(); ++light) {
+    double limit = outlier_errors(sums.groups()) * found.error[light];
+    if (job.batches.one_by_one) {
+      const auto first = shares.error.begin() + static_cast<std::ptrdiff_t>(light * size);
+      limit = std::reduce(first, first + flux_shares);
+    }
+    balances.push_back({std::abs(found.value[light]), limit + rounding});
+  }
+  return balances;
 }
 
 namespace {
@@ -74,6 +101,8 @@ const DatasetTable flux_table{
      {"absorptance", Data::estimate, "light_angle", "1", "share of the light that is absorbed"},
      {"direct_transmittance", Data::estimate, "light_angle", "1",
       "share of the light that meets no scatterer"},
+     {"invariants/power", Data::invariant, "light_angle", "1",
+      "how far all shares and the direct transmittance are from adding up to 1"},
      {"exit_angle", Data::scale, "", "rad",
       "middle of the bin of exit directions, from +z; in space of polar angles"},
      {"exit_radiance", Data::estimate, "light_angle exit_angle", "1/rad",

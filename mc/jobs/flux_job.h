@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/result/dataset_row.h"
+#include "core/result/invariant.h"
 #include "core/result/result_file.h"
 #include "core/run/runner.h"
 #include "flatland/media/domain.h"
@@ -64,6 +65,12 @@ struct FluxEstimates {
   Estimate exit_radiance;  ///< [light][angle bin]: share per radian of exit angle, in space polar
 };
 FluxEstimates flux_estimates(const FluxJob& job, const GroupedSums& sums);
+
+/// How far the shares of each light, with what is not scattered (direct), are from adding up to 1.
+/// None of them follows from the others, so that a wrong one shows. Limits are the errors of
+/// solutions, and Student's quantile of samples (outlier_errors).
+std::vector<Invariant> power_balance(const FluxJob& job, const GroupedSums& sums,
+                                     const std::vector<double>& direct);
 
 extern const DatasetTable flux_table;
 /// With the axes of lights and exit directions.

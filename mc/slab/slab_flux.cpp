@@ -287,32 +287,6 @@ Refined slab_flux(const Scene& scene, std::size_t angle_bins, const Refinement& 
              : refined_flux<PlaneGeometry, PlaneExits>(scene, angle_bins, refinement);
 }
 
-PowerBalance power_balance(const Scene& slab, const FluxEstimates& flux) {
-  PowerBalance worst;
-  const auto direct = direct_transmittances(slab);
-  for (std::size_t light = 0; light < direct.size(); ++light) {
-    PowerBalance one{direct[light] - 1, 0};
-    for (const Estimate* share :
-         {&flux.reflectance, &flux.transmittance, &flux.side_loss, &flux.absorptance}) {
-      one.imbalance += share->value[light].real();
-      one.error += share->error[light];
-    }
-    if (std::abs(one.imbalance) >= std::abs(worst.imbalance)) worst = one;
-  }
-  return worst;
-}
-
-PowerBalance slab_power_balance(const Scene& slab, const Refinement& refinement) {
-  const Refined found = slab_flux(slab, 1, refinement);
-  GroupedSums sums;
-  for (const double sign : {1.0, -1.0}) {
-    auto batch = found.value;
-    for (std::size_t i = 0; i < batch.size(); ++i) batch[i] += sign * found.difference[i];
-    sums.add(1, batch);
-  }
-  return power_balance(slab, flux_estimates(slab_flux_job(slab, 1, refinement), sums));
-}
-
 FluxJob slab_flux_job(const Scene& scene, std::size_t angle_bins, const Refinement& refinement) {
   const bool in_space = scene.medium.dimension == 3;
   FluxJob job;
