@@ -33,7 +33,7 @@ Seal seal_of(uLong checksum, std::size_t length) {
 
 /// Returns the seal of the next bytes; nullopt where there are fewer than `length`.
 std::optional<Seal> seal_of(std::istream& file, std::size_t length) {
-  std::vector<char> part(1 << 20);
+  std::array<char, 1 << 16> part;
   uLong checksum = 0;
   for (std::size_t left = length; left > 0;) {
     const std::size_t count = std::min(left, part.size());
