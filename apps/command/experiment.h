@@ -65,8 +65,8 @@ class OneShot : public Experiment {
  public:
   OneShot() { stop_.samples = 2; }  // batches
   /// Plans two batches, of which the first makes the result and the second is empty. The result is
-  /// kept in this process alone: where another one ran the first batch, or an interrupted one, it is
-  /// made again when it is written.
+  /// kept in this process alone: where another one ran the first batch, or an interrupted one, it
+  /// is made again when it is written.
   PlannedExperiment plan() const override;
   int run_alone(Session& session, const std::string& label) const override;
 

@@ -30,8 +30,9 @@ std::string inputs_text(const Keys& keys);
 /// free.
 std::filesystem::path free_aside(const std::filesystem::path& path);
 
-/// Gives a file, or the file that a link leads to, such a name, by a second one beside its own where
-/// the file system can, so that the first is never without a file; returns it. Throws IoError.
+/// Gives a file, or the file that a link leads to, such a name, by a second one beside its own
+/// where the file system can, so that the first is never without a file; returns it. Throws
+/// IoError.
 std::filesystem::path set_aside(const std::filesystem::path& path);
 
 /// Tells one file at a path from another, or from itself rewritten.
