@@ -96,8 +96,8 @@ constexpr double step = 1e-3;  ///< of differences, over the distance of the bou
 
 }  // namespace
 
-std::optional<SlopeCheck> check_slope(const BoundedLeastSquares& problem,
-                                      const LeastSquaresFit& fit) {
+std::optional<Invariant> check_slope(const BoundedLeastSquares& problem,
+                                     const LeastSquaresFit& fit) {
   const VectorXd range = problem.upper - problem.lower;
   Index i = 0;
   (fit.jacobian * range.asDiagonal()).colwise().norm().maxCoeff(&i);
@@ -110,8 +110,8 @@ std::optional<SlopeCheck> check_slope(const BoundedLeastSquares& problem,
   const VectorXd low = problem.residuals(below), high = problem.residuals(above);
   constexpr double rounding = 1e-3;  // of residuals, and of differences of higher order
   const double bent = (high + low - 2 * fit.residuals).norm() / (2 * width);
-  return SlopeCheck{(fit.jacobian.col(i) - (high - low) / (2 * width)).norm() / size,
-                    rounding + 2 * bent / size};
+  return Invariant{(fit.jacobian.col(i) - (high - low) / (2 * width)).norm() / size,
+                   rounding + 2 * bent / size};
 }
 
 MatrixXd jacobian(const BoundedLeastSquares& problem, const VectorXd& at, const VectorXd& here) {

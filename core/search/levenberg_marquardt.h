@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "core/result/invariant.h"
+
 namespace flatspeckle {
 
 /// A least-squares problem within bounds. Residuals are in standard errors.
@@ -48,14 +50,11 @@ Eigen::VectorXd damped_step(const BoundedLeastSquares& problem, const LeastSquar
 Eigen::MatrixXd jacobian(const BoundedLeastSquares& problem, const Eigen::VectorXd& at,
                          const Eigen::VectorXd& here);
 
-/// How far derivatives are off differences, over their size, and what their own steps make of it.
-struct SlopeCheck {
-  double off = 0, limit = 0;
-};
-/// Holds the jacobian of a fit against central differences of the residuals, by the parameter that
-/// these tell most of; the limit follows from the curvature there. Nothing beside a bound.
-std::optional<SlopeCheck> check_slope(const BoundedLeastSquares& problem,
-                                      const LeastSquaresFit& fit);
+/// Compares the jacobian of a fit with central differences of the residuals, by the parameter that
+/// these determine best; the limit follows from the curvature there. Returns nullopt beside a
+/// bound.
+std::optional<Invariant> check_slope(const BoundedLeastSquares& problem,
+                                     const LeastSquaresFit& fit);
 
 /// Of all starts, those of the least chi^2.
 std::vector<Eigen::VectorXd> best_starts(const BoundedLeastSquares& problem,

@@ -53,7 +53,10 @@ const DatasetTable fit_table{
          {"iteration", Data::numbers, "", "1", "number of the accepted step"},
          {"trace_parameter", Data::real, "iteration parameter", "", "value there"},
          {"trace_chi_squared", Data::real, "iteration", "1", "chi^2 there"},
-         {"trace_cpu_s", Data::real, "iteration", "s", "processor time until there"}},
+         {"trace_cpu_s", Data::real, "iteration", "s", "processor time until there"},
+         {"invariants/derivatives", Data::invariant, "", "1",
+          "difference between derivatives of the residuals and finite differences, by the "
+          "parameter that these determine best, relative"}},
     .attributes = {{"", "chi_squared", "float64", "sum of the squared residuals"},
                    {"", "degrees_of_freedom", "float64",
                     "mean of chi_squared where the medium is right: values less parameters, or "
@@ -168,6 +171,7 @@ void write_fit(ResultFile& file, const FitTask& task, const MediumFit& fit) {
   write_parameters(root, task, fit);
   write_data(root, task, fit);
   write_trace(root, fit);
+  if (fit.slope) root.check("invariants/derivatives", *fit.slope);
   root.attribute("chi_squared", fit.chi_squared);
   root.attribute("degrees_of_freedom", fit.degrees_of_freedom);
   if (std::isfinite(fit.condition)) root.attribute("condition", fit.condition);

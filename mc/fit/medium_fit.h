@@ -32,8 +32,8 @@ struct MediumFit {
   /// Its mean if the medium is right: values less parameters, or less where their errors are so
   /// correlated that some combinations of them hardly count.
   double degrees_of_freedom = 0;
-  std::optional<SlopeCheck> slope;  ///< of the derivatives, by transport
-  double numerical = 0;  ///< largest numerical error of the model, in standard errors
+  std::optional<Invariant> slope;  ///< of the derivatives, by transport
+  double numerical = 0;            ///< largest numerical error of the model, in standard errors
   // By Monte Carlo, parts of the covariance: of chance, and of what paths neglect of waves.
   Eigen::MatrixXd by_chance, by_neglect;
   double paths = 0;  ///< by Monte Carlo: those of each run at the best medium
