@@ -90,6 +90,7 @@ void print_row(const ResultReader& file, const std::string& path, const DatasetR
   std::cout << "  " << path << " (" << shape_text(file.shape(path))
             << "): " << file.attribute<std::string>(path, "long_name");
   if (has_error(row.data)) std::cout << "; with " << path << "_error";
+  if (row.data == Data::invariant) std::cout << "; with " << path << "_limit";
   std::cout << '\n';
 }
 

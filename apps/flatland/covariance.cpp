@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdio>
 
 #include "apps/command/experiment.h"
@@ -20,6 +21,12 @@ void print_medium(const Scene& scene) {
               medium.mu_t * scene.domain.depth);
   if (medium.mu_t > 0) std::printf(", k x mean free path %.5g", scene.k * medium.mean_free_path());
   std::printf("\n");
+}
+
+/// Whether pairs of lights would have to resolve a peak that transport takes long for, or refuses.
+bool has_narrow_peak(const SceneSpec& spec) {
+  const double narrow = spec.dimension == 3 ? 2e-3 : 2e-4;
+  return spec.scatterer == "hg" && spec.g && 1 - std::abs(*spec.g) < narrow;
 }
 
 StopRule stop_of(const std::string& method, const Keys& keys, const RunSettings& run,
@@ -52,6 +59,7 @@ class CovarianceExperiment : public Experiment {
   }
 
   void read(const Keys& keys) override {
+    if (method_ == "auto" && has_narrow_peak(spec_)) method_ = "mc";
     choose_method(keys, method_, spec_, run_);
     if (method_ == "transport") read_transport(keys, methods_, spec_, run_);
     stop_ = stop_of(method_, keys, run_, methods_);

@@ -103,6 +103,7 @@ class FluxExperiment : public Experiment {
   void write(ResultFile& file, const GroupedSums& sums, bool tells) const {
     const auto estimates = mc::flux_estimates(job_, sums);
     if (tells) print_table(*scene_, estimates);
+    if (tells) note_bins(estimates);
     if (tells && by_mc()) note_unreached(*scene_, estimates);
     write_medium(file, *scene_);
     mc::write_flux(file, *scene_, estimates);
@@ -110,6 +111,16 @@ class FluxExperiment : public Experiment {
         .check("invariants/power",
                mc::power_balance(job_, sums, mc::direct_transmittances(*scene_)));
     if (!by_mc()) mc::write_numerical(file);
+  }
+
+  /// Bins at the edge of a sharp peak converge later than the shares do.
+  void note_bins(const mc::FluxEstimates& flux) const {
+    constexpr double much = 1e-4;
+    const double width = job_.angles / static_cast<double>(job_.angle_bins);
+    const double worst = width * std::ranges::max(flux.exit_radiance.error);
+    if (!by_mc() && worst > much)
+      std::fprintf(stderr, "note: exit_radiance has errors of up to %.2g of the light in a bin\n",
+                   worst);
   }
 
   SceneSpec spec_;

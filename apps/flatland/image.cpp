@@ -244,10 +244,11 @@ SceneSpec excitation_spec(const Keys& keys, const ImageKeys& values) {
   return spec;
 }
 
-/// keeps_fields: of all media, as those of the exact solver.
-void check_memory(const mc::LineScene& line, const mc::ImagingTask& task, bool keeps_fields) {
-  const auto channels = static_cast<double>(line.scene.request.channels.size()),
-             pixels = static_cast<double>(line.camera.pixels);
+/// lights: of points and references. keeps_fields: of all media, as those of the exact solver.
+void check_memory(std::size_t lights, const mc::LineCamera& camera, const mc::ImagingTask& task,
+                  bool keeps_fields) {
+  const auto pixels = static_cast<double>(camera.pixels),
+             channels = pixels * static_cast<double>(lights);
   const auto frames = static_cast<double>(task.average * task.blinking.frames);
   const double of_a_repeat =
                    sizeof(double) * 2 * pixels +
@@ -419,6 +420,7 @@ class ImageExperiment : public OneShot {
     Scene medium = make_scene(keys, values_.spec);
     if (medium.domain.kind == Domain::Kind::slab)
       throw InputError("domain", "slab", "pictures need a box");
+    check_memory(object.x.size() + (reference ? 1 : 0), camera, task_, by_waves());
     line_ = mc::line_scene(std::move(medium), std::move(object), object_depth, camera, reference);
     task_.recovery.lags = task_.blinking.unmixing.lags = lags_of(*line_, object_extent);
     require_picture(*line_, task_.recovery.lags);
@@ -426,7 +428,6 @@ class ImageExperiment : public OneShot {
       task_.recovery.noise = mc::noise_of_mean(task_.recovery.noise, task_.blinking.frames);
     if (excitation_) excited_ = make_scene(*excitation_);
     task_.recovery.memory_range *= std::abs(magnification(*line_));
-    check_memory(*line_, task_, by_waves());
   }
 
  private:

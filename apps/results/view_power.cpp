@@ -73,9 +73,10 @@ Share scattered_out(const Scene& lit, double samples, std::uint64_t seed) {
   return {scattered - absorbed.value[0].real(), absorbed.error[0]};
 }
 
+constexpr int views = 48;
+
 /// The share that far views evenly spaced from a random one see, averaged over the circle.
 double seen_share(const Scene& scene, double samples, std::uint64_t seed, std::uint64_t group) {
-  constexpr int views = 48;
   RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), group);
   const double first = random.uniform();
   std::vector<double> angles;
@@ -95,9 +96,12 @@ double seen_share(const Scene& scene, double samples, std::uint64_t seed, std::u
 
 std::optional<Invariant> paths_power(const Scene& scene, double samples, std::uint64_t seed) {
   constexpr std::size_t groups = 16;
-  constexpr double least_samples = 1024, most_samples = 1 << 22, rounding = 1e-9;
+  constexpr double most_samples = 1 << 22, rounding = 1e-9;
   if (scene.index || scene.medium.dimension == 3 || !(scene.medium.mu_s > 0)) return std::nullopt;
-  const double used = std::clamp(samples, least_samples, most_samples);
+  const mc::Plan plan =
+      mc::make_plan(seen_from(scene, std::vector<double>(views)), mc::ReversedPaths::no);
+  if (samples < static_cast<double>(groups * plan.paths_per_batch)) return std::nullopt;
+  const double used = std::min(samples, most_samples);
   const std::uint64_t apart = ~seed;  // random numbers that the result has not used
   std::array<double, groups> shares{};
   parallel_for(groups, [&](std::size_t group) {
@@ -161,19 +165,24 @@ std::optional<Invariant> transport_power(const Scene& slab, double tolerance) {
                    (std::abs(fine.value - coarse.value) + fine.error + error) / left + rounding};
 }
 
+namespace {
+
+constexpr double part = 1.0 / 64;  // of the work, for each check
+
+}  // namespace
+
 std::optional<Invariant> view_power(const Scene& scene, const DoneWork& work) {
-  constexpr double part = 1.0 / 64;
   if (work.method == "mc") return paths_power(scene, part * work.samples, work.seed);
   if (work.method == "transport") return transport_power(scene, work.tolerance);
   return std::nullopt;
 }
 
 std::optional<Invariant> received_power(const Scene& scene, const DoneWork& work) {
-  constexpr double part = 1.0 / 64, least = 2000, most = 20000;
-  if (work.method != "mc") return std::nullopt;
+  constexpr double least = 2000, most = 20000;
+  if (work.method != "mc" || part * work.samples < least) return std::nullopt;
   const auto walks = mc::power_walks(seen_from(scene, {0}), work.seed);
   if (!walks) return std::nullopt;
-  const auto paths = static_cast<std::uint64_t>(std::clamp(part * work.samples, least, most));
+  const auto paths = static_cast<std::uint64_t>(std::min(part * work.samples, most));
   const auto [first, second, later] = mc::path_power(walks, paths);
   Invariant worst = first;
   for (const Invariant& each : {second, later})

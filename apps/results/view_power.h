@@ -17,7 +17,7 @@ namespace flatspeckle::apps {
 // Returned is their relative difference; nullopt for media to which this does not apply.
 
 /// By light paths, in groups with far views of their own, whose spread gives the error. samples: in
-/// all groups together.
+/// all groups together; nullopt where they do not suffice for a batch in each.
 std::optional<Invariant> paths_power(const Scene& scene, double samples, std::uint64_t seed);
 
 /// By transport through a slab. The limit contains the errors of both solutions and of the

@@ -1,6 +1,7 @@
 #include "grin/trace/trace_datasets.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/result/result_group.h"
 #include "grin/rays/marching/ray.h"
@@ -125,12 +126,17 @@ void put_invariant(const ResultGroup& root, const std::vector<TracedRay>& rays,
            }));
 }
 
-/// Each ray must keep |v| = n. Errors of steps add up along it; of fixed steps none are known.
+/// Each ray must keep |v| = n. Errors of steps add up along it; of fixed steps none are known. So
+/// do roundings of places, which count in units of the longest step.
 std::vector<Invariant> index_mismatches(const RaySteps& steps, const std::vector<TracedRay>& rays) {
   constexpr double accumulated = 1000, of_fixed_steps = 1e-3;
+  constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
   const double limit = steps.tolerance ? accumulated * *steps.tolerance : of_fixed_steps;
   std::vector<Invariant> mismatches;
-  for (const TracedRay& ray : rays) mismatches.push_back({ray.index_mismatch, limit});
+  for (const TracedRay& ray : rays) {
+    const double places = ray.end.x.cwiseAbs().maxCoeff() / steps.longest;
+    mismatches.push_back({ray.index_mismatch, limit + rounding * places});
+  }
   return mismatches;
 }
 

@@ -129,14 +129,14 @@ class SpaceExits {
 };
 
 /// A beam that crosses layers, less what it loses on the way but for what their peaks scatter.
-struct Beam {
+struct UnscatteredLight {
   double transmitted = 1, unscattered = 1, absorbed = 0;  ///< shares
   double thickness = 0;  ///< the optical depth of the layers, by the same extinction
 };
 
 template <typename Geometry>
-Beam through_layers(const SlabOf<Geometry, double>& slab, double light) {
-  Beam beam;
+UnscatteredLight through_layers(const SlabOf<Geometry, double>& slab, double light) {
+  UnscatteredLight beam;
   for (const auto& layer : slab.layers) {
     const double path = slab.optical_depth(layer) / std::cos(light),
                  turned = 1 - layer.albedo * layer.law.peak();
@@ -182,7 +182,7 @@ struct FluxSolution {
 template <typename Geometry, typename Exits>
 FluxSolution solved(SlabOf<Geometry, double> slab, double light, std::size_t bins, int order) {
   for (auto& layer : slab.layers) layer.law = layer.law.truncated(kept_moments(order));
-  const Beam beam = through_layers(slab, light);
+  const UnscatteredLight beam = through_layers(slab, light);
   auto foci = light_foci({light, light}, slab.width());
   // What a thin slab scatters changes where its path along a direction is a mean free path.
   foci.push_back({pi / 2, beam.thickness});
@@ -302,7 +302,8 @@ FluxJob slab_flux_job(const Scene& scene, std::size_t angle_bins, const Refineme
         std::vector<double> scales;
         for (std::size_t first = 0; first < all.size(); first += shares) {
           const auto own = scales_of_shares(all.subspan(first, shares));
-          scales.insert(scales.end(), own.begin(), own.end());
+          scales.insert(scales.end(), own.begin(), own.begin() + flux_shares);
+          scales.resize(scales.size() + angle_bins);  // bins have errors of their own
         }
         return scales;
       });

@@ -63,6 +63,7 @@ FIT = {"free": ["g=0:0.8"], "depth": 100, "optical_depth": 2, "measurement": "cu
 
 RUNS = {
     "intensity": ("covariance", {**BOX, **FAR}),
+    "checked": ("covariance", {**BOX, "samples": 200000}),
     "intensity_near": ("covariance", {**BOX, **NEAR}),
     "graded": ("solve", {**BOX, "near_sources": "sources.csv", "near_sensors": "sensors.csv",
                          "index_field": "linear", "index_slope": [0, 0.05]}),

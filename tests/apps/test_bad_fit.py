@@ -103,6 +103,7 @@ class BadFit(RefusingTest):
         self.assert_refused(["needs its value"], *words, **{**plan, "g": None})
         self.assert_refused(["needs its value"], "fit", "--plan", "--free", "g=-0.5:0.95", **{**plan, "g": 0})
         self.assert_refused(["tilts"], *words, **{**plan, "tilts": None})
+        (self.folder / "m.csv").write_text("tilt,field_correlation,error\n0.001,0.9,0.01\n")
         self.assert_refused(["measurement", "has use for it"], *words, **plan, measurement="m.csv")
         self.assert_refused(["patterns = 0"], *words, **plan, patterns=0)
         self.assert_refused(["g = 0.8", "no tilt"], *words, **{**plan, "tilts": [0, 0.0001]})

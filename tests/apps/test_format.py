@@ -149,7 +149,8 @@ class Format(ResultsTest):
     def test_attributes(self):
         self.met = set()
         self.on_each_file(self.check_attributes)
-        self.assertEqual(self.met, ATTRIBUTES)
+        only_of_undefined = {("", "undefined", "texts")}  # of results that are not finite
+        self.assertEqual(self.met, ATTRIBUTES - only_of_undefined)
 
     def check_values(self, file):
         for name, dataset in members(file).items():

@@ -11,20 +11,20 @@ HG = {"width": 20, "depth": 10, "scatterer": "hg", "optical_depth": 2, "g": 0.5}
 RAYS = {"field": "luneburg", "light": "line", "ray_count": 3, "beam_radius": 0.4, "origin": [0, 0, -2],
         "stop_plane": [0, 0, 2, 0, 0, 1], "max_length": 10}
 IMAGE = {"domain": "box", **HG, "width": 60, "object_x": [0, 20], "object_depth": -500, "camera": [-0.3, 0.3],
-         "pixels": 128, "repeats": 2, "paths_per_field": 20, "prediction_paths": 4000}
+         "pixels": 128, "repeats": 2, "paths_per_field": 20, "prediction_paths": 300000}
 STAGE = {"stage_box": [-1, -1, 0, 1, 1, 4], "mu_s": 0.5, "point_light": [0, 0, 1, 1], "sensor": "area", "sensor_at": [0, 0, 4],
          "sensor_size": [2, 2], "pixels": [8, 8],
          "method": "analog", "samples": 20000}
 
 RUNS = {  # invariant: subcommand, keys
-    "power": [("covariance", HG | {"samples": 20000}),
-              ("covariance", HG | {"albedo": 0.9, "samples": 20000}),
-              ("covariance", BOX | {"samples": 20000}),
+    "power": [("covariance", HG | {"samples": 300000}),
+              ("covariance", HG | {"albedo": 0.9, "samples": 300000}),
+              ("covariance", BOX | {"samples": 300000}),
               ("covariance", SLAB | {"albedo": 0.8}),
-              ("field", HG | {"view_angles": [0.1, 0.2], "fields": 4}),
+              ("field", HG | {"view_angles": [0.1, 0.2], "fields": 4, "method": "paths", "paths_per_field": 100000}),
               ("image", IMAGE),
               ("render", STAGE)],
-    "mc/invariants/power": [("validate", SLAB | {"samples": 20000})],
+    "mc/invariants/path_power": [("validate", SLAB | {"samples": 300000})],
     "transport/invariants/power": [("validate", SLAB | {"samples": 20000})],
     "index_mismatch": [("trace", RAYS)],
 }

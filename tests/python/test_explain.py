@@ -46,7 +46,7 @@ class Explain(PackageTest):
         found = []
         file.visititems(lambda name, item: found.append((name, item)) if isinstance(item, h5py.Dataset) else None)
         return [(name, item) for name, item in found
-                if "state" not in name.split("/") and not name.endswith(("_error", "_rare"))]
+                if "state" not in name.split("/") and not name.endswith(("_error", "_rare", "_limit"))]
 
     def display(self):
         picture = self.folder / "picture.csv"

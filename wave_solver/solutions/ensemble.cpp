@@ -199,6 +199,7 @@ FrequencyJob frequency_job(const Scene& scene, const std::vector<double>& shifts
     ensemble->add(RandomStream(seed, static_cast<std::uint64_t>(Stream::placement), number), sums);
   };
   job.field.batches.relative_error = relative_error_of(job.all);
+  job.field.batches.deterministic = scene.medium.mu_s == 0;
   return job;
 }
 

@@ -358,8 +358,8 @@ void write_diagnosis(const ResultGroup& root, const Diagnosis& diagnosis) {
   root.put("solve/boundary_residual", diagnosis.boundary_residual);
   root.check("invariants/power", diagnosis.power);
   root.check("invariants/rounding", Invariant{diagnosis.rounding, diagnosis.tolerance});
-  if (diagnosis.truncation >= 0)
-    root.check("invariants/truncation", Invariant{diagnosis.truncation, diagnosis.tolerance});
+  root.check("invariants/truncation",
+             Invariant{std::max(0.0, diagnosis.truncation), diagnosis.tolerance});
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ double met_power(const Scene& scene) {
   return aperture.face() + aperture.side();
 }
 
-enum Sum : std::size_t { by_first, by_second, by_later, power_sums };
+enum PowerSum : std::size_t { by_first, by_second, by_later, power_sums };
 
 /// Adds the power of paths at their last scatterers, over what the ray to the first one loses in
 /// the medium: the same for all first scatterers. |A|^2 is a density over directions: all that
@@ -149,7 +149,7 @@ PathPower path_power(const std::shared_ptr<const PathWalks>& walks, std::uint64_
     sums.add(job.samples_per_batch, batch);
   }
   const Estimate found = jackknife(sums, sample_mean);
-  const auto balance = [&](Sum sum, double should) {
+  const auto balance = [&](PowerSum sum, double should) {
     return Invariant{std::abs(found.value[sum].real() - should),
                      systematic + errors * found.error[sum]};
   };
