@@ -378,17 +378,21 @@ void Session::run_one(const PlannedRun& run) {
                            [this](const RunState&) { save_resumable(); }};
   const StopReason reason = run_batches(run.job, options, state);
   interrupted_ = reason == StopReason::interrupted;
-  if (!interrupted_ && !run.job.one_by_one) {
+  if (interrupted_) {  // perhaps before the first batch
+    converged_ = false;
+    return;
+  }
+  if (!run.job.one_by_one) {
     tell_few_batches(run.label, state.sums.batches());
     tell_few_placements(run, state.sums.batches());
   }
-  if (!interrupted_ && found_nothing(run.job, state.sums)) {
+  if (found_nothing(run.job, state.sums)) {
     tell_nothing_found(run.label);
     blind_ = true;
   }
   const bool reached = !run.stop.target_error || reason == StopReason::target_error ||
                        state.trace.relative_error.back() <= *run.stop.target_error;
-  converged_ = converged_ && reached && !blind_ && !interrupted_;
+  converged_ = converged_ && reached && !blind_;
 }
 
 int Session::finish(const std::function<void(ResultFile&)>& contents) {

@@ -51,6 +51,7 @@ FILES = {
     "places.csv": "x,z,angle\n0,0,0\n9,1,2\n",
     "picture.csv": "1,2,3,4\n" * 4,
     "wedge.stl": wedge(),
+    "predictions.csv": "prediction_paths\n400\n500\n",
     "disk_points.csv": "density,radius,index,index_imaginary\n0.1,0.2,1.5,0\n0.2,0.1,1.4,0.01\n",
 }
 
@@ -145,6 +146,7 @@ RUNS = {
     "field_near": ("field", {**BOX, "near_sensors": "line.csv", "method": "covariance"}),
     "place": ("place", {**DISKS, "placement": "equilibrium"}),
     "sweep": ("sweep", GRID),
+    "sweep_checked": ("sweep", {**GRID, "albedo": 0.9, "g": 0.5, "method": "transport", "tolerance": 1e-2, "samples": None}),
     "sweep_partial": ("merge", GRID, 3),
     "sweep_disks": ("sweep", {**BOX, "count": None, "domain": "box", "scatterer": "tm",
                               "density": [0.05, 0.1], "radius": [0.1, 0.2], "tilts": [0, 0.001],
@@ -156,6 +158,7 @@ RUNS = {
                              "scatterer": "point", "method": "both"}),
     "sweep_of": ("sweep", {**STAGE, "of": "render", "vary": ["method=light,path", "mu_a=0,0.1"],
                            "sensor": "area", "sensor_at": [0, 0, 4], "sensor_size": [1, 1]}),
+    "sweep_of_images": ("sweep", {**IMAGE, "prediction_paths": None, "of": "image", "points_table": "predictions.csv"}),
     "optimise": ("optimise", {**STAGE, "of": "render", "vary": ["mu_a=0:0.1"], "maximise": "total", "scattered": 2, "method": "light",
                               "against": "mu_a=0.2", "pixels": [1, 1], "key_tolerance": 0.5, "target_error": 0.5, "sensor": "area",
                               "sensor_at": [0, 0, 4], "sensor_size": [1, 1]}),

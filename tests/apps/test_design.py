@@ -170,9 +170,9 @@ class Design(RefusingTest):
         self.assert_refused(["another search", "asked.csv"], "design", resume=True, **keys)
 
     def test_a_signal_within_a_long_step(self):
-        """Of a million rays a step takes some ten seconds of the processor, whoever else uses it."""
+        """Of 400,000 rays a step takes some four seconds of the processor, whoever else uses it."""
         before = cpu_of_children()
-        run = self.start("design", design="guide", goal="equal_path", delta=0.01, coefficients=0, ray_count=1000000,
+        run = self.start("design", design="guide", goal="equal_path", delta=0.01, coefficients=0, ray_count=400000,
                          threads=1, out="cut.h5")
         time.sleep(1)
         run.send_signal(signal.SIGINT)

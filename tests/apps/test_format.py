@@ -105,7 +105,7 @@ def axes_of(dataset):
         numbers = np.array_equal(dataset[()], np.arange(len(dataset)))
         return ("0, 1, ...", "scale") if numbers else ("scale",)
     names = [of_method(axis[0].name[1:]) if len(axis) else "no scale" for axis in dataset.dims]
-    own = [name for name in names if name not in swept_keys(dataset.file)]
+    own = [name for name in names if name not in [*swept_keys(dataset.file), "swept_point"]]
     swept = ["SWEPT"] if len(own) < len(names) else []
     return tuple({" ".join(own) or "scalar", " ".join(swept + own) or "scalar"})
 

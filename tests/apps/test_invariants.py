@@ -17,13 +17,16 @@ STAGE = {"stage_box": [-1, -1, 0, 1, 1, 4], "mu_s": 0.5, "point_light": [0, 0, 1
          "method": "analog", "samples": 20000}
 
 RUNS = {  # invariant: subcommand, keys
-    "power": [("covariance", HG | {"samples": 300000}),
-              ("covariance", HG | {"albedo": 0.9, "samples": 300000}),
-              ("covariance", BOX | {"samples": 300000}),
+    "power": [("covariance", BOX | {"samples": 2000000}),
               ("covariance", SLAB | {"albedo": 0.8}),
-              ("field", HG | {"view_angles": [0.1, 0.2], "fields": 4, "method": "paths", "paths_per_field": 100000}),
-              ("image", IMAGE),
+              ("flux", SLAB | {"albedo": 0.8}),
+              ("flux", HG | {"samples": 20000}),
+              ("solve", CYLINDERS),
               ("render", STAGE)],
+    "path_power": [("covariance", HG | {"samples": 300000}),
+                   ("covariance", HG | {"albedo": 0.9, "samples": 300000}),
+                   ("field", HG | {"view_angles": [0.1, 0.2], "fields": 4, "method": "paths", "paths_per_field": 100000}),
+                   ("image", IMAGE)],
     "mc/invariants/path_power": [("validate", SLAB | {"samples": 300000})],
     "transport/invariants/power": [("validate", SLAB | {"samples": 20000})],
     "index_mismatch": [("trace", RAYS)],
