@@ -69,8 +69,8 @@ class Extras(ProgramTest):
                 self.call("covariance", **SLAB, **keys, gradient=True, samples=40000, out="mc.h5")
                 with h5py.File(self.folder / "transport.h5") as found, \
                         h5py.File(self.folder / "mc.h5") as expected:
-                    self.assertEqual(*({name for name in file if not name.endswith("_rare")}
-                                       for file in (found, expected)))
+                    self.assertEqual(*({name for name in file if not name.endswith("_rare") and name != "invariants"}
+                                       for file in (found, expected)))  # few paths are not checked
                     for name in expected:
                         if not name.endswith("gradient"):
                             continue
@@ -106,7 +106,7 @@ class Extras(ProgramTest):
         found, expected = (file["field_correlation"][()] for file in files)
         error = files[1]["field_correlation_error"][()]
         self.assertTrue(np.all(np.abs(found - expected) <= 4 * error + 1e-12))
-        self.assertEqual(set(files[0]), set(files[1]))
+        self.assertEqual(set(files[0]) - {"invariants"}, set(files[1]))  # few paths are not checked
         for file in files:
             file.close()
         self.call("covariance", **SLAB, **SMALL_TILTS, **delays, out="tilts.h5")

@@ -15,7 +15,8 @@ std::vector<Complex> map_means(double samples, std::span<const Complex> sums, st
 Estimate fluence(const GroupedSums& sums, std::size_t first, const LightMap& map);
 Estimate absorbed(const GroupedSums& sums, std::size_t first, const LightMap& map);
 
-/// Writes the map of a scene that has one: fluence, and absorbed power, which is 0 without absorption.
+/// Writes the map of a scene that has one: fluence, and absorbed power, which is 0 without
+/// absorption.
 void write_map(ResultFile& file, const RenderScene& scene, const RenderJob& job,
                const GroupedSums& sums);
 

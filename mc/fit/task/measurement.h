@@ -19,8 +19,8 @@ Eigen::MatrixXd deviations(const GroupedSums& sums, const Estimator& theta);
 /// The covariance of the errors of what an estimator makes of sums, real parts, by leaving one
 /// group out at a time as jackknife() does; its inverse is that of Hartlap, Simon and Schneider
 /// 2007 (eq. 17), for so many groups and values. Shrunk towards its diagonal (Ledoit and Wolf 2004)
-/// by shrinkage_of(sums): sums of values whose errors all but cancel rest on a few strong paths, and on the
-/// rounding of models. Empty where groups are fewer than values and ten.
+/// by shrinkage_of(sums): sums of values whose errors all but cancel rest on a few strong paths,
+/// and on the rounding of models. Empty where groups are fewer than values and ten.
 Eigen::MatrixXd correlated_errors(const GroupedSums& sums, const Estimator& theta);
 /// The share of the diagonal in it: 1/groups.
 double shrinkage_of(const GroupedSums& sums);

@@ -8,8 +8,8 @@
 
 namespace flatspeckle::mc {
 
-/// Whether the paths of a scene carry the power that a plane wave loses, over that power: along each
-/// of its rays, which leaves little variance. Limits are 1e-3 and five standard errors.
+/// Whether the paths of a scene carry the power that a plane wave loses, over that power: along
+/// each of its rays, which leaves little variance. Limits are 1e-3 and five standard errors.
 struct PathPower {
   Invariant first;   ///< what first scatterers receive of what a ray loses, by paths of one
   Invariant second;  ///< the same by paths of two, over the probability of their flights
