@@ -35,7 +35,7 @@ void print_table(const Scene& scene, const mc::FluxEstimates& flux) {
   }
 }
 
-/// Of a medium that scatters no share is 0: none of the paths has come out there.
+/// Notes shares that are 0 although the medium scatters: no path has come out there.
 void note_unreached(const Scene& scene, const mc::FluxEstimates& flux) {
   const auto note = [&](const Estimate& share, const char* name) {
     if (scene.medium.mu_s > 0 && std::ranges::find(share.value, 0.0) != share.value.end())

@@ -51,8 +51,8 @@ void disregard_unused(const Keys& keys, const SceneSpec& spec,
 /// Reads what transport heeds. Throws InputError for what is no slab.
 void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec& spec,
                     const RunSettings& run);
-/// Of a method without chance, whose jobs are two batches. A run whose error is more than the
-/// tolerance has not converged.
+/// Returns the stop rule of deterministic methods, whose jobs are two batches. A run whose error is
+/// more than the tolerance has not converged.
 StopRule both_batches(double tolerance);
 
 /// Disks are placed in whole numbers: says so on standard error where that changes the density

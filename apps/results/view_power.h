@@ -33,8 +33,8 @@ struct DoneWork {
   std::uint64_t seed = 0;
 };
 std::optional<Invariant> view_power(const Scene& scene, const DoneWork& work);
-/// What scatterers along light paths receive against what light loses (mc::PathPower), the worst;
-/// nullopt of methods without paths.
+/// Returns the worst balance of what scatterers along light paths receive and what light loses
+/// (mc::PathPower); nullopt for methods without paths.
 std::optional<Invariant> received_power(const Scene& scene, const DoneWork& work);
 
 extern const DatasetTable power_table;

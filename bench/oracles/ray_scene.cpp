@@ -173,7 +173,7 @@ Long3 SolidBody::normal(const Long3& x) const {
 
 namespace {
 
-/// What a place is in: the number of a body, or -1 around them.
+/// Finds the body that a place lies in, by its number, or -1 around them.
 class Layering {
  public:
   explicit Layering(const SolidScene& scene) : scene_(scene) {

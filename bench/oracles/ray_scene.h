@@ -51,7 +51,7 @@ std::optional<SolidRay> follow(const SolidScene& scene, const Long3& x, const Lo
                                const std::vector<bool>* reflects = nullptr,
                                int most_crossings = 1000);
 
-/// The same for a ray that a change of its start by 1e-13 changes by less than 1e-10.
+/// Follows a ray; nullopt where a change of its start by 1e-13 changes it by 1e-10 or more.
 std::optional<SolidRay> follow_decided(const SolidScene& scene, const Long3& x, const Long3& d,
                                        const std::vector<bool>* reflects = nullptr,
                                        int most_crossings = 1000);

@@ -65,7 +65,7 @@ class NumberReader {
     return field;
   }
 
-  /// As in -12,345.
+  /// Whether a comma may separate thousands, as in -12,345.
   static bool may_divide_thousands(std::string_view field) {
     if (field.starts_with('-') || field.starts_with('+')) field.remove_prefix(1);
     const auto comma = field.find(',');
