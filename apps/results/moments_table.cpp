@@ -40,24 +40,6 @@ std::size_t shown_entries(const CovarianceRequest& request) {
   return request.entries.size();
 }
 
-namespace {
-
-/// A target error is that of all entries together: single ones may be far off.
-void print_largest_error(const Estimate& estimate) {
-  constexpr double far = 2;
-  double largest = 0;
-  for (std::size_t e = 0; e < estimate.error.size(); ++e)
-    if (std::abs(estimate.value[e]) > 0)
-      largest = std::max(largest, estimate.error[e] / std::abs(estimate.value[e]));
-  const double together = relative_error(estimate);
-  if (std::isfinite(largest) && largest > far * together)
-    std::printf(
-        "relative error: %.2g %% (RMS error over RMS value), of single entries up to %.2g %%\n",
-        100 * together, 100 * largest);
-}
-
-}  // namespace
-
 void print_entries(const CovarianceRequest& request, const Estimate& estimate,
                    const std::string& name) {
   const std::size_t entries = shown_entries(request);
@@ -70,7 +52,6 @@ void print_entries(const CovarianceRequest& request, const Estimate& estimate,
                 estimate.error[e]);
   }
   if (entries > most_rows) std::printf("... and %zu more\n", entries - most_rows);
-  print_largest_error(estimate);
 }
 
 void print_errors(const CovarianceRequest& request, const Estimate& estimate) {

@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "core/numbers/gauss.h"
 #include "core/numbers/random.h"
+#include "core/result/invariant.h"
 #include "core/result/result_group.h"
 #include "core/run/parallel.h"
 #include "mc/paths/estimators/covariance_estimator.h"
@@ -92,8 +94,8 @@ double seen_share(const Scene& scene, double samples, std::uint64_t seed, std::u
   return power / aperture(lit);
 }
 
-}  // namespace
-
+/// By light paths, in groups with far views of their own, whose spread gives the error. samples: in
+/// all groups together; nullopt where they do not suffice for a batch in each.
 std::optional<Invariant> paths_power(const Scene& scene, double samples, std::uint64_t seed) {
   constexpr std::size_t groups = 16;
   constexpr double most_samples = 1 << 22, rounding = 1e-9;
@@ -118,8 +120,6 @@ std::optional<Invariant> paths_power(const Scene& scene, double samples, std::ui
       outlier_errors(groups) * std::hypot(error, expected.error) / expected.value + rounding};
 }
 
-namespace {
-
 /// The worst balance of the shares of the slab's light, of which none follows from the others.
 Invariant flux_balance(const Scene& slab, double tolerance) {
   const Scene lit = seen_from(slab, {0});
@@ -127,8 +127,9 @@ Invariant flux_balance(const Scene& slab, double tolerance) {
   return mc::power_balance(job, sums_of(job.batches, 2), mc::direct_transmittances(lit)).front();
 }
 
-}  // namespace
-
+/// By transport through a slab. The limit contains the errors of both solutions and of the
+/// quadrature over views. In space and through layers it is the balance of the shares of light
+/// instead (mc::power_balance).
 std::optional<Invariant> transport_power(const Scene& slab, double tolerance) {
   constexpr int nodes = 32;  // of a quadrant
   constexpr int most_ordinates = 200;
@@ -165,18 +166,16 @@ std::optional<Invariant> transport_power(const Scene& slab, double tolerance) {
                    (std::abs(fine.value - coarse.value) + fine.error + error) / left + rounding};
 }
 
-namespace {
-
 constexpr double part = 1.0 / 64;  // of the work, for each check
 
-}  // namespace
-
+/// Returns how far the views' power is off; nullopt for the exact solver.
 std::optional<Invariant> view_power(const Scene& scene, const DoneWork& work) {
   if (work.method == "mc") return paths_power(scene, part * work.samples, work.seed);
   if (work.method == "transport") return transport_power(scene, work.tolerance);
   return std::nullopt;
 }
 
+/// Returns the worst of the balances along light paths; nullopt for methods without paths.
 std::optional<Invariant> received_power(const Scene& scene, const DoneWork& work) {
   constexpr double least = 2000, most = 20000;
   if (work.method != "mc" || part * work.samples < least) return std::nullopt;
@@ -189,6 +188,8 @@ std::optional<Invariant> received_power(const Scene& scene, const DoneWork& work
     if (each.is_worse_than(worst)) worst = each;
   return worst;
 }
+
+}  // namespace
 
 void check_power(ResultFile& file, const std::string& group, const Scene& scene,
                  const DoneWork& work) {
