@@ -37,7 +37,7 @@ bool is_angle_column(const std::string& name);
 /// angles of a column NAME_deg become those of a column NAME, in radians. Throws InputError naming
 /// file, line and what is wrong.
 Table read_csv(const std::filesystem::path& path, const AngleColumns& is_angle = is_angle_column);
-/// The same of the table that a key names, which must have a row or more. Messages begin with the
+/// Reads the table that a key names, which must have a row or more. Messages begin with the
 /// key: "layers = tissue.csv, line 3: ...".
 Table read_key_table(const std::string& key, const std::filesystem::path& path,
                      const AngleColumns& is_angle = is_angle_column);

@@ -23,7 +23,7 @@ std::optional<Number> read_all(const char* from, const char* end) {
   return value;
 }
 
-/// As scene files have them between digits: 1_000.
+/// Takes off what scene files may have between digits: 1_000.
 std::string without_underscores(const std::string& text) {
   const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
   std::string all;

@@ -30,7 +30,7 @@ struct BatchJob {
   /// Batches share their work, a solution without chance: a thread that took the second would wait
   /// for the first, and their number says nothing.
   bool one_by_one = false;
-  /// Nothing is sampled: batches are equal by construction, and errors of 0 are right.
+  /// Whether nothing is sampled: batches are equal by construction, and errors of 0 are right.
   bool deterministic = false;
   /// Less where there is no such tail.
   std::uint64_t trusted_batches = flatspeckle::trusted_batches;

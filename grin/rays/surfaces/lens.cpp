@@ -50,7 +50,7 @@ Mat3 Lens::curvature(const Vec3& x) const {
   return bend * (Mat3::Identity() - n * n.transpose() - flat * flat.transpose());
 }
 
-/// Of the cylinder between the edges, and of the caps of height h, pi h (3 radius^2 + h^2) / 6.
+/// Adds the cylinder between the edges and the caps of height h, pi h (3 radius^2 + h^2) / 6.
 double Lens::volume() const {
   double volume = radius_ * radius_ * (faces_[1].edge - faces_[0].edge);
   for (const LensFace& face : faces_) {

@@ -63,7 +63,7 @@ void check_size(const std::string& bytes) {
   throw InputError(text.str());
 }
 
-/// Of each triangle a normal, its corners, and two bytes of anything.
+/// Each triangle has a normal, its corners, and two bytes of anything.
 std::vector<Vec3> corners_of_binary(const std::string& bytes) {
   check_size(bytes);
   std::vector<Vec3> corners;
