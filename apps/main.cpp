@@ -101,15 +101,15 @@ const SubcommandEntry& subcommand_named(const std::string& word) {
   throw InputError("subcommand", word, "must be one of" + words);
 }
 
-int run(const Arguments& arguments) {
+End run(const Arguments& arguments) {
   const std::string word = arguments.size() > 1 ? arguments[1] : "--help";
   if (word == "--help" || word == "-h" || word == "help") {
     print_usage();
-    return ExitStatus::done;
+    return {};
   }
   if (word == "--version") {
     std::cout << "flatspeckle " << version() << " (" << git_commit() << ")\n";
-    return ExitStatus::done;
+    return {};
   }
   const SubcommandEntry& subcommand = subcommand_named(word);
   if (word != "sweep" && launched_ranks().size > 1)
@@ -138,15 +138,16 @@ int fail(std::string what, int status) {
   return status;
 }
 
-/// Returns the status, or 1 where the standard output could not be written, which is said. One that
-/// is closed, or a pipe whose reader has ended, need not be.
-int with_written_output(int status) {
+/// Returns the status, or 1 where the standard output was all that was wanted and could not be
+/// written, which is said. One that is closed, or a pipe whose reader has ended, need not be.
+int with_written_output(const End& end) {
   std::cout.flush();
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return end.status;
   pollfd output{STDOUT_FILENO, POLLOUT, 0};
   ::poll(&output, 1, 0);
-  if ((output.revents & (POLLERR | POLLNVAL)) != 0) return status;
-  return fail("the standard output cannot be written: is its device full?", 1);
+  if ((output.revents & (POLLERR | POLLNVAL)) != 0) return end.status;
+  return fail("the standard output cannot be written: is its device full?",
+              end.has_result ? end.status : 1);
 }
 
 /// Where memory or disk ran out, and the clearing up of libraries at the end may crash.

@@ -105,12 +105,15 @@ std::unique_ptr<Call> make_call(const SubcommandEntry& entry, const std::string&
   return std::make_unique<ExperimentCall>(entry);
 }
 
-int run_subcommand(const SubcommandEntry& entry, const Arguments& arguments) {
+End run_subcommand(const SubcommandEntry& entry, const Arguments& arguments) {
   std::string of;
   if (entry.of != nullptr) of = value_ahead("of", arguments);
   if (entry.of != nullptr && of.empty()) of = entry.of;
   const auto call = make_call(entry, of);
-  return call->command().parse(arguments) ? call->run() : ExitStatus::done;
+  Subcommand& command = call->command();
+  if (!command.parse(arguments)) return {};
+  const bool has_result = command.keys().find("out") != nullptr && !command.only_prints();
+  return {call->run(), has_result};
 }
 
 std::map<std::string, std::vector<std::string>> key_owners() {

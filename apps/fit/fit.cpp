@@ -10,6 +10,7 @@
 #include "apps/command/command_line.h"
 #include "apps/command/subcommands.h"
 #include "apps/fit/measurement_file.h"
+#include "apps/results/view_power.h"
 #include "apps/sweep/sweep_points.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
@@ -471,6 +472,9 @@ int run_fit(const Session& session, const Subcommand& command, const FitKeys& va
   const int status = session.once(ResultFile(session.out()), [&](ResultFile& file) {
     const mc::MediumFit fit = mc::fit_medium(task);
     mc::write_fit(file, task, fit);
+    if (task.paths)
+      check_power(file, "", media_at(task, fit.coordinates).front().scene,
+                  {"mc", fit.paths, 0, task.paths->seed});
     print_fit(task, fit);
     return Made{"least squares; " + model_of(task, fit), static_cast<double>(fit.residuals.size()),
                 fit.converged ? ExitStatus::done : ExitStatus::error_not_reached};

@@ -117,7 +117,8 @@ class CovarianceExperiment : public Experiment {
     mc::write_reflection_theory(file, *scene_);
     if (estimation_.write) estimation_.write(file, sums);
     if (method_ == "transport") mc::write_numerical(file);
-    check_power(file, "", *scene_, {method_, sums.total_samples(), methods_.tolerance, seed()});
+    check_power(file, "", *scene_,
+                {method_, sums.total_samples(), methods_.tolerance_of(method_), seed()});
   }
 
   SceneSpec spec_;

@@ -356,7 +356,7 @@ int compare_methods(const Subcommand& command, ValidateKeys& values) {
       {{"mc", "mc", mc.job.field.batches, stop},
        {name, name, reference.job.field.batches, chosen.stop}},
       inputs_text(scene) + inputs_text(keys),
-      [&, &shifts = shifts, tolerance = methods.tolerance](ResultFile& file) {
+      [&, &shifts = shifts](ResultFile& file) {
         const GroupedSums &mc_sums = session.sums("mc"), &reference_sums = session.sums(name);
         const FieldMoments mc_moments = field_moments(mc.job.field, mc_sums),
                            reference_moments = field_moments(reference.job.field, reference_sums);
@@ -373,7 +373,7 @@ int compare_methods(const Subcommand& command, ValidateKeys& values) {
                                              reference_moments));
         if (name == "transport") mc::write_numerical(file, name);
         check_power(file, "mc", scene, {"mc", mc_sums.total_samples(), 0, session.seed()});
-        check_power(file, name, scene, {name, 0, tolerance, session.seed()});
+        check_power(file, name, scene, {name, 0, methods.tolerance_of(name), session.seed()});
         mc::write_reflection_theory(file, scene);
         write_comparison(file, comparison);
         if (shifts.empty()) return;

@@ -255,6 +255,8 @@ class RenderExperiment : public Experiment {
     if (tells) print_render(*scene_, job, sums, result);
     write_render(file, *scene_, job, result, scene_->length_unit);
     if (tells) write_counts(file, transport_counts(job, sums));
+    if (const auto light = worst_light(light_checks(job, sums)))
+      ResultGroup(file, grin::render_table).check("invariants/light", *light);
     if (const auto energy = energy_result(job, sums)) {
       if (tells) print_energy(*energy);
       write_energy(file, *scene_, request_, *energy);

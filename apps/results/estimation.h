@@ -21,7 +21,11 @@ struct MethodSettings {
   bool neglect_k_shift = false;
   double wave_tolerance = 1e-6;
   std::optional<std::int64_t> wave_samples;
-  double tolerance = 1e-6;
+  double tolerance = 1e-6;  ///< of transport
+
+  double tolerance_of(const std::string& method) const {
+    return method == "wave" ? wave_tolerance : tolerance;
+  }
 };
 
 void add_mc_keys(Keys& keys, MethodSettings& settings);

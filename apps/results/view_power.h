@@ -11,9 +11,9 @@ namespace flatspeckle::apps {
 
 /// How a result was made, as far as its check depends on it.
 struct DoneWork {
-  std::string method;    ///< mc or transport; nothing is checked by the exact solver's fields
+  std::string method;    ///< mc, transport or wave
   double samples = 0;    ///< light paths, of which the check takes some percent as many
-  double tolerance = 0;  ///< of transport
+  double tolerance = 0;  ///< of transport, or of the fields of waves
   std::uint64_t seed = 0;
 };
 

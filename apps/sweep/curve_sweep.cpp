@@ -182,7 +182,7 @@ std::optional<std::size_t> CurveSweep::find(const std::string& name,
 SweepRun CurveSweep::open(std::size_t run) const {
   const auto scene = std::make_shared<const Scene>(this->scene(run));
   const Estimation planned = estimation(run, *scene);
-  const DoneWork work{method(run), 0, methods.tolerance, session().seed()};
+  const DoneWork work{method(run), 0, methods.tolerance_of(method(run)), session().seed()};
   return {planned.plan, planned.job.batches, stop(run),
           [scene, work, job = planned.job](ResultFile& file, const RunState& state) {
             write_curve(file, *scene, job, state);

@@ -150,6 +150,7 @@ VectorXd values_at(const FitTask& task, const VectorXd& coordinates) {
 
 void put_information(const FitTask& task, const Information& known, const VectorXd& coordinates,
                      MediumFit& fit) {
+  fit.coordinates = coordinates;
   fit.estimates = values_at(task, coordinates);
   fit.covariance = covariance_of_values(task, coordinates, known.covariance);
   fit.errors = fit.covariance.diagonal().cwiseSqrt();

@@ -18,6 +18,7 @@ struct Derived {
 };
 
 struct MediumFit {
+  Eigen::VectorXd coordinates;  ///< of the estimates
   Eigen::VectorXd estimates, errors;
   Eigen::MatrixXd covariance, correlation;
   double condition = 0;   ///< of the information; infinite where a combination is not known

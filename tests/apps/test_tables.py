@@ -170,6 +170,11 @@ class Resources(RefusingTest):
                 done = subprocess.run([PROGRAM, *words], stdout=full, stderr=subprocess.PIPE, text=True, cwd=self.folder)
                 self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), done.stderr)
                 self.assertIn("output cannot be written", done.stderr)
+        words = ["flux", *flags(SLAB), "--out", "x.h5"]
+        with open("/dev/full", "w") as full:
+            done = subprocess.run([PROGRAM, *words], stdout=full, stderr=subprocess.PIPE, text=True, cwd=self.folder)
+        self.assertEqual(done.returncode, 0, "the result is there")
+        self.assertIn("output cannot be written", done.stderr)
 
     def test_a_reader_that_ends(self):
         read, write = os.pipe()

@@ -199,7 +199,7 @@ bool is_flat(const std::string& subcommand) {
 int only_check(Arguments arguments) {
   arguments.emplace_back("--print-config");
   for (const SubcommandEntry& entry : subcommands())
-    if (arguments[1] == entry.name) return run_subcommand(entry, arguments);
+    if (arguments[1] == entry.name) return run_subcommand(entry, arguments).status;
   return ExitStatus::done;
 }
 

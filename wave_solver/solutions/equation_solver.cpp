@@ -206,7 +206,8 @@ double norm_of(const std::vector<Complex>& values) {
 }
 
 // A rounding e of a radius changes M by e |T|/T d ln T / d ln(radius) on its diagonal, one of the
-// sides likewise; to first order, M^-1 of that and a solution is what the solution changes by.
+// sides likewise; to first order, M^-1 of that and a solution is what the solution changes by. Of
+// the first of their combinations().
 double rounding_of(const WaveEquations& equations, EquationSolver& solver,
                    const std::vector<Complex>& sides, const std::vector<Complex>& solution,
                    std::span<const Complex> radius_derivatives) {
@@ -214,21 +215,22 @@ double rounding_of(const WaveEquations& equations, EquationSolver& solver,
   const std::size_t n = equations.unknowns();
   if (n == 0 || sides.empty()) return 0;
   RandomStream random(0, 0, 0);
-  const auto x = combinations(solution, n);
-  auto changes = combinations(sides, n);
+  auto x = combinations(solution, n), changes = combinations(sides, n);
+  x.resize(n);
+  changes.resize(n);
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const double sign = random.uniform() < 0.5 ? -1 : 1;
-    changes[i] = rounding *
-                 (sign * changes[i] + equations.diagonal(i % n) * radius_derivatives[i % n] * x[i]);
+    changes[i] =
+        rounding * (sign * changes[i] + equations.diagonal(i) * radius_derivatives[i] * x[i]);
   }
   std::vector<double> angles;
   for (int i = 0; i < 16; ++i) angles.push_back(i * std::numbers::pi / 8);
   const auto rows = equations.far_rows(angles);
-  const auto size = [&](const std::vector<Complex>& columns) {
-    return norm_of(transposed_product(rows, columns.data(), columns.size() / n, n));
+  const auto size = [&](const std::vector<Complex>& column) {
+    return norm_of(transposed_product(rows, column.data(), 1, n));
   };
   const double whole = size(x);
-  return whole > 0 ? size(solver.solve(changes)) / whole : 0;
+  return whole > 0 ? size(solver.solve_roughly(std::move(changes))) / whole : 0;
 }
 
 }  // namespace
@@ -292,6 +294,12 @@ std::vector<Complex> EquationSolver::solve(const std::vector<Complex>& sides, bo
   remainder_ = dense_->remainder();
   description_ = dense_->is_pivoted() ? "dense LU with pivoting" : "dense L L^T without pivoting";
   return x;
+}
+
+std::vector<Complex> EquationSolver::solve_roughly(std::vector<Complex> sides) {
+  if (!fast_) return solve(sides);
+  fast_->solve(sides);
+  return sides;
 }
 
 // Columns of norm 1 each, so that none is neglected beside others.

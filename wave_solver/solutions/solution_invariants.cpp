@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <vector>
 
+#include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/equations/rim_waves.h"
 
 namespace flatspeckle::wave {
@@ -38,12 +40,32 @@ std::vector<double> absorption_of(const TMatrixSystem& system) {
 }
 
 // Directions in which |A|^2, of angular orders up to about 2 k R, is integrated exactly.
-std::vector<View> directions_around(const TMatrixSystem& system) {
+std::vector<double> directions_around(const TMatrixSystem& system) {
   const double size = system.k() * enclosing_circle(system.placement()).radius;
   const int count = 2 * static_cast<int>(size + 10 * std::cbrt(size) + 20);
-  std::vector<View> views;
-  for (int i = 0; i < count; ++i) views.push_back(far_view(2 * std::numbers::pi * i / count));
-  return views;
+  std::vector<double> angles;
+  for (int i = 0; i < count; ++i) angles.push_back(2 * std::numbers::pi * i / count);
+  return angles;
+}
+
+// The integral of |A|^2 over all directions, of each of these lights.
+std::vector<double> scattered_powers(const WaveSolution& solution,
+                                     const std::vector<std::size_t>& lights) {
+  constexpr std::size_t at_once = 128;
+  const TMatrixSystem& system = solution.system();
+  const auto angles = directions_around(system);
+  std::vector<double> powers(lights.size());
+  if (system.unknowns() == 0) return powers;
+  for (std::size_t first = 0; first < angles.size(); first += at_once) {
+    const std::size_t count = std::min(at_once, angles.size() - first);
+    const auto rows = system.far_rows(std::span(angles).subspan(first, count));
+    for (std::size_t i = 0; i < lights.size(); ++i)
+      for (const Complex amplitude : transposed_product(
+               rows, solution.coefficients(lights[i]).data(), 1, system.unknowns()))
+        powers[i] +=
+            std::norm(amplitude) * 2 * std::numbers::pi / static_cast<double>(angles.size());
+  }
+  return powers;
 }
 
 }  // namespace
@@ -57,13 +79,15 @@ Invariant power_balance(const WaveSolution& solution, double tolerance) {
   const double slack = 1e-13 + 1e-15 * phases + 100 * std::max(0.0, solution.diagnosis().residual) +
                        (lights.size() > uncombined ? 3 * tolerance : 0);
   const auto absorption = absorption_of(system);
-  const auto views = directions_around(system);
+  std::vector<std::size_t> some;
+  for (std::size_t i = 0; i < std::min(lights.size(), most_lights); ++i)
+    some.push_back(i * lights.size() / std::min(lights.size(), most_lights));
+  const auto powers = scattered_powers(solution, some);
   Invariant worst;
-  for (std::size_t i = 0; i < std::min(lights.size(), most_lights); ++i) {
-    const std::size_t light = i * lights.size() / std::min(lights.size(), most_lights);
-    double scattered = 0, absorbed = 0, squares = 0;
-    for (const Complex amplitude : solution.fields(views, light))
-      scattered += std::norm(amplitude) * 2 * std::numbers::pi / static_cast<double>(views.size());
+  for (std::size_t i = 0; i < some.size(); ++i) {
+    const std::size_t light = some[i];
+    const double scattered = powers[i];
+    double absorbed = 0, squares = 0;
     const auto beta = solution.coefficients(light);
     for (std::size_t n = 0; n < beta.size(); ++n) {
       absorbed += absorption[n] * std::norm(beta[n]);

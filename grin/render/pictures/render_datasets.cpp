@@ -404,7 +404,11 @@ const DatasetTable render_table{
              {"transport/joins", Data::count, "", "1",
               "vertices of light and sensor that were joined"},
              {"transport/lost_values", Data::count, "", "1",
-              "contributions that were not finite, left out"}},
+              "contributions that were not finite, left out"},
+             {"invariants/light", Data::invariant, "", "1",
+              "difference between the mean of a sensor and that of the light paths that hit it, or, "
+              "where rays of sensors alone are traced, of bidirectional ones, relative: of the "
+              "sensors the worst"}},
     .attributes = {{"", "length_unit", "float64", "metres in a unit of length, where given"},
                    {"", "mesh_volume", "float64", "that body_mesh encloses"},
                    {"", "body_volume", "float64", "of the smooth body in its place"},

@@ -223,10 +223,20 @@ std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& su
     const bool is_known = sums.groups() > 1 && other > 0 && all.rare[count + i] == 0,
                is_marked = all.rare[i] != 0 && all.error[i] > mean / 2;
     if (is_known && !is_marked)
-      checks[i] = {std::abs(all.value[2 * count + i].real()),
-                   errors * all.error[2 * count + i] + all.error[i], mean, other};
+      checks[i] = {{std::abs(all.value[2 * count + i].real()),
+                    errors * all.error[2 * count + i] + all.error[i]},
+                   mean,
+                   other};
   }
   return checks;
+}
+
+std::optional<Invariant> worst_light(const std::vector<LightCheck>& checks) {
+  std::optional<Invariant> worst;
+  for (const LightCheck& each : checks)
+    if (each.other > 0 && (!worst || each.is_worse_than(*worst)))
+      worst = Invariant{each.off / each.other, each.limit / each.other};
+  return worst;
 }
 
 TransportCounts transport_counts(const RenderJob& job, const GroupedSums& sums) {

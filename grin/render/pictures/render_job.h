@@ -2,10 +2,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/numbers/statistics.h"
+#include "core/result/invariant.h"
 #include "core/run/runner.h"
 #include "grin/render/methods/render_scene.h"
 #include "grin/render/sensors/pixel_grid.h"
@@ -57,13 +59,13 @@ TransportCounts transport_counts(const RenderJob& job, const GroupedSums& sums);
 /// strategies, is that of the light paths that hit it by themselves. Path tracing has none, and is
 /// compared with some paths of bidirectional tracing. `off` is the difference, `limit` five of its
 /// standard errors and one of the mean's; both are 0 where too few paths hit to tell.
-struct LightCheck {
-  double off = 0, limit = 0, mean = 0, other = 0;
-
-  bool holds() const { return off <= limit; }
+struct LightCheck : Invariant {
+  double mean = 0, other = 0;
 };
 /// Of each sensor.
 std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& sums);
+/// The worst of those that are known, relative to what hits the sensor.
+std::optional<Invariant> worst_light(const std::vector<LightCheck>& checks);
 
 /// Throws InputError for lights and sensors that do not fit the stage, for media in which paths do
 /// not end in time, and for a random phase of a field without sound.
