@@ -55,8 +55,14 @@ class SceneFile : public CLI::Config {
   SceneFile(const Keys& keys, const CLI::App& app) : keys_(&keys), app_(&app) {}
 
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
+    std::string text;
+    try {
+      text.assign(std::istreambuf_iterator<char>(input), {});
+    } catch (const std::ios_base::failure&) {
+      throw InputError("cannot be read");
+    }
     std::vector<CLI::ConfigItem> found;
-    for (auto& [key, values] : read_scene({std::istreambuf_iterator<char>(input), {}})) {
+    for (auto& [key, values] : read_scene(text)) {
       const Key* const row = keys_ == nullptr ? nullptr : keys_->find(key);
       for (std::string& value : values)
         if (row != nullptr && names_a_file(*row, value)) value = beside_the_scene(value);

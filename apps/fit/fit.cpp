@@ -461,13 +461,21 @@ int run_fit(const Session& session, const Subcommand& command, const FitKeys& va
   const std::filesystem::path path = session.out() + ".search";
   std::error_code none;
   std::optional<Journal> journal;
-  if (task.paths) {
-    catch_interrupts();
-    if (!values.run.resume) std::filesystem::remove(path, none);
+  const auto open = [&] {
     journal.emplace(
         path, JournalHead{identity_of(command.keys(), task)}, "search",
         [&](std::uint64_t, char, ByteReader& record) { task.made.push_back(step_of(record)); });
-    task.keep = [&](const mc::FitStep& step) { journal->append(step_kind, record_of(step)); };
+  };
+  if (task.paths) {
+    catch_interrupts();
+    if (values.run.resume) open();
+    task.keep = [&](const mc::FitStep& step) {
+      if (!journal) {
+        std::filesystem::remove(path, none);
+        open();
+      }
+      journal->append(step_kind, record_of(step));
+    };
   }
   const int status = session.once(ResultFile(session.out()), [&](ResultFile& file) {
     const mc::MediumFit fit = mc::fit_medium(task);

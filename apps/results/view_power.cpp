@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <new>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -225,10 +227,16 @@ std::optional<Invariant> received_power(const Scene& scene, const DoneWork& work
 
 void check_power(ResultFile& file, const std::string& group, const Scene& scene,
                  const DoneWork& work) {
-  if (const auto power = view_power(scene, work))
-    ResultGroup(file, power_table, group).check("invariants/power", *power);
-  if (const auto power = received_power(scene, work))
-    ResultGroup(file, power_table, group).check("invariants/path_power", *power);
+  std::optional<Invariant> power, path_power;
+  try {
+    power = view_power(scene, work);
+    path_power = received_power(scene, work);
+  } catch (const std::bad_alloc&) {
+    std::fputs("note: the power is not checked: there is too little memory for that\n", stderr);
+  }
+  const ResultGroup checks(file, power_table, group);
+  if (power) checks.check("invariants/power", *power);
+  if (path_power) checks.check("invariants/path_power", *path_power);
 }
 
 }  // namespace flatspeckle::apps

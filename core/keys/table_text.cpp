@@ -1,10 +1,10 @@
 #include "core/keys/table_text.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -13,17 +13,20 @@
 
 namespace flatspeckle {
 
-namespace {
-
-std::string bytes_of(const std::filesystem::path& path) {
+std::string file_bytes(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   const std::string name = path.string();
   if (!file) throw InputError(name + ": cannot read this file: " + std::strerror(errno));
   if (std::filesystem::is_directory(path)) throw InputError(name + ": cannot read a folder");
-  std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  if (file.bad()) throw InputError(name + ": cannot read this file");
+  std::string bytes;
+  std::array<char, 1 << 16> part;
+  while (file.read(part.data(), part.size()), file.gcount() > 0)
+    bytes.append(part.data(), static_cast<std::size_t>(file.gcount()));
+  if (file.bad()) throw InputError(name + ": cannot read this file: " + std::strerror(errno));
   return bytes;
 }
+
+namespace {
 
 void append_utf8(std::string& text, unsigned unit) {
   const auto add = [&](unsigned byte) { text += static_cast<char>(byte); };
@@ -112,7 +115,7 @@ bool are_numbers(std::vector<std::string> fields) {
 }  // namespace
 
 TableText::TableText(const std::filesystem::path& path, bool named) : path_(path.string()) {
-  std::string text = decoded(bytes_of(path));
+  std::string text = decoded(file_bytes(path));
   const auto is_binary = [](unsigned char c) {
     return c < ' ' && c != '\t' && c != '\n' && c != '\r' && c != '\f';
   };

@@ -8,6 +8,9 @@
 
 namespace flatspeckle {
 
+/// Throws InputError naming the file.
+std::string file_bytes(const std::filesystem::path& path);
+
 /// A line of a table and its number in the file.
 struct TableLine {
   std::size_t number;

@@ -162,6 +162,18 @@ class Slips(RefusingTest):
 
 
 class Resources(RefusingTest):
+    def test_files_that_cannot_be_read(self):
+        for key, path in (("near_sensors", "/proc/self/mem"), ("near_sensors", "/tmp"), ("body_mesh", "/proc/self/mem"),
+                          ("config", "/proc/self/mem")):
+            with self.subTest(key=key, path=path):
+                subcommand, scene = ("render", STAGE) if key == "body_mesh" else ("field", BOX | {"samples": None})
+                self.assert_refused([path, "read"], subcommand, *flags(scene), f"--{key}", path)
+
+    def test_a_target_of_more_paths_than_can_be(self):
+        done = self.call("field", **{**BOX, "samples": None}, fields=4, method="covariance", target_error=1e-12, out="x.h5",
+                         status=2)
+        self.assertIn("target_error = 1e-12: asks for", done.stderr)
+
     def test_a_full_device(self):
         self.call("flux", **SLAB, out="r.h5")
         for words in (["keys", "json"], ["new", "lens"], ["explain", "r.h5"], ["datasets"], ["--help"], ["flux", "--help"],

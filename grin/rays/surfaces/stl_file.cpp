@@ -2,13 +2,12 @@
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
+#include "core/keys/table_text.h"
 #include "grin/rays/surfaces/mesh_surface.h"
 
 namespace flatspeckle::grin {
@@ -17,10 +16,12 @@ namespace {
 
 constexpr std::size_t stl_header = 80, bytes_per_triangle = 50;
 
-std::string contents(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) throw InputError("cannot be read");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+std::string contents(const std::string& key, const std::filesystem::path& path) {
+  try {
+    return file_bytes(path);
+  } catch (const InputError& error) {
+    throw InputError(key + " = " + error.what());
+  }
 }
 
 template <class Number>
@@ -114,9 +115,8 @@ std::string left_out(const std::string& bytes) {
 }  // namespace
 
 TriangleMesh read_stl(const std::string& key, const std::filesystem::path& path) {
-  std::string bytes;
+  const std::string bytes = contents(key, path);
   try {
-    bytes = contents(path);
     return closed_mesh(is_text(bytes) ? corners_of_text(bytes) : corners_of_binary(bytes));
   } catch (const InputError& error) {
     throw InputError(key, path.string(), error.what() + left_out(bytes));

@@ -21,7 +21,7 @@ constexpr std::size_t most_siegert_views = 512;
 constexpr std::uint64_t siegert_paths = 20000;
 
 /// Few and long: the runs have a fixed length, and a batch costs a pass over the covariance.
-constexpr std::uint64_t covariance_batches = 128;
+constexpr std::uint64_t covariance_batches = 128, most_per_batch = 100000;
 
 /// One run after the other, and what they cost.
 class FieldDrawing {
@@ -63,7 +63,8 @@ class FieldDrawing {
     Scene scene = scene_;
     scene.request = full_request(lights, scene_.request.views);
     Plan plan = make_plan(scene, settings_.reversed);
-    plan.paths_per_batch = (paths + covariance_batches - 1) / covariance_batches;
+    plan.paths_per_batch =
+        std::min((paths + covariance_batches - 1) / covariance_batches, most_per_batch);
     FieldJob job = covariance_job(scene, plan, settings_.seed);
     job.batches.relative_error = BatchJob().relative_error;
     RunState state = run("covariance", job.batches, paths);

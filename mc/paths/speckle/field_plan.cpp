@@ -5,6 +5,8 @@
 #include <limits>
 #include <sstream>
 
+#include "core/error.h"
+#include "core/keys/number_text.h"
 #include "core/numbers/address_space.h"
 #include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/speckle/speckle_field.h"
@@ -128,19 +130,24 @@ PathSurvey read_survey(const GroupedSums& sums) {
 
 DrawingPlan make_field_plan(const Scene& scene, const PathSurvey& survey,
                             const FieldDemand& demand) {
-  constexpr double accepted_excess = 0.01, fewest_paths = 100;
+  constexpr double accepted_excess = 0.01, fewest_paths = 100, most_paths = 1e15;
   DrawingPlan plan;
   const double excess = largest_magnitude(survey.excess);
   plan.paths_per_field =
       demand.paths_per_field.value_or(rounded_up(excess / accepted_excess, fewest_paths));
-  plan.covariance_paths = rounded_up(
-      mean(survey.spread) / (demand.covariance_error * demand.covariance_error), 10 * fewest_paths);
+  const double asked =
+      mean(survey.spread) / (demand.covariance_error * demand.covariance_error);
+  plan.covariance_paths = rounded_up(std::min(asked, most_paths), 10 * fewest_paths);
   plan.excess = excess / static_cast<double>(plan.paths_per_field);
   set_costs(plan, scene, survey.contributions, static_cast<double>(demand.fields));
   plan.method = demand.method;
   if (plan.method == FieldMethod::automatic)
     plan.method =
         plan.covariance_cost < plan.paths_cost ? FieldMethod::covariance : FieldMethod::paths;
+  if (plan.method == FieldMethod::covariance && asked > most_paths)
+    throw InputError("target_error", demand.covariance_error,
+                     "asks for " + number_text(asked) + " paths, at most " + number_text(most_paths) +
+                         " are taken");
   return plan;
 }
 
