@@ -234,8 +234,6 @@ int OwnPlaces::compare(Session& session, mc::ReversedPaths reversed, const StopR
   blas_single_thread();  // says now what it lacks
   const auto solution = wave::solve(placement_, scene_.k, scene_.request.lights.angles(),
                                     {.tolerance = tolerance_, .sensors = {}});
-  if (const auto fault = solution.diagnosis().fault(); !fault.empty())
-    throw InputError("wave_tolerance", tolerance_, "cannot be kept, " + fault + "; allow more");
   const auto fields = solution.fields(scene_.request.views);
   const Estimation mc = mc_estimation(scene_, reversed, session.seed());
   return session.run(

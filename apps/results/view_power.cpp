@@ -171,20 +171,21 @@ std::optional<Invariant> transport_power(const Scene& slab, double tolerance) {
 
 /// The optical theorem of two placements (C9), by views all round and the estimators of ensembles:
 /// each covariance is of the two, and gives with their mean back the mean intensity. The limit is
-/// what the tolerance of the fields explains. nullopt where scatterers absorb, and for fields that
-/// are not of single scatterers in the open.
+/// what the tolerance of the fields explains. nullopt where scatterers absorb, where they are many
+/// in a large box, and in an index field.
 std::optional<Invariant> waves_power(const Scene& scene, double tolerance, std::uint64_t seed) {
-  constexpr double placements = 2, rounding = 1e-10;
+  constexpr double placements = 2, rounding = 1e-10, most = 2e6;
   const bool is_graded = scene.index && scene.index->is_around();
   if (scene.medium.mu_s == 0 || scene.medium.albedo < 1 || is_graded) return std::nullopt;
   const double size = scene.k * (std::hypot(scene.domain.width, scene.domain.depth) / 2 +
                                  scene.scatterer.disk_radius());
   const int count = 2 * static_cast<int>(size + 10 * std::cbrt(size) + 20);
+  if (scene.placement.mean_count * count > most) return std::nullopt;
   std::vector<double> angles;
   const double forward = seen_from(scene, {0}).request.lights.angles().front();
   for (int i = 0; i < count; ++i)
-    angles.push_back(std::remainder(forward + 2 * std::numbers::pi * i / count,
-                                    2 * std::numbers::pi));
+    angles.push_back(
+        std::remainder(forward + 2 * std::numbers::pi * i / count, 2 * std::numbers::pi));
   const FieldJob job = wave::wave_job(seen_from(scene, angles), seed, tolerance);
   const GroupedSums sums = sums_of(job.batches, placements);
   const auto mean = job.mean(placements, sums.total());

@@ -36,6 +36,14 @@ Finding lossless_transport(const Bulk& bulk, int dimension) {
   return lossless_scene(viewed_slab(bulk, 0, dimension), bulk.optical_depth);
 }
 
+/// Oblique light on a forward peak that ordinates alone do not resolve.
+Finding lossless_peak(const Bulk& bulk, int dimension) {
+  constexpr double incidence = 1.2;
+  Scene scene = viewed_slab(bulk, 0, dimension);
+  scene.request = intensity_request({incidence}, {far_view(0)});
+  return lossless_scene(scene, bulk.optical_depth / std::cos(incidence));
+}
+
 /// Intensities of Monte Carlo, in errors.
 Finding by_paths(const Bulk& bulk, int dimension) {
   const Scene scene = viewed_slab(bulk, 0.3, dimension);
@@ -154,6 +162,9 @@ void mc_transport_extremes(ExtremeRows& rows) {
   for (const Bulk& bulk : {Bulk{1e-3}, Bulk{1e4}, Bulk{5, 0.99}})
     both("OD " + short_number(bulk.optical_depth) + ", g " + short_number(bulk.g), energy,
          lossless_transport, bulk);
+  for (const double rest : {1e-3, 1e-6, 1e-9})
+    both("OD 1, 1 - g " + short_number(rest) + ", light at 1.2", energy, lossless_peak,
+         Bulk{1, 1 - rest});
   for (const Bulk& bulk : {Bulk{1e-3, 0.5}, Bulk{30, 0, 0.8}})
     both("OD " + short_number(bulk.optical_depth) + ", albedo " + short_number(bulk.albedo), errors,
          by_paths, bulk);

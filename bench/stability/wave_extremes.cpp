@@ -223,6 +223,14 @@ void add_indices(ExtremeRows& rows) {
   }
 }
 
+// Gap plasmons ask for orders that those of dielectric pairs do not tell.
+void add_gap_plasmons(ExtremeRows& rows) {
+  for (const auto& [gap, index] : {std::pair(0.02, Complex(0.05, 2.2)), {0.002, {0.05, 2.2}}})
+    rows.add_slow("TE, k a 0.6, index 0.05 + 2.2i, gap " + short_number(gap),
+                  "far field at 1e-4 against 1e-6", convergence,
+                  pair(disk(Kind::te, 0.6, index), gap), 1e-4, 1e-6);
+}
+
 void add_resonances(ExtremeRows& rows) {
   const auto two = [] { return pair(disk(Kind::tm, resonance(5, 0.7, 0.95), 10), 0.05); };
   const std::string name = "TM, index 10, two disks at a resonance of n = 5";
@@ -250,6 +258,7 @@ void wave_extremes(ExtremeRows& rows) {
   add_statics(rows);
   add_sizes(rows);
   add_indices(rows);
+  add_gap_plasmons(rows);
   add_resonances(rows);
   add_overlaps(rows);
 }

@@ -107,7 +107,7 @@ class Session {
   int threads() const;
   const std::string& out() const { return settings_.out; }
 
-  /// What `make` fills in one go; nothing is written where it throws Interrupted.
+  /// Writes what `make` fills in one go; nothing where it throws Interrupted.
   int once(ResultFile file, const std::function<Made(ResultFile&)>& make) const;
 
   /// Runs all to their end, or until an interruption, or goes on with those that the file there

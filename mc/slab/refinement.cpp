@@ -15,6 +15,17 @@ const DatasetTable numerical_table{
     .rows = {},
     .attributes = {{"", "errors", "text", "what the errors are, where they are not statistical"}}};
 
+double Changes::error() const {
+  constexpr double slowest = 3;  // all further changes, of changes that hardly decay
+  constexpr double usual = 0.3;  // the next change
+  if (!are_enough()) return slowest * last;
+  const double left = (1 + slowest) * last < slowest * before ? last / (before - last) : slowest,
+               decay = std::isinf(first) ? usual
+                       : before < first  ? before / first
+                                         : 1;
+  return std::max(last * std::max(left, 1.0), before * decay);
+}
+
 void Refined::append(const Refined& other) {
   value.insert(value.end(), other.value.begin(), other.value.end());
   difference.insert(difference.end(), other.difference.begin(), other.difference.end());

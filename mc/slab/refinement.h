@@ -1,7 +1,9 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,6 +26,18 @@ struct Refinement {
   /// Where small tolerances are asked for, fewer nodes have never been enough.
   int first_order() const { return std::max(least_order, tolerance > 1e-5 ? 5 : 7); }
   static int next_order(int order) { return (4 * order + 2) / 3; }
+};
+
+/// What the last refinements have changed a value by; infinite where there were not so many.
+struct Changes {
+  double last = std::numeric_limits<double>::infinity(), before = last, first = last;
+
+  void add(double change) { *this = {change, last, before}; }
+  /// One small change may be chance: two at the least are needed.
+  bool are_enough() const { return std::isfinite(before); }
+  /// The error that is left: all further changes of a geometric series, where they decay slowly,
+  /// and as much as the changes before the last promise of it.
+  double error() const;
 };
 
 /// Values and their difference from those of fewer ordinates, which is more than their error.

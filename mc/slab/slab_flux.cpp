@@ -229,17 +229,16 @@ Refined refined_shares(const Refinement& refinement, int order, int most_order,
                        const Solve& solve) {
   FluxSolution before = solve(order);
   Refined found{before.shares, std::vector<Complex>(before.shares.size()), before.ordinates};
-  auto last = std::vector<double>(before.shares.size(), 1);
-  for (double worst = 1; worst > refinement.tolerance;) {
+  std::vector<Changes> changes(before.shares.size());
+  for (double worst = 1; worst > refinement.tolerance || !changes.front().are_enough();) {
     stop_if_interrupted();
     if (4 * found.ordinates > 3 * refinement.most_ordinates || order >= most_order) break;
     order = Refinement::next_order(order);
     FluxSolution finer = solve(order);
     found = {finer.shares, finer.shares, finer.ordinates};
     for (std::size_t i = 0; i < before.shares.size(); ++i) {
-      const double change = std::abs(finer.shares[i] - before.shares[i]);
-      // One small difference may be chance: the one before must have been small too.
-      found.difference[i] = std::max(change, std::exchange(last[i], change) / 10);
+      changes[i].add(std::abs(finer.shares[i] - before.shares[i]));
+      found.difference[i] = changes[i].error();
     }
     worst = worst_difference(found, scales_of_shares(found.value));
     before = std::move(finer);

@@ -166,7 +166,7 @@ class Resources(RefusingTest):
         for key, path in (("near_sensors", "/proc/self/mem"), ("near_sensors", "/tmp"), ("body_mesh", "/proc/self/mem"),
                           ("config", "/proc/self/mem")):
             with self.subTest(key=key, path=path):
-                subcommand, scene = ("render", STAGE) if key == "body_mesh" else ("field", BOX | {"samples": None})
+                subcommand, scene = ("render", {"stage_box": [-1, -1, 0, 1, 1, 4]}) if key == "body_mesh" else ("field", BOX | {"samples": None})
                 self.assert_refused([path, "read"], subcommand, *flags(scene), f"--{key}", path)
 
     def test_a_target_of_more_paths_than_can_be(self):

@@ -42,8 +42,8 @@ Outcome outcome(const Placement& placement, double tolerance, std::size_t most_u
   check_no_overlap(placement);
   if (TMatrixSystem(placement, two_pi, tolerance).unknowns() > most_unknowns) return Outcome::large;
   const auto solution = solve(placement, two_pi, lights, {.tolerance = tolerance, .sensors = {}});
-  if (!solution.diagnosis().fault().empty()) return Outcome::not_converged;
-  const bool grown = solution.diagnosis().truncation >= 0;
+  if (!solution.diagnosis().keeps_invariants()) return Outcome::not_converged;
+  const bool grown = solution.diagnosis().truncation.limit > 0;
   std::vector<View> views;
   for (const double angle : angles_around()) views.push_back(far_view(angle));
   const auto expected = fields_of_order(placement, tolerance, grown ? 2.5 : 2);

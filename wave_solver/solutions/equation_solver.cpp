@@ -235,24 +235,13 @@ double rounding_of(const WaveEquations& equations, EquationSolver& solver,
 
 }  // namespace
 
-std::string Diagnosis::fault() const {
-  if (truncation > tolerance)
-    return "gap plasmons resonate: the last growth of the basis orders changes the fields by " +
-           scientific(truncation);
-  if (rounding > tolerance)
-    return "a rounding of the radius changes the field by " + scientific(rounding);
-  if (!power.holds())
-    return "extinction differs from scattering and absorption by " + scientific(power.off);
-  return "";
-}
-
 LightSolution solve_lights(const WaveEquations& equations, const std::vector<double>& light_angles,
                            const Circle& circle, const SolveOptions& options,
                            std::span<const Complex> radius_derivatives) {
   const auto basis = light_basis(light_angles, equations.k(), circle, options.tolerance);
   EquationSolver solver = solver_of(equations, options);
   const auto sides = equations.right_sides(basis.angles);
-  LightSolution found{solver.solve(sides, options.diagnose), {.tolerance = options.tolerance}, {}};
+  LightSolution found{solver.solve(sides, options.diagnose), {}, {}};
   if (options.diagnose) {
     std::vector<double> weights;  // those times their roots are rows of the unscaled equations
     for (std::size_t i = 0; i < equations.unknowns(); ++i) weights.push_back(equations.strength(i));
@@ -261,8 +250,9 @@ LightSolution solve_lights(const WaveEquations& equations, const std::vector<dou
   }
   found.method = solver.description();
   if (!radius_derivatives.empty())
-    found.diagnosis.rounding =
-        rounding_of(equations, solver, sides, found.coefficients, radius_derivatives);
+    found.diagnosis.rounding = {
+        rounding_of(equations, solver, sides, found.coefficients, radius_derivatives),
+        options.tolerance};
   found.coefficients = expanded(basis, std::move(found.coefficients), equations.unknowns());
   return found;
 }

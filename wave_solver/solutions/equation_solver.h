@@ -112,15 +112,16 @@ struct Diagnosis {
   double residual = -1;
   double condition = -1;          ///< of the scaled matrix, in the Frobenius norm (an estimate)
   double boundary_residual = -1;  ///< of the fields at the rims (wave_solution.cpp)
-  /// Relative change of the fields from lower orders, where gap plasmons may resonate.
-  double truncation = -1;
+  /// Relative change of the fields from lower orders, where gap plasmons may resonate. The limit of
+  /// this and of the next is the tolerance.
+  Invariant truncation = {};
   /// Relative change of the far fields where radii and sides change by a rounding.
-  double rounding = -1;
+  Invariant rounding = {};
   Invariant power = {};  ///< solution_invariants.h
-  double tolerance = 0;  ///< asked for
 
-  /// Why the fields are not within the tolerance; empty where nothing says so.
-  std::string fault() const;
+  bool keeps_invariants() const {
+    return truncation.holds() && rounding.holds() && power.holds();
+  }
 };
 
 /// beta under unit plane waves.

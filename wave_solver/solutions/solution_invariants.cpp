@@ -60,8 +60,8 @@ std::vector<double> scattered_powers(const WaveSolution& solution,
     const std::size_t count = std::min(at_once, angles.size() - first);
     const auto rows = system.far_rows(std::span(angles).subspan(first, count));
     for (std::size_t i = 0; i < lights.size(); ++i)
-      for (const Complex amplitude : transposed_product(
-               rows, solution.coefficients(lights[i]).data(), 1, system.unknowns()))
+      for (const Complex amplitude :
+           transposed_product(rows, solution.coefficients(lights[i]).data(), 1, system.unknowns()))
         powers[i] +=
             std::norm(amplitude) * 2 * std::numbers::pi / static_cast<double>(angles.size());
   }

@@ -58,12 +58,12 @@ void Spectrum::add(double wavelength, const WaveSolution& solution) {
   const auto orders = solution.basis_order();
   orders_.push_back(orders.empty() ? 0
                                    : static_cast<std::uint64_t>(*std::ranges::max_element(orders)));
-  residual_.push_back(solution.diagnosis().residual);
-  boundary_residual_.push_back(solution.diagnosis().boundary_residual);
   const Diagnosis& diagnosis = solution.diagnosis();
+  residual_.push_back(diagnosis.residual);
+  boundary_residual_.push_back(diagnosis.boundary_residual);
   power_.push_back(diagnosis.power);
-  rounding_.push_back({diagnosis.rounding, diagnosis.tolerance});
-  truncation_.push_back({std::max(0.0, diagnosis.truncation), diagnosis.tolerance});
+  rounding_.push_back(diagnosis.rounding);
+  truncation_.push_back(diagnosis.truncation);
 }
 
 double Spectrum::residual() const {
@@ -357,9 +357,8 @@ void write_diagnosis(const ResultGroup& root, const Diagnosis& diagnosis) {
   if (diagnosis.condition >= 0) root.put("solve/condition", diagnosis.condition);
   root.put("solve/boundary_residual", diagnosis.boundary_residual);
   root.check("invariants/power", diagnosis.power);
-  root.check("invariants/rounding", Invariant{diagnosis.rounding, diagnosis.tolerance});
-  root.check("invariants/truncation",
-             Invariant{std::max(0.0, diagnosis.truncation), diagnosis.tolerance});
+  root.check("invariants/rounding", diagnosis.rounding);
+  root.check("invariants/truncation", diagnosis.truncation);
 }
 
 }  // namespace
@@ -427,7 +426,7 @@ WaveSolution solve(const Placement& placement, double k, const std::vector<doubl
     for (const double growth : confirming_growths) {
       const auto before = std::exchange(solution, solved(growth));
       const double change = relative_change(before, solution, options);
-      solution.diagnosis_.truncation = change;
+      solution.diagnosis_.truncation = {change, options.tolerance};
       if (change <= options.tolerance) break;
     }
   if (!options.diagnose) return solution;
@@ -439,7 +438,7 @@ WaveSolution solve(const Placement& placement, double k, const std::vector<doubl
 FieldPlan make_field_plan(const Lights& lights, std::vector<View> views, double k,
                           const Circle& circle, double tolerance) {
   FieldPlan plan{basis_of(lights, k, circle, tolerance), {}, std::move(views)};
-  if (all_far(plan.views)) {
+  if (plan.lights.size() > 1 && all_far(plan.views)) {  // else it is solved for the light
     std::vector<double> angles;
     for (const View& view : plan.views) angles.push_back(view.angle + std::numbers::pi);
     plan.far_views = light_basis(angles, k, circle, tolerance);  // of the lights from there

@@ -324,6 +324,26 @@ Finding weak_lens(double radius) {
   return {std::abs(-end.v[0] * radius / 0.5 - 1), 1e-16 * radius + 1 / (radius * radius)};
 }
 
+/// Too large to turn anything that a double tells.
+Finding flat_lens(double radius) {
+  const RayState end =
+      through({.lens = {0, 0, 0, 2, radius, 0, 0.5, 1.5, 0, 0, 0}}, {1, 0, -1}, Vec3::UnitZ());
+  return {std::abs(end.v[0]) + std::abs(end.x[0] - 1), 1e-15};
+}
+
+/// Two plates so far from each other, an oblique ray: aside by the sum of d tan(angle).
+Finding plates_in_contact(double gap) {
+  const double s = 0.6;
+  const RayState end = through({.block = {-1e3, -1e3, -1,  1e3, 1e3, 0, 1.5, 0, 0, 0,  //
+                                          -1e3, -1e3, gap, 1e3, 1e3, 1, 2,   0, 0, 0}},
+                               {0, 0, -2}, {s, 0, std::sqrt(1 - s * s)});
+  const auto aside = [&](double thickness, double index) {
+    return thickness * s / std::sqrt(index * index - s * s);
+  };
+  const double expected = aside(2 + gap, 1) + aside(1, 1.5) + aside(1 - gap, 2);
+  return {std::abs(end.x[0] - expected) / std::abs(expected) + std::abs(end.v[0] - s), 1e-13};
+}
+
 void add_bodies(ExtremeRows& rows) {
   rows.add_each("ball of glass, beam at height ", {1e-9, 0.7, 1 - 1e-9}, "",
                 "angle it is turned by", ball_lens, 0.5, 1e-7);
@@ -333,6 +353,11 @@ void add_bodies(ExtremeRows& rows) {
   for (const double radius : {1e3, 1e9})
     rows.add("lens of a face of radius " + short_number(radius), "angle it is turned by", weak_lens,
              radius);
+  for (const double radius : {1e17, 1e50, 1e300})
+    rows.add("lens of a face of radius " + short_number(radius), "passes straight", flat_lens,
+             radius);
+  for (const double gap : {0.0, 1e-16, 1e-12, 1e-9, 1e-3})
+    rows.add("two plates, gap " + short_number(gap), "Snell, sideways", plates_in_contact, gap);
 }
 
 void add_lenses(ExtremeRows& rows) {

@@ -129,12 +129,6 @@ void FieldStatistics::add(std::span<const Complex> field) {
   sums_.add(1, sums);
 }
 
-Estimate FieldStatistics::mean_power() const {
-  return jackknife(sums_, [](double, std::span<const Complex> sums) {
-    return std::vector<Complex>{ratio(sums[moments_at].real(), sums[number_at].real())};
-  });
-}
-
 Estimate FieldStatistics::mean_contrast() const {
   return jackknife(sums_, [](double, std::span<const Complex> sums) {
     return std::vector<Complex>{contrast_of(sums[number_at].real(), sums[moments_at])};

@@ -39,7 +39,6 @@ class FieldStatistics {
 
   void add(std::span<const Complex> field);
 
-  Estimate mean_power() const;     ///< mean of x, pooled: 1
   Estimate mean_contrast() const;  ///< std / mean of x, pooled
   Estimate contrast() const;       ///< std / mean per channel, of as many fields as there are
   Estimate circularity() const;    ///< mean of u^2 / E|u|^2
