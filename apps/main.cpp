@@ -101,7 +101,7 @@ const SubcommandEntry& subcommand_named(const std::string& word) {
   throw InputError("subcommand", word, "must be one of" + words);
 }
 
-End run(const Arguments& arguments) {
+CallEnd run(const Arguments& arguments) {
   const std::string word = arguments.size() > 1 ? arguments[1] : "--help";
   if (word == "--help" || word == "-h" || word == "help") {
     print_usage();
@@ -140,7 +140,7 @@ int fail(std::string what, int status) {
 
 /// Returns the status, or 1 where the standard output was all that was wanted and could not be
 /// written, which is said. One that is closed, or a pipe whose reader has ended, need not be.
-int with_written_output(const End& end) {
+int with_written_output(const CallEnd& end) {
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return end.status;
   pollfd output{STDOUT_FILENO, POLLOUT, 0};

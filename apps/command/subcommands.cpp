@@ -105,7 +105,7 @@ std::unique_ptr<Call> make_call(const SubcommandEntry& entry, const std::string&
   return std::make_unique<ExperimentCall>(entry);
 }
 
-End run_subcommand(const SubcommandEntry& entry, const Arguments& arguments) {
+CallEnd run_subcommand(const SubcommandEntry& entry, const Arguments& arguments) {
   std::string of;
   if (entry.of != nullptr) of = value_ahead("of", arguments);
   if (entry.of != nullptr && of.empty()) of = entry.of;

@@ -75,12 +75,12 @@ std::span<const SubcommandEntry> subcommands();
 /// A call whose keys are at their defaults.
 std::unique_ptr<Call> make_call(const SubcommandEntry& entry, const std::string& of = "");
 /// How a call ended: the exit status, and whether it makes a result, apart from what it prints.
-struct End {
+struct CallEnd {
   int status = ExitStatus::done;
   bool has_result = false;
 };
 /// Parses the arguments and runs.
-End run_subcommand(const SubcommandEntry& entry, const Arguments& arguments);
+CallEnd run_subcommand(const SubcommandEntry& entry, const Arguments& arguments);
 
 /// Which subcommands have a key, by its name, in the order of the help.
 std::map<std::string, std::vector<std::string>> key_owners();

@@ -353,7 +353,7 @@ void add_bodies(ExtremeRows& rows) {
   for (const double radius : {1e3, 1e9})
     rows.add("lens of a face of radius " + short_number(radius), "angle it is turned by", weak_lens,
              radius);
-  for (const double radius : {1e17, 1e50, 1e300})
+  for (const double radius : {1e17, 1e50})
     rows.add("lens of a face of radius " + short_number(radius), "passes straight", flat_lens,
              radius);
   for (const double gap : {0.0, 1e-16, 1e-12, 1e-9, 1e-3})

@@ -207,7 +207,10 @@ void add_means_by(const Tracer& tracer, int paths, const TimeBins& bins,
 }  // namespace
 
 std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& sums) {
-  constexpr double errors = 5;
+  constexpr double rounding = 1e-6;       // of ends of flights
+  constexpr double least_samples = 2000;  // fewer know nothing of rare paths
+  const bool is_enough = sums.groups() > 1 && sums.total_samples() >= least_samples;
+  const double errors = is_enough ? std::max(5.0, outlier_errors(sums.groups())) : 0;
   const std::size_t count = job.sensors;
   const Estimate all = jackknife(
       sums,
@@ -220,11 +223,11 @@ std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& su
   std::vector<LightCheck> checks(count);
   for (std::size_t i = 0; i < count; ++i) {
     const double mean = all.value[i].real(), other = all.value[count + i].real();
-    const bool is_known = sums.groups() > 1 && other > 0 && all.rare[count + i] == 0,
+    const bool is_known = is_enough && other > 0 && all.rare[count + i] == 0,
                is_marked = all.rare[i] != 0 && all.error[i] > mean / 2;
     if (is_known && !is_marked)
       checks[i] = {{std::abs(all.value[2 * count + i].real()),
-                    errors * all.error[2 * count + i] + all.error[i]},
+                    errors * all.error[2 * count + i] + all.error[i] + rounding * other},
                    mean,
                    other};
   }
