@@ -356,7 +356,7 @@ int compare_methods(const Subcommand& command, ValidateKeys& values) {
       {{"mc", "mc", mc.job.field.batches, stop},
        {name, name, reference.job.field.batches, chosen.stop}},
       inputs_text(scene) + inputs_text(keys),
-      [&, &shifts = shifts](ResultFile& file) {
+      [&, &shifts = shifts, &methods = methods](ResultFile& file) {
         const GroupedSums &mc_sums = session.sums("mc"), &reference_sums = session.sums(name);
         const FieldMoments mc_moments = field_moments(mc.job.field, mc_sums),
                            reference_moments = field_moments(reference.job.field, reference_sums);

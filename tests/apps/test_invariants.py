@@ -17,7 +17,9 @@ STAGE = {"stage_box": [-1, -1, 0, 1, 1, 4], "mu_s": 0.5, "point_light": [0, 0, 1
          "method": "analog", "samples": 20000}
 
 RUNS = {  # invariant: subcommand, keys
+    "light": [("render", STAGE)],
     "power": [("covariance", BOX | {"samples": 2000000}),
+              ("covariance", BOX | {"method": "wave", "samples": 20}),
               ("covariance", SLAB | {"albedo": 0.8}),
               ("flux", SLAB | {"albedo": 0.8}),
               ("flux", HG | {"samples": 20000}),

@@ -104,11 +104,12 @@ class Draw {
       const double gap = logarithmic(least_gap, 1) * std::min(next.radius, other.radius);
       const Vec2 place =
           centre + (next.radius + other.radius + gap) * direction(uniform(0, two_pi));
-      const bool free = std::ranges::all_of(placement, [&](const PlacedScatterer& placed) {
-        const double reach = placed.scatterer.radius + next.radius;
-        return length(placed.position - place) > (1 + 1e-7) * reach ||
-               length(placed.position - centre) == 0;
-      });
+      const bool free =
+          std::ranges::all_of(placement, [&, &centre = centre](const PlacedScatterer& placed) {
+            const double reach = placed.scatterer.radius + next.radius;
+            return length(placed.position - place) > (1 + 1e-7) * reach ||
+                   length(placed.position - centre) == 0;
+          });
       if (free) placement.push_back({place, next});
     }
     return placement;
