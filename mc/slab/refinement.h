@@ -28,7 +28,7 @@ struct Refinement {
   static int next_order(int order) { return (4 * order + 2) / 3; }
 };
 
-/// What the last refinements have changed a value by; infinite where there were not so many.
+/// Holds what the last refinements have changed a value by, infinite where there were not so many.
 struct Changes {
   double last = std::numeric_limits<double>::infinity(), before = last, first = last;
 

@@ -41,7 +41,7 @@ class EquationSolver {
   /// std::runtime_error where no finite solution is found, or a residual stays more than a hundred
   /// times above the tolerance.
   std::vector<Complex> solve(const std::vector<Complex>& sides, bool condition = false);
-  /// The same to two digits and more, where the method has such a solution that costs less.
+  /// Solves them to two digits and more, where the method has such a solution that costs less.
   std::vector<Complex> solve_roughly(std::vector<Complex> sides);
 
   /// What is left of the last sides, by combinations() of them; by the fast product or, where the
