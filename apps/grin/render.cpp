@@ -170,7 +170,8 @@ void note_checks(const grin::RenderScene& scene, const std::vector<grin::LightCh
 
 /// What each sensor and the map have found, and what the search for curves cost.
 void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
-                  const GroupedSums& sums, const grin::RenderResult& result) {
+                  const GroupedSums& sums, const grin::RenderResult& result,
+                  const std::vector<grin::LightCheck>& checks) {
   const std::vector<std::string> parameters = grin::gradient_names(scene);
   std::vector<std::string> dark;
   for (std::size_t i = 0; i < result.size(); ++i) {
@@ -180,7 +181,7 @@ void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
   }
   if (scene.map && !print_map(*scene.map, job, sums)) dark.emplace_back("the map");
   note_darkness(dark);
-  note_checks(scene, light_checks(job, sums));
+  note_checks(scene, checks);
   const grin::TransportCounts counts = transport_counts(job, sums);
   note_losses(counts);
   const auto& joins = counts.connections;
@@ -252,10 +253,11 @@ class RenderExperiment : public Experiment {
   void write(ResultFile& file, const grin::RenderJob& job, const GroupedSums& sums,
              bool tells) const {
     const grin::RenderResult result = render_result(*scene_, job, sums);
-    if (tells) print_render(*scene_, job, sums, result);
+    const auto checks = light_checks(job, sums);
+    if (tells) print_render(*scene_, job, sums, result, checks);
     write_render(file, *scene_, job, result, scene_->length_unit);
     if (tells) write_counts(file, transport_counts(job, sums));
-    if (const auto light = worst_light(light_checks(job, sums)))
+    if (const auto light = worst_light(checks))
       ResultGroup(file, grin::render_table).check("invariants/light", *light);
     if (const auto energy = energy_result(job, sums)) {
       if (tells) print_energy(*energy);
