@@ -90,6 +90,12 @@ def user_seconds_of_children():
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
 
 
+def user_seconds(process):
+    """User CPU seconds of a process that runs."""
+    with open(f"/proc/{process.pid}/stat") as status:
+        return int(status.read().rsplit(")", 1)[1].split()[11]) / os.sysconf("SC_CLK_TCK")
+
+
 def catches(process, number):
     """Whether the process has a handler for this signal by now."""
     with open(f"/proc/{process.pid}/status") as status:
