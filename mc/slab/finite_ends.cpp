@@ -107,7 +107,7 @@ class Integral {
     Refined all{std::vector<Complex>(entries), std::vector<Complex>(entries), found.ordinates};
     for (std::size_t i = 0; i < sum.pairs.size(); ++i) {
       all.value[sum.entry[i]] += sum.weight[i] * found.value[i];
-      all.difference[sum.entry[i]] += sum.weight[i] * found.difference[i];
+      all.error[sum.entry[i]] += sum.weight[i] * found.error[i];
     }
     return all;
   }
@@ -159,7 +159,8 @@ Refined finite_ends_covariance(const Scene& slab, const Refinement& refinement,
     for (std::size_t e = 0; e < scale.size(); ++e) {
       const Complex change = fine.value[e] - coarse.value[e];
       if (scale[e] > 0) worst = std::max(worst, std::abs(change) / scale[e]);
-      fine.difference[e] += change;
+      fine.error[e] = error_of(slab.request.entries[e], fine.value[e],
+                               std::abs(fine.error[e]) + std::abs(change));
     }
     if (worst <= refinement.tolerance / 2 || 2 * order > 3 * most) return fine;
     coarse = std::move(fine);

@@ -26,9 +26,14 @@ double Changes::error() const {
   return std::max(last * std::max(left, 1.0), before * decay);
 }
 
+Complex error_of(const Entry& entry, Complex value, double size) {
+  const Complex along = value != 0.0 ? value / std::abs(value) : 1;
+  return size * along * (entry.a == entry.b ? 1 : turn_of_errors);
+}
+
 void Refined::append(const Refined& other) {
   value.insert(value.end(), other.value.begin(), other.value.end());
-  difference.insert(difference.end(), other.difference.begin(), other.difference.end());
+  error.insert(error.end(), other.error.begin(), other.error.end());
   ordinates = std::max(ordinates, other.ordinates);
 }
 
@@ -58,15 +63,15 @@ std::vector<double> scales_with_slopes(const std::vector<Entry>& entries,
 }
 
 Refined by_parameter(Refined all, double unit) {
-  for (auto* list : {&all.value, &all.difference})
+  for (auto* list : {&all.value, &all.error})
     for (std::size_t i = list->size() / 2; i < list->size(); ++i) (*list)[i] /= unit;
   return all;
 }
 
-double worst_difference(const Refined& refined, const std::vector<double>& scales) {
+double worst_error(const Refined& refined, const std::vector<double>& scales) {
   double worst = 0;
   for (std::size_t i = 0; i < scales.size(); ++i)
-    if (scales[i] > 0) worst = std::max(worst, std::abs(refined.difference[i]) / scales[i]);
+    if (scales[i] > 0) worst = std::max(worst, std::abs(refined.error[i]) / scales[i]);
   return worst;
 }
 
@@ -85,11 +90,11 @@ BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve,
     std::call_once(solution->once, [&] { solution->refined = solve(); });
     const double sign = number % 2 == 0 ? 1 : -1;
     for (std::size_t e = 0; e < sums.size(); ++e)
-      sums[e] += solution->refined.value[e] + sign * solution->refined.difference[e];
+      sums[e] += solution->refined.value[e] + sign * solution->refined.error[e];
   };
   job.relative_error = [scales](const GroupedSums& sums) {
     const Estimate all = jackknife(sums, sample_mean);
-    return worst_difference({all.value, {all.error.begin(), all.error.end()}}, scales(all.value));
+    return worst_error({all.value, {all.error.begin(), all.error.end()}}, scales(all.value));
   };
   return job;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <string>
 #include <vector>
@@ -40,19 +41,26 @@ struct Changes {
   double error() const;
 };
 
-/// Values and their difference from those of fewer ordinates, which is more than their error.
+/// Values and their errors, each as a number that is added to its value.
 struct Refined {
-  std::vector<Complex> value, difference;
+  std::vector<Complex> value, error;
   int ordinates = 0;  ///< the most that any part has needed
 
   void append(const Refined& other);
 };
 
+/// Turns errors by 135 degrees: those of two values that are divided do not cancel then, in the
+/// modulus and in the phase.
+constexpr Complex turn_of_errors(-std::numbers::sqrt2 / 2, std::numbers::sqrt2 / 2);
+
+/// An error of this size: of an intensity along it, of what is divided by intensities turned.
+Complex error_of(const Entry& entry, Complex value, double size);
+
 /// What the tolerance of each value is relative to, where values are those of one solution.
 using Scales = std::function<std::vector<double>(std::span<const Complex> values)>;
 
-/// The largest difference over its scale; 0 where a scale is 0.
-double worst_difference(const Refined& refined, const std::vector<double>& scales);
+/// The largest error over its scale; 0 where a scale is 0.
+double worst_error(const Refined& refined, const std::vector<double>& scales);
 
 /// What the tolerance of each entry is relative to: its value, or the root of its two intensities
 /// (or that which there is) where that is more.
@@ -66,14 +74,14 @@ std::vector<double> scales_with_slopes(const std::vector<Entry>& entries,
 /// Values, then derivatives by parameter/unit: those by the parameter.
 Refined by_parameter(Refined all, double unit);
 
-/// A solution as a job of two batches, the values plus and minus their difference: what the
-/// statistics of batches call the standard error of any function of them is its difference then.
+/// A solution as a job of two batches, the values plus and minus their errors: what the
+/// statistics of batches call the standard error of any function of them is its error then.
 /// Solved when the first batch runs. The relative error of the job is the worst of any value, which
 /// is more than the tolerance where that is not reached.
 BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve, const Scales& scales);
 
 extern const DatasetTable numerical_table;
-/// Says of a result, or of a group of it, that its errors are such differences.
+/// Says of a result, or of a group of it, that its errors are such.
 void write_numerical(ResultFile& file, const std::string& group = "");
 
 }  // namespace flatspeckle::mc

@@ -173,12 +173,12 @@ class CovarianceRefiner {
     for (Part& part : parts_) part.value = part.coarse.value;
     if (scatters_twice_apart()) add_double_scattering();
     if (!Geometry::refines_modes && refinement_.most_ordinates == 0)
-      return {sum(&Part::value), std::vector<Complex>(few_.size()), ordinates_};
+      return {values(), std::vector<Complex>(few_.size()), ordinates_};
     while (std::ranges::any_of(parts_, [](const Part& part) { return !part.done; })) {
       solve([this](Part& part) { refine(part); });
       settle();
     }
-    return {sum(&Part::value), difference(), ordinates_};
+    return {values(), errors(), ordinates_};
   }
 
  private:
@@ -382,17 +382,36 @@ class CovarianceRefiner {
     return entries;
   }
 
-  /// Of sharp peaks also what their imbalance makes of each entry.
-  std::vector<Complex> difference() const {
-    auto fine = sum(&Part::value), coarse = few_;
-    const auto scale = scales_with_slopes(request_.entries, fine);
+  const Entry& entry_at(std::size_t i) const {
+    return request_.entries[i % request_.entries.size()];
+  }
+
+  /// Intensities of one wavelength are real, which solutions are but for their errors.
+  std::vector<Complex> values() const {
+    auto all = sum(&Part::value);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (slab_.departure.shift == 0 && entry_at(i).a == entry_at(i).b) all[i] = all[i].real();
+    return all;
+  }
+
+  /// Of sharp peaks also what their imbalance makes of each entry. A small change may be chance: no
+  /// error is smaller than half the tolerance.
+  std::vector<Complex> errors() const {
+    const auto fine = sum(&Part::value);
+    auto coarse = few_;
     double lost = 0;
     for (const Part& part : parts_) {
       add(coarse, part.group, part.coarse.value);
       lost = std::max(lost, part.imbalance);
     }
-    for (std::size_t e = 0; e < fine.size(); ++e) fine[e] += lost * scale[e] - coarse[e];
-    return fine;
+    const auto scale = scales_with_slopes(request_.entries, fine);
+    std::vector<Complex> all;
+    for (std::size_t i = 0; i < fine.size(); ++i) {
+      const double size = std::max(std::abs(fine[i] - coarse[i]) + lost * scale[i],
+                                   refinement_.tolerance / 2 * scale[i]);
+      all.push_back(error_of(entry_at(i), fine[i], size));
+    }
+    return all;
   }
 
   using GridKey = std::pair<std::vector<Focus>, int>;

@@ -238,9 +238,9 @@ Refined refined_shares(const Refinement& refinement, int order, int most_order,
     found = {finer.shares, finer.shares, finer.ordinates};
     for (std::size_t i = 0; i < before.shares.size(); ++i) {
       changes[i].add(std::abs(finer.shares[i] - before.shares[i]));
-      found.difference[i] = changes[i].error();
+      found.error[i] = changes[i].error();
     }
-    worst = worst_difference(found, scales_of_shares(found.value));
+    worst = worst_error(found, scales_of_shares(found.value));
     before = std::move(finer);
   }
   return found;

@@ -67,23 +67,23 @@ PathJob two_batch_job(const Scene& scene, const std::vector<double>& units,
   return job;
 }
 
-/// By how much the differences move the range, relative to it; 0 of bounds.
+/// By how much the errors move the range, relative to it; 0 of bounds.
 double range_error(const CovarianceRequest& request, const Refined& refined) {
   auto moved = refined.value;
-  for (std::size_t e = 0; e < moved.size(); ++e) moved[e] += refined.difference[e];
+  for (std::size_t e = 0; e < moved.size(); ++e) moved[e] += refined.error[e];
   const double range = correlation_and_ranges(request, refined.value).back().real(),
                other = correlation_and_ranges(request, moved).back().real();
   return std::abs(other / range - 1);
 }
 
-/// Smaller and smaller tolerances until the range is within that of `refinement` too: the entries
-/// of a flat curve may be, and where it crosses not.
+/// Smaller and smaller tolerances until the error of the range is at most twice the tolerance of
+/// `refinement`: the entries of a flat curve may have small errors, and where it crosses not.
 Refined refined_range(const Scene& scene, bool reversed, Refinement refinement) {
   constexpr double step = 4, flattest = 256;  // curves move their range by so much more
-  const double tolerance = refinement.tolerance;
+  const double tolerance = refinement.tolerance, of_range = 2 * tolerance;
   Refined refined = slab_covariance(scene, reversed, refinement);
   if (scene.request.kind != CovarianceRequest::Kind::memory_effect) return refined;
-  for (double finer = step; finer <= flattest && range_error(scene.request, refined) > tolerance;
+  for (double finer = step; finer <= flattest && range_error(scene.request, refined) > of_range;
        finer *= step) {
     refinement.tolerance = tolerance / finer;
     refined = slab_covariance(scene, reversed, refinement);
@@ -110,8 +110,11 @@ PathJob slab_change_job(const Scene& scene, bool reversed, const Refinement& ref
                         const std::vector<FieldChange>& changes) {
   return two_batch_job(scene, std::vector<double>(1 + changes.size()), [=] {
     Refined all = slab_covariance(scene, reversed, refinement);
-    for (const FieldChange& change : changes)
-      all.append(slab_covariance(scene, reversed, refinement, change));
+    for (const FieldChange& change : changes) {
+      Refined changed = slab_covariance(scene, reversed, refinement, change);
+      for (Complex& error : changed.error) error *= turn_of_errors;
+      all.append(changed);
+    }
     return all;
   });
 }
@@ -122,7 +125,7 @@ GradientJob slab_gradient_job(const Scene& scene, bool reversed, const Refinemen
     Refined all = slab_slopes(scene, reversed, refinement, parameters.front());
     for (std::size_t p = 1; p < parameters.size(); ++p) {
       Refined one = slab_slopes(scene, reversed, refinement, parameters[p]);
-      for (auto* list : {&one.value, &one.difference})
+      for (auto* list : {&one.value, &one.error})
         list->erase(list->begin(), list->begin() + std::ssize(scene.request.entries));
       all.append(one);
     }

@@ -67,12 +67,15 @@ class ResolvedNodes {
 };
 
 /// Adds weight times cos(l angle) or P_l(cos(angle)), by differences of neighbours, which keep
-/// their digits at small angles.
+/// their digits at small angles; beyond pi / 2 by those at pi - angle, of which odd ones change
+/// their sign.
 void add_functions(int dimension, double angle, double weight, std::vector<double>& moments) {
-  const double sine = std::sin(angle / 2), rest = 2 * sine * sine;  // 1 - cos(angle)
+  const double sine = std::sin(std::min(angle, pi - angle) / 2),
+               rest = 2 * sine * sine,  // 1 - cos(angle)
+      odd = angle > pi / 2 ? -weight : weight;
   double value = 1, difference = 0;
   for (std::size_t l = 0; l < moments.size(); ++l) {
-    moments[l] += weight * value;
+    moments[l] += (l % 2 == 0 ? weight : odd) * value;
     const double n = static_cast<double>(l);
     difference = dimension == 3 ? (n * difference - (2 * n + 1) * rest * value) / (n + 1)
                                 : difference - (l == 0 ? 1 : 2) * rest * value;
@@ -87,16 +90,23 @@ constexpr double turn_of_panels = 10;
 
 PhaseMoments::PhaseMoments(FirstMoments source, int most) : source_(std::move(source)) {
   constexpr double rounding = 1e-13;
-  const auto small = [](double moment) { return std::abs(moment) < rounding; };
-  for (int count = std::min(128, most); count < most; count = std::min(4 * count, most)) {
-    const auto first = source_(count);
-    const auto size = std::find_if_not(first.rbegin(), first.rend(), small).base() - first.begin();
-    if (size > count / 2) continue;
-    kept_.list.assign(first.begin(), first.begin() + size);
+  auto& list = kept_.list;
+  std::size_t size = 0;  // without those at the end that are small
+  const auto take = [&](int count) {
+    const auto small = [](double moment) { return std::abs(moment) < rounding; };
+    list = source_(count);
+    size = static_cast<std::size_t>(std::find_if_not(list.rbegin(), list.rend(), small).base() -
+                                    list.begin());
+  };
+  int count = std::min(128, most);
+  for (take(count); 2 * size > list.size() && count < most; take(count))
+    count = std::min(4 * count, most);
+  if (size == static_cast<std::size_t>(most)) {
+    keep(most);
+  } else {
+    list.resize(size);
     set_width();
-    return;
   }
-  keep(most);
 }
 
 PhaseMoments PhaseMoments::truncated(int count) const {
