@@ -34,7 +34,7 @@ struct TracedRay {
   std::uint64_t surface = 0;  ///< number of it; that of all surfaces where it ended on none
   std::uint64_t steps = 0;
   RayState end = {};
-  double index_mismatch = 0;  ///< largest ||v| - n| on the way
+  double index_mismatch = 0;  ///< largest ||v| - n| on the way (RayLog)
   double transmittance = 1;   ///< what the surfaces and media of bodies leave of unpolarised light
   double end_slope = 0;       ///< |grad n| at the end
   RayInvariants first = {}, last = {};

@@ -43,7 +43,8 @@ const DatasetTable rays_table{
           "media"},
          {"steps", Data::count, "ray", "1", "steps of the integrator"},
          {"invariants/index_mismatch", Data::invariant, "ray", "1",
-          "largest difference of |v| and the index at the end of every fourth step, and of all"},
+          "largest difference of |v| and the index: after each step controlled by a tolerance, "
+          "before they are made equal; of equal steps, after every fourth and the last"},
          {"invariants/angular_momentum", Data::real, "ray", "length",
           "length of (x - centre) cross v, at the start"},
          {"invariants/angular_momentum_change", Data::real, "ray", "length",

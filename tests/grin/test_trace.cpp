@@ -29,6 +29,18 @@ ControlledSteps<Integrator> controlled(double tolerance, double longest = 1) {
   return {tolerance, 0.01, longest};
 }
 
+/// Its gradient is too large by a share `wrong`.
+struct WrongGradient {
+  double wrong;
+
+  double excess(const Vec3& x) const { return lens.excess(x); }
+  IndexGradient gradient(const Vec3& x) const {
+    const IndexGradient at = lens.gradient(x);
+    return {at.excess, (1 + wrong) * at.gradient};
+  }
+  IndexHessian hessian(const Vec3& x) const { return lens.hessian(x); }
+};
+
 }  // namespace
 
 TEST_CASE("Straight rays meet spheres, planes and boxes") {
@@ -100,6 +112,21 @@ TEST_CASE("Controlled steps: the error follows the tolerance") {
     CHECK(end.steps > before);
     before = end.steps;
     CHECK(std::abs(ray_invariants(lens, ray).index_mismatch) < 4 * tolerance);
+  }
+}
+
+TEST_CASE("Controlled steps tell how far they leave |v| = n before they restore it") {
+  constexpr double tolerance = 1e-9;
+  for (const double wrong : {0.0, 0.01}) {
+    const WrongGradient field{wrong};
+    auto steps = controlled<Sharma>(tolerance);
+    RayState ray = start_ray(field, {-0.6, 0.3, 0.2}, {1, 1, 0});
+    trace(field, std::vector<Surface>{}, {1, 1e-12}, steps, ray);
+    CHECK(std::abs(ray_invariants(field, ray).index_mismatch) < tolerance);
+    if (wrong == 0)
+      CHECK(steps.index_mismatch < 10 * tolerance);
+    else
+      CHECK(steps.index_mismatch > 1e4 * tolerance);
   }
 }
 

@@ -52,16 +52,16 @@ class RayLog {
   /// Steps from one look at the index to the next: a look costs as much as a cheap step.
   static constexpr int steps_unseen = 4;
 
-  /// What others have made of as many of its steps, or a multiple of them.
+  /// What others have seen of its steps.
   void met(double index_mismatch) { index_mismatch_ = std::max(index_mismatch_, index_mismatch); }
 
   void start(const RayState& ray) {
     if (keeps_path_) path_.add(ray);
   }
-  /// At a step's end.
+  /// At the end of a step, of one that is not controlled with a look at the index.
   template <IndexField F>
   void pass(const F& field, const RayState& ray) {
-    if (++steps_made_ % steps_unseen == 0) look(field, ray);
+    if (!steps_.tolerance && ++steps_made_ % steps_unseen == 0) look(field, ray);
     if (keeps_path_) path_.add(ray);
   }
   /// Here, whatever the steps went beyond.
@@ -71,7 +71,7 @@ class RayLog {
     look(field, ray);
   }
 
-  /// Largest ||v| - n| on the way.
+  /// Largest ||v| - n| on the way, of controlled steps before it is restored.
   double index_mismatch() const { return index_mismatch_; }
   const RayPath& path() const { return path_; }
 
@@ -102,11 +102,17 @@ class LoggedSteps {
         is_controlled_(log.steps().tolerance),
         fixed_{log.steps().longest},
         controlled_{log.steps().tolerance.value_or(0), log.next_step(), log.steps().longest} {}
-  ~LoggedSteps() { log_.next_step() = controlled_.h; }
+  ~LoggedSteps() {
+    log_.next_step() = controlled_.h;
+    log_.met(controlled_.index_mismatch);
+  }
 
   template <IndexField F>
   [[gnu::noinline]] void step(const F& field, double h, RayState& ray) const {
-    is_controlled_ ? controlled_.step(field, h, ray) : fixed_.step(field, h, ray);
+    if (is_controlled_)
+      controlled_.step(field, h, ray);
+    else
+      fixed_.step(field, h, ray);
   }
   template <IndexField F>
   double advance(const F& field, RayState& ray) {
