@@ -177,8 +177,10 @@ class RingField {
     std::vector<std::size_t> examples;
     find_kinds(examples);
     std::vector<std::optional<ClearedRing>> made(examples.size());
-    parallel_for(examples.size(),
-                 [&](std::size_t kind) { made[kind] = best_ring(examples[kind], area_per_point); });
+    parallel_for(examples.size(), [&](std::size_t kind) {
+      made[kind] = best_ring(examples[kind], area_per_point);
+      made[kind]->ring.charge(solution.system().modes(examples[kind]), solution.system().k());
+    });
     for (auto& ring : made) {
       largest_charge_ = std::max(largest_charge_, ring->ring.largest_charge);
       rings_.push_back(std::move(*ring));

@@ -140,6 +140,16 @@ bool points_only(const WaveEquations& system) {
   return system.unknowns() == system.bodies().size();
 }
 
+/// Of each mode, over the points of a ring of size k rho.
+std::vector<double> summed_charges(const ModeSet& modes, double size) {
+  const auto j = size > 0 ? bessel_j(modes.order, size) : std::vector<long double>{1};
+  std::vector<double> all;
+  for (const Mode& mode : modes.modes)
+    all.push_back(
+        static_cast<double>(2 * root_half * static_cast<long double>(mode.weight) / j[mode.order]));
+  return all;
+}
+
 }  // namespace
 
 MultipoleRing::MultipoleRing(const ModeSet& modes, double k, double disk, double distance,
@@ -152,14 +162,16 @@ MultipoleRing::MultipoleRing(const ModeSet& modes, double k, double disk, double
       return;
     }
   }
-  const auto j = radius > 0 ? bessel_j(modes.order, k * radius) : std::vector<long double>{1};
+  for (const double charge : summed_charges(modes, k * radius))
+    largest_charge = std::max(largest_charge, std::abs(charge));
+}
+
+void MultipoleRing::charge(const ModeSet& modes, double k) {
   charges.resize(modes.modes.size() * points);
+  const auto summed = summed_charges(modes, k * radius);
   for (std::size_t m = 0; m < modes.modes.size(); ++m) {
     const Mode& mode = modes.modes[m];
-    const auto each =
-        static_cast<double>(2 * root_half * static_cast<long double>(mode.weight) / j[mode.order]) /
-        static_cast<double>(points);
-    largest_charge = std::max(largest_charge, std::abs(each) * static_cast<double>(points));
+    const double each = summed[m] / static_cast<double>(points);
     for (std::size_t s = 0; s < points; ++s) {
       const double angle =
           mode.order * 2 * std::numbers::pi * static_cast<double>(s) / static_cast<double>(points);
@@ -209,7 +221,8 @@ void RingProduct::make_rings(const WaveEquations& system, double range, double t
     const auto [kind, is_new] =
         known.try_emplace(std::move(key), static_cast<std::uint32_t>(rings_.size()));
     if (is_new)
-      rings_.emplace_back(system.modes(j), system.k(), radius, range + radius, 0.1 * tolerance);
+      rings_.emplace_back(system.modes(j), system.k(), radius, range + radius, 0.1 * tolerance)
+          .charge(system.modes(j), system.k());
     kind_.push_back(kind->second);
   }
 }

@@ -23,9 +23,12 @@ struct MultipoleRing {
   /// distance: nearest point of any other ring from the centre; errors there are below `tolerance`.
   MultipoleRing(const ModeSet& modes, double k, double radius, double distance, double tolerance);
 
+  /// Fills `charges`, by the modes and the k that the ring was made for.
+  void charge(const ModeSet& modes, double k);
+
   double radius = 0;             ///< of the ring, between half the disk's and all of it
   std::size_t points = 1;        ///< Q; 0 where no ring will do
-  std::vector<Complex> charges;  ///< [mode][point]; real
+  std::vector<Complex> charges;  ///< [mode][point]; real; empty until charge() is called
   double largest_charge = 0;     ///< of the modes, summed over the points; infinite without points
 
   Vec2 position(std::size_t point) const;  ///< relative to the centre
