@@ -80,10 +80,12 @@ def check_end(ended, statuses):
 
 
 def check_refusal(ended, heard):
-    """One short line beside notes and warnings; heard: stderr was whole."""
+    """One short line beside notes and warnings, and beside work that is told of before memory lacks; heard: stderr was whole."""
     if ended.status != 2 or not heard:
         return
     lines = [line for line in ended.stderr.splitlines() if not line.startswith(("note: ", "warning: "))]
+    if lines and "more memory than there is" in lines[-1]:
+        del lines[:-1]
     if len(lines) != 1 or not lines[0].startswith("flatspeckle: "):
         yield f"{len(lines)} lines for a refusal"
     if len(ended.stderr) > MOST_LETTERS:
