@@ -111,7 +111,7 @@ struct Diagnosis {
   /// ||b - T(a + S b)|| / ||T a||, over all lights (C10); of many an estimate
   double residual = -1;
   double condition = -1;          ///< of the scaled matrix, in the Frobenius norm (an estimate)
-  double boundary_residual = -1;  ///< of the fields at the rims (wave_solution.cpp)
+  double boundary_residual = -1;  ///< of the fields at the rims (boundary_residual.h)
   /// Relative change of the fields from lower orders, where gap plasmons may resonate. The limit of
   /// this and of the next is the tolerance.
   Invariant truncation = {};
@@ -119,9 +119,7 @@ struct Diagnosis {
   Invariant rounding = {};
   Invariant power = {};  ///< solution_invariants.h
 
-  bool keeps_invariants() const {
-    return truncation.holds() && rounding.holds() && power.holds();
-  }
+  bool keeps_invariants() const { return truncation.holds() && rounding.holds() && power.holds(); }
 };
 
 /// beta under unit plane waves.

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mc/fit/medium_fit.h"
+#include "mc/fit/plan/fit_plan.h"
+#include "mc/fit/task/fit_task.h"
+
+namespace flatspeckle::apps {
+
+/// Fits of the same measurements by other media side by side, likeliest first: chi^2, how likely so
+/// much of it is, and Akaike's weights of the media, exp(-chi^2 / 2 - parameters) over their sum.
+/// Throws InputError for what is no fit, and for fits of other measurements.
+void print_comparison(const std::vector<std::string>& paths);
+
+/// What would be known, from how many patterns, and which views and tilts matter.
+void print_plan(const mc::PlanTask& task, const mc::FitPlan& plan);
+
+/// Patterns to know each key to 1 %, of each point.
+void print_plans(const mc::PlanTask& task, const std::vector<mc::PlanPoint>& points);
+
+/// Estimates, their correlations, what they make of the data and what the data do not tell.
+void print_fit(const mc::FitTask& task, const mc::MediumFit& fit);
+
+}  // namespace flatspeckle::apps
