@@ -49,9 +49,9 @@ struct Refined {
   void append(const Refined& other);
 };
 
-/// Turns errors by 135 degrees: those of two values that are divided do not cancel then, in the
-/// modulus and in the phase.
-constexpr Complex turn_of_errors(-std::numbers::sqrt2 / 2, std::numbers::sqrt2 / 2);
+/// Turns errors by 120 degrees: those of two values that are divided do not cancel then, in the
+/// modulus and in the phase, also where one of them is turned twice.
+constexpr Complex turn_of_errors(-0.5, std::numbers::sqrt3 / 2);
 
 /// An error of this size: of an intensity along it, of what is divided by intensities turned.
 Complex error_of(const Entry& entry, Complex value, double size);
