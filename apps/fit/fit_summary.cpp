@@ -43,7 +43,7 @@ ComparedFit fit_of(const std::string& path) {
   return fit;
 }
 
-/// Of chi^2 that is as large or larger, by Wilson's and Hilferty's cube root.
+/// Returns the chance of a chi^2 as large or larger, by Wilson's and Hilferty's cube root.
 double chance(double chi_squared, double freedom) {
   if (freedom < 1) return 1;
   const double width = 2 / (9 * freedom),
@@ -75,7 +75,7 @@ void print_correlations(const mc::FitTask& task, const mc::MediumFit& fit) {
     }
 }
 
-/// What a reader of the estimate has to know of it.
+/// Returns what a reader of the estimate has to know of it.
 std::string remark(const mc::FreeParameter& parameter, double estimate, bool known) {
   const double nearest = std::min(estimate - parameter.lower, parameter.upper - estimate);
   if (nearest < 1e-6 * (parameter.upper - parameter.lower)) return "  at its bound";

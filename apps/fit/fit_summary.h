@@ -14,13 +14,14 @@ namespace flatspeckle::apps {
 /// Throws InputError for what is no fit, and for fits of other measurements.
 void print_comparison(const std::vector<std::string>& paths);
 
-/// What would be known, from how many patterns, and which views and tilts matter.
+/// Prints what would be known, from how many patterns, and which views and tilts matter.
 void print_plan(const mc::PlanTask& task, const mc::FitPlan& plan);
 
-/// Patterns to know each key to 1 %, of each point.
+/// Prints how many patterns tell each key to 1 %, for each point.
 void print_plans(const mc::PlanTask& task, const std::vector<mc::PlanPoint>& points);
 
-/// Estimates, their correlations, what they make of the data and what the data do not tell.
+/// Prints the estimates, their correlations, what they make of the data and what the data do not
+/// tell.
 void print_fit(const mc::FitTask& task, const mc::MediumFit& fit);
 
 }  // namespace flatspeckle::apps

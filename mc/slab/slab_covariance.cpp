@@ -394,8 +394,8 @@ class CovarianceRefiner {
     return all;
   }
 
-  /// Of sharp peaks also what their imbalance makes of each entry. A small change may be chance: no
-  /// error is smaller than half the tolerance.
+  /// Returns the last changes, and of sharp peaks also what their imbalance makes of each entry. A
+  /// small change may be chance: no error is smaller than half the tolerance.
   std::vector<Complex> errors() const {
     const auto fine = sum(&Part::value);
     auto coarse = few_;

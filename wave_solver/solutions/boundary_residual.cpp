@@ -57,7 +57,7 @@ struct Traces {
   std::vector<Complex> field, slope;
 };
 
-// Of scatterers whose unknowns stand side by side: a product of matrices for all lights.
+// Adds traces of scatterers whose unknowns stand side by side, by one product for all lights.
 void add_traces(const WaveSolution& solution, std::size_t begin, std::size_t end,
                 std::span<const Vec2> points, std::span<const Vec2> normals, Traces& traces) {
   const TMatrixSystem& system = solution.system();

@@ -52,7 +52,7 @@ class RayLog {
   /// Steps from one look at the index to the next: a look costs as much as a cheap step.
   static constexpr int steps_unseen = 4;
 
-  /// What others have seen of its steps.
+  /// Takes what others have seen of its steps.
   void met(double index_mismatch) { index_mismatch_ = std::max(index_mismatch_, index_mismatch); }
 
   void start(const RayState& ray) {
