@@ -1,5 +1,6 @@
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 
 #include <doctest/doctest.h>
@@ -60,6 +61,15 @@ const std::vector<Disks> all_disks{
 };
 
 }  // namespace
+
+TEST_CASE("rings: without a range there are no points and no charges") {
+  const TMatrixSystem system({{{0, 0}, disk(Kind::tm, 0.3)}}, 2 * std::numbers::pi, 1e-10);
+  MultipoleRing ring(system.modes(0), system.k(), 0.3, std::numeric_limits<double>::infinity(),
+                     1e-10);
+  CHECK(ring.points == 0);
+  ring.charge(system.modes(0), system.k());
+  CHECK(ring.charges.empty());
+}
 
 TEST_CASE("rings on a grid and near blocks make the matrix, whatever the range") {
   for (const Disks& disks : std::span(all_disks).first(is_night ? 7 : 5)) {

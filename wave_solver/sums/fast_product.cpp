@@ -140,7 +140,7 @@ bool points_only(const WaveEquations& system) {
   return system.unknowns() == system.bodies().size();
 }
 
-/// Of each mode, over the points of a ring of size k rho.
+/// Returns what each mode has on a ring of size k rho, summed over its points.
 std::vector<double> summed_charges(const ModeSet& modes, double size) {
   const auto j = size > 0 ? bessel_j(modes.order, size) : std::vector<long double>{1};
   std::vector<double> all;
@@ -167,6 +167,7 @@ MultipoleRing::MultipoleRing(const ModeSet& modes, double k, double disk, double
 }
 
 void MultipoleRing::charge(const ModeSet& modes, double k) {
+  if (points == 0) return;
   charges.resize(modes.modes.size() * points);
   const auto summed = summed_charges(modes, k * radius);
   for (std::size_t m = 0; m < modes.modes.size(); ++m) {

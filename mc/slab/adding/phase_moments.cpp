@@ -70,9 +70,10 @@ class ResolvedNodes {
 /// their digits at small angles; beyond pi / 2 by those at pi - angle, of which odd ones change
 /// their sign.
 void add_functions(int dimension, double angle, double weight, std::vector<double>& moments) {
-  const double sine = std::sin(std::min(angle, pi - angle) / 2),
-               rest = 2 * sine * sine,  // 1 - cos(angle)
-      odd = angle > pi / 2 ? -weight : weight;
+  const bool is_behind = angle > pi / 2;
+  const double sine = std::sin((is_behind ? pi - angle : angle) / 2),
+               rest = 2 * sine * sine;  // 1 less the cosine of the smaller angle
+  const double odd = is_behind ? -weight : weight;
   double value = 1, difference = 0;
   for (std::size_t l = 0; l < moments.size(); ++l) {
     moments[l] += (l % 2 == 0 ? weight : odd) * value;
