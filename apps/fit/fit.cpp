@@ -339,7 +339,7 @@ int run_fit(const Session& session, const Subcommand& command, const FitKeys& va
 int fit_or_plan(const Subcommand& command, FitKeys& values) {
   const Keys& keys = command.keys();
   if (!keys.read(values.compare).empty()) {
-    if (command.settle()) print_comparison(values.compare);
+    if (command.settle()) print_compared_fits(values.compare);
     return ExitStatus::done;
   }
   const Session session(command.text(), keys, values.run, command.only_prints());

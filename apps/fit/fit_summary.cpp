@@ -106,7 +106,7 @@ void print_parameters(const mc::FitTask& task, const mc::MediumFit& fit) {
 
 }  // namespace
 
-void print_comparison(const std::vector<std::string>& paths) {
+void print_compared_fits(const std::vector<std::string>& paths) {
   std::vector<ComparedFit> fits;
   for (const std::string& path : paths) {
     fits.push_back(guarded_read(path, [&] { return fit_of(path); }));
