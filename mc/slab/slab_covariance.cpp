@@ -18,6 +18,7 @@
 #include "mc/slab/adding/plane.h"
 #include "mc/slab/adding/slab.h"
 #include "mc/slab/adding/space.h"
+#include "mc/slab/covariance_chains.h"
 #include "mc/slab/finite_ends.h"
 
 namespace flatspeckle::mc {
@@ -48,82 +49,6 @@ std::vector<SlabLayerOf<Geometry, double>> layers_of(const Scene& scene, const L
   for (std::size_t l = 0; l < laws.size(); ++l)
     list.push_back({materials[l].medium.mu_t, layers.thickness(l), materials[l].medium.albedo,
                     laws[l] ? *laws[l] : *any});
-  return list;
-}
-
-/// Paths that add to an entry: a pair of lights, what it scatters into, and a pair of views that
-/// collects it.
-template <typename Direction>
-struct ChainOf {
-  PairOf<Direction> lights, views;
-  std::size_t entry;
-};
-
-/// Ladders of all entries, and with `reversed` their reversed paths (C38). The wavenumber of the
-/// second field is larger by a share `shift`; second views are turned so that transverse momenta
-/// match, which must leave them above the horizon.
-template <typename Geometry>
-auto chains(const RequestOf<typename Geometry::Direction>& request, bool reversed, double shift) {
-  using Ends = PairOf<typename Geometry::Direction>;
-  std::vector<ChainOf<typename Geometry::Direction>> all;
-  for (std::size_t e = 0; e < request.entries.size(); ++e) {
-    const Channel a = request.channels[request.entries[e].a],
-                  b = request.channels[request.entries[e].b];
-    const Ends lights{request.lights[a.light], request.lights[b.light]};
-    Ends views{request.views[a.view], request.views[b.view]};
-    if (shift != 0) views.second = Geometry::matched(lights, views, shift);
-    all.push_back({lights, views, e});
-    if (reversed)
-      all.push_back({{lights.first, turned_round(views.second)},
-                     {views.first, turned_round(lights.second)},
-                     e});
-  }
-  return all;
-}
-
-/// Chains of one transverse momentum on one angular grid: pairs once, chains by their numbers.
-template <typename Geometry>
-struct ChainGroup {
-  using Pairs = std::vector<PairOf<typename Geometry::Direction>>;
-
-  typename Geometry::Momentum momentum;
-  std::vector<Focus> foci;
-  Pairs lights, views;
-  struct Link {
-    Eigen::Index light, view;
-    std::size_t entry;
-  };
-  std::vector<Link> links;
-};
-
-/// Its number in a list that it is in then.
-template <typename Pair>
-Eigen::Index listed(std::vector<Pair>& list, const Pair& pair) {
-  const auto found = std::find(list.begin(), list.end(), pair);
-  const auto number = static_cast<Eigen::Index>(found - list.begin());
-  if (found == list.end()) list.push_back(pair);
-  return number;
-}
-
-template <typename Geometry, typename Number>
-std::vector<ChainGroup<Geometry>> grouped(
-    const SlabOf<Geometry, Number>& slab,
-    const std::vector<ChainOf<typename Geometry::Direction>>& chains) {
-  std::vector<PairOf<typename Geometry::Direction>> lights;
-  for (const auto& chain : chains) lights.push_back(chain.lights);
-  const typename Geometry::Foci foci(lights, slab.mu_t * slab.depth, slab.width());
-  std::map<std::pair<typename Geometry::Momentum, std::vector<Focus>>, ChainGroup<Geometry>> groups;
-  for (const auto& chain : chains) {
-    const auto momentum = Geometry::momentum(chain.lights, slab.k, slab.mu_t, slab.departure.shift);
-    const auto own = foci.of(chain.lights, momentum);
-    ChainGroup<Geometry>& group = groups[{momentum, own}];
-    group.momentum = momentum;
-    group.foci = own;
-    group.links.push_back(
-        {listed(group.lights, chain.lights), listed(group.views, chain.views), chain.entry});
-  }
-  std::vector<ChainGroup<Geometry>> list;
-  for (auto& [key, group] : groups) list.push_back(std::move(group));
   return list;
 }
 
