@@ -105,12 +105,12 @@ std::vector<Complex> response_of(const ClusterTMatrix& cluster, const std::vecto
       const auto entry = [&](std::size_t i, std::size_t j) {
         return t[(last + order(to, i)) * size + last + order(from, j)];
       };
-      response[row + size * column] =
-          combined(
-              entry, mode_count(to.order), mode_count(from.order),
-              [&](std::size_t i) { return share(order(to, i), to); },
-              [&](std::size_t j) { return std::conj(share(order(from, j), from)); }) /
-          (w[row] * w[column]);
+      const Complex sum = combined(
+          entry, mode_count(to.order), mode_count(from.order),
+          [&](std::size_t i) { return share(order(to, i), to); },
+          [&](std::size_t j) { return std::conj(share(order(from, j), from)); });
+      // The product of both sizes may underflow, as does T_mn where it is written as 0.
+      response[row + size * column] = sum == 0.0 ? sum : sum / w[row] / w[column];
     }
   return response;
 }
