@@ -16,7 +16,8 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// Where several methods or sensors tell the same, each has a group.
+/// Returns the prefixes of dataset names in all groups that may contain datasets: the root, the
+/// groups of the methods and those of the sensors.
 std::vector<std::string> groups_of(const ResultReader& file) {
   std::vector<std::string> groups{"", "mc/", "wave/", "transport/"};
   for (const std::string& sensor : file.members("sensors"))
@@ -24,31 +25,47 @@ std::vector<std::string> groups_of(const ResultReader& file) {
   return groups;
 }
 
-/// A script of plots/ and the dataset that it draws, of all that have it.
+/// Plot script in plots/, the datasets that it requires, and one that the file must not contain.
 struct Drawing {
-  const char *dataset, *script;
+  std::string script;
+  std::vector<std::string> required;
+  std::string excluded = {};
 };
 
-constexpr Drawing drawings[] = {{"squared_contrast", "contrast"},
-                                {"delay", "dws"},
-                                {"frequency_shift", "frequency"},
-                                {"deviation", "validation"},
-                                {"intensity_ratio", "validation"},
-                                {"tilt_q", "memory_effect"},
-                                {"field", "speckle_field"},
-                                {"source_x", "sources"},
-                                {"frame", "image"},
-                                {"parameter_name", "fit"},
-                                {"path/z", "rays"},
-                                {"image/ray", "spot"},
-                                {"map/fluence", "light_map"},
-                                {"ball_spline", "design"},
-                                {"radial_spline", "design"},
-                                {"graded_spline", "design"},
-                                {"history/rms", "design"},
-                                {"total_field", "field_map"}};
+/// Returns the plot scripts; those that draw several kinds of results have an entry for each.
+std::vector<Drawing> all_drawings() {
+  return {{"contrast", {"squared_contrast"}},
+          {"dws", {"delay", "field_correlation"}, "tilt_q"},
+          {"frequency", {"frequency_shift", "frequency_correlation"}},
+          {"validation", {"deviation", "mc/intensity"}},
+          {"validation", {"deviation", "mc/covariance"}},
+          {"validation", {"intensity_ratio"}},
+          {"memory_effect", {"tilt_q", "field_correlation"}, "shift"},
+          {"memory_effect", {"tilt_q", "mc/field_correlation"}, "shift"},
+          {"memory_effect", {"translation_range"}},
+          {"memory_effect", {"mc/translation_range"}},
+          {"tilt_shift", {"tilt_q", "shift", "field_correlation"}},
+          {"sources", {"source_x", "singular_value"}},
+          {"image", {"camera_place", "frame"}},
+          {"fit", {"estimate"}},
+          {"fit_plan", {"patterns_to_percent"}},
+          {"fit_plan", {"point_patterns_to_percent"}},
+          {"rays", {"path/z"}},
+          {"spot", {"image/ray"}},
+          {"light_map", {"map/fluence"}},
+          {"design", {"ball_spline"}},
+          {"design", {"radial_spline"}},
+          {"design", {"graded_spline"}},
+          {"design", {"history/rms"}},
+          {"field_map", {"total_field"}}};
+}
 
-/// As text, whatever its type; empty where there is none.
+bool can_draw(const Drawing& drawing, const ResultReader& file) {
+  return std::ranges::all_of(drawing.required, [&](const auto& name) { return file.has(name); }) &&
+         (drawing.excluded.empty() || !file.has(drawing.excluded));
+}
+
+/// Returns an attribute of the root as text; empty if the file does not contain it.
 std::string attribute_text(const ResultReader& file, const AttributeRow& row) {
   if (!file.has_attribute("/", row.name)) return "";
   if (row.type == "float64") return number_text(file.attribute<double>("/", row.name));
@@ -63,8 +80,9 @@ void print_run(const ResultReader& file) {
   const bool converged = file.attribute<bool>("/", "converged");
   std::cout << "  " << number_text(file.attribute<double>("/", "samples")) << " samples in "
             << number_text(file.attribute<double>("/", "wall_s")) << " s; "
-            << (converged ? "ended as it was asked to"
-                          : "stopped before its target error, or interrupted: --resume goes on")
+            << (converged ? "target reached"
+                          : "stopped before the target error was reached, or interrupted: continue "
+                            "with --resume")
             << "\n\n";
 }
 
@@ -79,11 +97,11 @@ void print_medium(const ResultReader& file) {
   if (*title == '\0') std::cout << '\n';
 }
 
-/// "3 x 2", of a number "one number".
+/// Returns the shape of a dataset as text, such as "3 x 2", or "one number" for a scalar.
 std::string shape_text(const std::vector<std::size_t>& shape) {
   std::vector<std::string> sizes;
   for (const std::size_t size : shape) sizes.push_back(std::to_string(size));
-  return sizes.empty() ? "one number" : joined(sizes, " x ");
+  return sizes.empty() ? "one number" : join_texts(sizes, " x ");
 }
 
 void print_row(const ResultReader& file, const std::string& path, const DatasetRow& row) {
@@ -94,8 +112,9 @@ void print_row(const ResultReader& file, const std::string& path, const DatasetR
   std::cout << '\n';
 }
 
-/// Axes of what a sweep of a subcommand varied, key=values in its scene: sensor_at.2 as
-/// sensor_at_2.
+/// Prints the axes of a sweep over the keys of a subcommand. Their names are taken from the scene,
+/// where they stand before '=' in quoted texts; '.' is replaced by '_', so that sensor_at.2 has the
+/// axis sensor_at_2.
 void print_swept(const ResultReader& file) {
   if (!file.has_attribute("/", "of")) return;
   const auto config = file.attribute<std::string>("/", "config");
@@ -110,33 +129,35 @@ void print_swept(const ResultReader& file) {
   }
 }
 
-/// Rows of several tables may share a name; what it is here the file itself says.
+/// Prints all datasets of the file, each once although several tables may define its name. The
+/// printed description is the one in the file.
 void print_datasets(const ResultReader& file) {
-  std::cout << "Holds\n";
+  std::cout << "Datasets\n";
   print_swept(file);
   const auto groups = groups_of(file);
-  std::set<std::string> told;
+  std::set<std::string> printed;
   for (const DatasetTable* table : all_tables())
     for (const DatasetRow& row : table->rows)
       for (const std::string& group : groups) {
         const std::string path = group + row.path;
         if (!path.starts_with("state") && file.has_attribute(path, "long_name") &&
-            told.insert(path).second)
+            printed.insert(path).second)
           print_row(file, path, row);
       }
 }
 
-// Of sweeps of a subcommand and of searches in one: numbers of many of its results.
+// Prints the command that plots the result of a search (optimise) or of a sweep of a subcommand.
 void print_map(const ResultReader& file) {
   const std::string name = file.path().string();
   if (file.has("search"))
-    std::cout << "\nTo draw it\n  plots/optimisation.py " << name << '\n';
+    std::cout << "\nTo plot it\n  plots/optimisation.py " << name << '\n';
   else
-    std::cout << "\nTo draw it\n  plots/experiment_map.py " << name
-              << " --value NAME, one that it holds, over the keys that were swept\n";
+    std::cout << "\nTo plot it\n  plots/experiment_map.py " << name
+              << " --value NAME, where NAME is a dataset of the file, over the swept keys\n";
 }
 
-/// Of render: pictures and rings of several pixels.
+/// Adds the plot scripts for results of `render`: images, and profiles over rings, with more than
+/// one pixel.
 void note_pictures(const ResultReader& file, const std::string& group,
                    std::vector<std::string>& scripts) {
   const std::string image = group + "image";
@@ -146,26 +167,32 @@ void note_pictures(const ResultReader& file, const std::string& group,
   if (shape.size() == 2 && shape[0] * shape[1] > 1) scripts.push_back("render");
 }
 
+/// Adds the plot script for results of `field` with more than one detection direction.
+void note_fields(const ResultReader& file, std::vector<std::string>& scripts) {
+  if (!file.has("field")) return;
+  const auto shape = file.shape("field");
+  if (shape.size() == 3 && shape[2] > 1) scripts.push_back("speckle_field");
+}
+
 std::vector<std::string> scripts_for(const ResultReader& file) {
-  const auto groups = groups_of(file);
   std::vector<std::string> scripts;
-  for (const Drawing& drawing : drawings)
-    if (std::ranges::any_of(groups,
-                            [&](const auto& group) { return file.has(group + drawing.dataset); }))
-      scripts.push_back(drawing.script);
-  for (const std::string& group : groups) note_pictures(file, group, scripts);
+  for (const Drawing& drawing : all_drawings())
+    if (can_draw(drawing, file)) scripts.push_back(drawing.script);
+  note_fields(file, scripts);
+  for (const std::string& group : groups_of(file)) note_pictures(file, group, scripts);
   return scripts;
 }
 
 void print_drawings(const ResultReader& file) {
   if (file.has_attribute("/", "of")) return print_map(file);
-  const char* title = "\nTo draw it\n";
-  std::set<std::string> told;
+  const char* title = "\nTo plot it\n";
+  std::set<std::string> printed;
   for (const std::string& script : scripts_for(file)) {
-    if (!told.insert(script).second) continue;
+    if (!printed.insert(script).second) continue;
     std::cout << title << "  plots/" << script << ".py " << file.path().string() << '\n';
     title = "";
   }
+  if (printed.empty()) std::cout << "\nNo plot script draws this file.\n";
 }
 
 void print_all(const std::string& path) {
@@ -180,7 +207,7 @@ void print_all(const std::string& path) {
 
 int explain_file(const Subcommand&, OneWord& values) {
   const std::string& path = values.word;
-  if (path.empty()) throw InputError("explain: must have one result file, and no more");
+  if (path.empty()) throw InputError("explain: must have exactly one result file");
   if (!std::filesystem::exists(path)) throw InputError("explain", path, "no such file");
   read_in_child(path, [&] { const ResultReader file(path); });
   print_all(path);
@@ -190,8 +217,7 @@ int explain_file(const Subcommand&, OneWord& values) {
 }  // namespace
 
 std::unique_ptr<Call> explain(const std::string&) {
-  return call_with<OneWord>("explain", "What a result holds, in words: explain FILE.h5",
-                            explain_file);
+  return call_with<OneWord>("explain", "Describes a result file: explain FILE.h5", explain_file);
 }
 
 }  // namespace flatspeckle::apps

@@ -28,7 +28,8 @@ namespace {
 using namespace flatspeckle;
 using namespace flatspeckle::apps;
 
-/// nullptr: as it is.
+/// Returns the name of the OpenBLAS kernel that suits this processor if OpenBLAS has chosen its
+/// oldest kernel instead; otherwise nullptr.
 const char* better_kernel() {
   constexpr std::string_view oldest = "Prescott";
   if (openblas_get_corename() != oldest) return nullptr;
@@ -41,24 +42,25 @@ const char* better_kernel() {
   return nullptr;
 }
 
-/// Whether it changed: not where the variable is set already, or to nullptr.
+/// Sets an environment variable, unless it is already set or `value` is nullptr. Returns whether
+/// this call has set it.
 bool set(const char* variable, const char* value) {
   return value != nullptr && std::getenv(variable) == nullptr && ::setenv(variable, value, 0) == 0;
 }
 
-/// OpenBLAS picks its kernels while it is loaded, by the processors that were known when it was
-/// made; on younger ones it falls back on its oldest, which take two to three times as long. There
-/// this starts the program once more, with the environment variable OPENBLAS_CORETYPE set by what
-/// the processor can do. Variables that are set stay.
+/// If OpenBLAS has chosen its oldest kernel, restarts the program with the environment variable
+/// OPENBLAS_CORETYPE set to the right kernel. OpenBLAS selects its kernel when it is loaded and
+/// does not recognise processors newer than itself; for them it uses the oldest kernel, which takes
+/// two to three times as long. If the variable is already set, the program is not restarted.
 void prepare_blas(char** argv) {
-  if (set("OPENBLAS_CORETYPE", better_kernel()))
-    ::execv("/proc/self/exe", argv);  // does not return, unless it fails
+  // execv() returns only if it fails; the program then continues with the old kernel.
+  if (set("OPENBLAS_CORETYPE", better_kernel())) ::execv("/proc/self/exe", argv);
 }
 
-/// Starts the program once more with OPENBLAS_NUM_THREADS = 1 where the address space is limited
-/// (ulimit -v) and the variable is not set: the threads that OpenBLAS starts while it is loaded
-/// wait for ever where there is none for their buffers, and where there is none for their stacks
-/// OpenBLAS ends the program. Runs before libraries, those of sanitizers too, are initialised.
+/// If the address space is limited (ulimit -v), restarts the program with the environment variable
+/// OPENBLAS_NUM_THREADS = 1, unless it is already set. Otherwise the threads that OpenBLAS starts
+/// when it is loaded may wait forever for memory, or OpenBLAS may end the program for lack of
+/// memory. This function runs before libraries, including sanitizers, are initialised.
 __attribute__((no_sanitize("address"), no_sanitize("thread"), no_sanitize("undefined"))) void
 limit_blas_threads(int, char** argv, char** environment) {
   static char one_thread[] = "OPENBLAS_NUM_THREADS=1";
@@ -86,7 +88,8 @@ void print_usage() {
   for (const SubcommandEntry& entry : subcommands())
     std::printf("  %-12s %s\n", entry.name, entry.purpose);
   std::puts(
-      "\n  flatspeckle SUBCOMMAND --help lists the keys; flatspeckle --version tells the version.\n"
+      "\n  flatspeckle SUBCOMMAND --help lists the keys; flatspeckle --version prints the "
+      "version.\n"
       "  Exit status: 0 done, 2 bad input, 3 stopped before the target error was reached,\n"
       "  4 input or output failed, 5 a row of a benchmark failed, 75 interrupted and resumable,\n"
       "  130 interrupted, nothing to resume.");
@@ -113,22 +116,25 @@ CallEnd run(const Arguments& arguments) {
   }
   const SubcommandEntry& subcommand = subcommand_named(word);
   if (word != "sweep" && launched_ranks().size > 1)
-    throw InputError("subcommand", word, "runs as one process; of these, sweep alone takes many");
+    throw InputError("subcommand", word, "must run as one process; only sweep uses several (MPI)");
   return run_subcommand(subcommand, arguments);
 }
 
-/// Of long texts the beginning and the end, between which a value is left out.
+/// Returns the text, in which the middle (usually a long value) is replaced by " ... " if the text
+/// is long.
 std::string shortened(const std::string& what) {
   constexpr std::size_t most = 400, end = 150;
   if (what.size() <= most) return what;
   return what.substr(0, most - end) + " ... " + what.substr(what.size() - end);
 }
 
-/// One line, whatever a file or flag that the message quotes may hold. Of processes that all find
-/// the same fault in what they were given, the first speaks for all.
+/// Prints an error as one line and returns the exit status. Control characters, which may come from
+/// files or flags, are replaced by '?'. If all MPI processes fail with the same input error, only
+/// the first prints it.
 int fail(std::string what, int status) {
   if (status == ExitStatus::bad_input && launched_ranks().rank > 0) {
-    std::this_thread::sleep_for(std::chrono::seconds(1));  // or it would be ended before it speaks
+    // gives rank 0 time to print the error and end all processes
+    std::this_thread::sleep_for(std::chrono::seconds(1));
     return status;
   }
   what = shortened(what);
@@ -138,8 +144,9 @@ int fail(std::string what, int status) {
   return status;
 }
 
-/// Returns the status, or 1 where the standard output was all that was wanted and could not be
-/// written, which is said. One that is closed, or a pipe whose reader has ended, need not be.
+/// Returns the exit status of the call. If writing to the standard output has failed, prints an
+/// error, and returns 1 unless the call has also written a result file. It is no error if the
+/// output is closed or a pipe without reader.
 int with_written_output(const CallEnd& end) {
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return end.status;
@@ -150,7 +157,8 @@ int with_written_output(const CallEnd& end) {
               end.has_result ? end.status : 1);
 }
 
-/// Where memory or disk ran out, and the clearing up of libraries at the end may crash.
+/// Prints the error and exits at once, without destructors. Used if memory or disk space has run
+/// out, because the cleanup of libraries may then crash.
 [[noreturn]] void fail_at_once(const std::string& what, int status) {
   fail(what, status);
   std::_Exit(status);
@@ -170,10 +178,11 @@ int main(int argc, char** argv) {
   } catch (const std::filesystem::filesystem_error& error) {
     return fail(error.what(), ExitStatus::io_failed);
   } catch (const std::bad_alloc&) {
-    fail_at_once("this scene needs more memory than there is", ExitStatus::bad_input);
+    fail_at_once("this scene needs more memory than is available: reduce its size",
+                 ExitStatus::bad_input);
   } catch (const std::system_error& error) {
     if (error.code() != std::errc::resource_unavailable_try_again) return fail(error.what(), 1);
-    return fail("no thread can be started, for which memory may be too little",
+    return fail("no thread can be started, probably for lack of memory: reduce threads",
                 ExitStatus::bad_input);
   } catch (const Interrupted&) {
     return ExitStatus::interrupted_for_good;

@@ -10,12 +10,15 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// A part must not take the place of a whole.
+/// Throws InputError if the file `out` is a complete result, which a partial result must not
+/// replace.
 void refuse_to_shrink(const std::string& out) {
   if (!std::filesystem::exists(out)) return;
   const ResultReader file(out);
   if (file.has_attribute("/", "complete") && file.attribute<bool>("/", "complete"))
-    throw InputError("out", out, "holds a complete sweep; --partial does not replace one");
+    throw InputError(
+        "out", out,
+        "contains a complete sweep, which --partial does not replace: give another file");
 }
 
 struct MergeKeys {
@@ -26,8 +29,9 @@ struct MergeKeys {
 
 void add_keys(Keys& keys, MergeKeys& values) {
   keys.group("Points");
-  keys.add("shards", values.folders, "Folders of points (default OUT.shards)");
-  keys.add("partial", values.partial, "Take the points that are there, as a list");
+  keys.add("shards", values.folders, "Folders of finished points (default: OUT.shards)");
+  keys.add("partial", values.partial,
+           "Accept missing points: write the finished points as a list instead of a grid");
   add_output_key(keys, values.run);
 }
 
@@ -49,7 +53,8 @@ int merge_folders(const Subcommand& command, MergeKeys& values) {
 
 std::unique_ptr<Call> merge(const std::string&) {
   return call_with<MergeKeys>(
-      "merge", "The points of a sweep, from one or several folders, as one result", merge_folders);
+      "merge", "Combines the points of a sweep from one or several folders into one result",
+      merge_folders);
 }
 
 }  // namespace flatspeckle::apps

@@ -9,33 +9,33 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// A scene to begin with: the subcommand that it is for, and its lines.
+/// An example scene: the word that selects it, its subcommand and its text.
 struct Purpose {
   const char *word, *subcommand, *lines;
 };
 
 constexpr Purpose purposes[] = {
     {"memory-effect", "covariance",
-     R"(# How far may the light be tilted before the speckle behind a slab is another one?
-domain = "slab"               # infinite across
-depth = 1000                  # lengths in wavelengths
+     R"(# How far can the light be tilted before the speckle behind a slab decorrelates?
+domain = "slab"               # infinite in x
+depth = 1000                  # in wavelengths
 scatterer = "hg"              # Henyey and Greenstein
 g = 0.9                       # mean cosine of scattering
 optical_depth = 10            # depth in mean free paths
-albedo = 1                    # below 1: absorbs
+albedo = 1                    # below 1: the medium absorbs
 view_angles = [0]             # radians; pi - 0.2 is a view in reflection
 covariance = "memory_effect"
 tilts = [0, 1e-4, 2e-4, 3e-4, 4e-4, 6e-4, 8e-4]  # radians
 )"},
     {"validate", "validate",
-     R"(# Monte Carlo against the exact solution, entry by entry: cylinders in a box.
+     R"(# Monte Carlo compared with the exact solution, entry by entry: cylinders in a box.
 domain = "box"
 width = 20                    # wavelengths
 depth = 10
 scatterer = "tm"              # dielectric cylinders, E along the axis
 radius = 0.16
 index = "1.5"                 # "1.5+0.01i" absorbs
-count = 67                    # how many, placed anew each time
+count = 67                    # number of cylinders; each placement has new positions
 view_angles = [0.4, 1.0, 2.1, 3.1415]
 wave_samples = 400            # placements of the exact solver
 samples = 200000              # light paths
@@ -52,11 +52,11 @@ count = 20
 map = [-8, 8, -2, 12]         # x from, to, z from, to
 )"},
     {"waveguide", "render",
-     R"(# A beam along a graded index guide, n^2 = n0^2 - alpha^2 r^2, in a scattering medium; what arrives at its end.
+     R"(# Irradiance at the end of a scattering graded-index guide, n^2 = n0^2 - alpha^2 r^2, for a beam along it.
 field = ["parabolic"]
 index = 1.33
 alpha = 0.15
-stage_box = [-6, -6, 0, 6, 6, 20]            # corners
+stage_box = [-6, -6, 0, 6, 6, 20]            # two opposite corners
 mu_s = 0.15                                  # scattering, per length
 phase = "henyey_greenstein"
 g = 0.9
@@ -68,14 +68,14 @@ pixels = [48, 48]
 samples = 60000
 )"},
     {"lens", "design",
-     R"(# A lens that brings parallel light to a point of its rim.
-design = "radial"             # or "ball": free in space
+     R"(# A lens that focuses parallel light onto a point of its surface.
+design = "radial"             # or "ball": no symmetry
 coefficients = 8
 directions = 1
 rays_per_direction = 100
 )"},
     {"imaging", "image",
-     R"(# Will a camera see four points behind a medium, in the autocorrelation of its frame?
+     R"(# Can a camera recover four points behind a medium from the autocorrelation of its frame?
 domain = "box"
 width = 4000
 depth = 20
@@ -83,10 +83,10 @@ scatterer = "hg"
 g = 0.9
 optical_depth = 5
 object_x = [0, 60, 150, 310]  # the points, on a line
-object_depth = -40000         # far away on the other side
-camera = [-0.5, 0.5]          # sines of the directions that it sees
+object_depth = -40000         # far away on the side opposite to the camera
+camera = [-0.5, 0.5]          # sines of the first and last viewing direction
 pixels = 8192
-repeats = 2                   # media
+repeats = 2                   # number of media, with one frame each
 )"}};
 
 std::string words() {
@@ -97,7 +97,7 @@ std::string words() {
 
 int print_scene(const Subcommand&, OneWord& values) {
   const std::string& word = values.word;
-  if (word.empty()) throw InputError("new: must have one purpose, of" + words());
+  if (word.empty()) throw InputError("new: must have one purpose, one of" + words());
   const auto* const found = std::ranges::find(purposes, word, &Purpose::word);
   if (found == std::end(purposes)) throw InputError("new", word, "must be one of" + words());
   std::cout << found->lines << "# To run it: flatspeckle " << found->subcommand
@@ -108,8 +108,8 @@ int print_scene(const Subcommand&, OneWord& values) {
 }  // namespace
 
 std::unique_ptr<Call> new_scene(const std::string&) {
-  return call_with<OneWord>("new", "A commented scene to begin with: new PURPOSE, one of" + words(),
-                            print_scene);
+  return call_with<OneWord>(
+      "new", "Prints a commented example scene: new PURPOSE, one of" + words(), print_scene);
 }
 
 }  // namespace flatspeckle::apps

@@ -1,5 +1,5 @@
-# Finds Random123 (headers only; Debian: librandom123-dev) and defines Random123::Random123.
-# Random123_INCLUDE_DIR may be set where it is not found by itself.
+# Finds Random123 (headers only; Debian: librandom123-dev) and defines Random123::Random123. Set Random123_INCLUDE_DIR
+# if it is not found automatically.
 find_path(Random123_INCLUDE_DIR Random123/threefry.h)
 mark_as_advanced(Random123_INCLUDE_DIR)
 

@@ -1,5 +1,5 @@
-# The package: find_package(flatspeckle) gives the rooms as flatspeckle::core and so on. Rooms and the
-# program install themselves; here is what belongs to all of them.
+# The package: find_package(flatspeckle) gives the modules as flatspeckle::core and so on. Modules and the program
+# install themselves; this file installs the shared files.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/flatspeckle)
 
@@ -15,14 +15,14 @@ install(EXPORT flatspeckle NAMESPACE flatspeckle:: FILE flatspeckle-targets.cmak
 
 install(DIRECTORY plots octave data/scenes data/pictures DESTINATION ${CMAKE_INSTALL_DATADIR}/flatspeckle
         PATTERN __pycache__ EXCLUDE)
-if(FLATSPECKLE_BENCH)  # plots/report.py writes the pages of its results
+if(FLATSPECKLE_BENCH)  # plots/report.py writes the pages of bench results
   install(DIRECTORY scripts/report_pages DESTINATION ${CMAKE_INSTALL_DATADIR}/flatspeckle/scripts
           PATTERN __pycache__ EXCLUDE)
 endif()
-# Debian's own place for packages of python3; under another prefix PYTHONPATH names it.
+# Debian's folder for Python 3 packages; with another prefix, add it to PYTHONPATH.
 set(FLATSPECKLE_PYTHON_DIR lib/python3/dist-packages CACHE STRING "Where the Python package goes, under the prefix")
 install(DIRECTORY python/flatspeckle DESTINATION ${FLATSPECKLE_PYTHON_DIR} PATTERN __pycache__ EXCLUDE)
-# Made by the program itself, from its keys.
+# The program generates these files from its keys.
 install(CODE "execute_process(COMMAND $<TARGET_FILE:flatspeckle> keys man
                               OUTPUT_FILE ${PROJECT_BINARY_DIR}/flatspeckle.1 COMMAND_ERROR_IS_FATAL ANY)
               execute_process(COMMAND $<TARGET_FILE:flatspeckle> keys completion
@@ -36,7 +36,7 @@ install(FILES ${PROJECT_BINARY_DIR}/flatspeckle.zsh RENAME _flatspeckle
         DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
 install(FILES LICENSE CITATION.cff CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# cpack: a package for the Debian that it is made on.
+# cpack builds a package for the Debian release that it runs on.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The flatspeckle developers")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})

@@ -1,10 +1,10 @@
-# Run at every build: cmake -DSOURCE_DIR= -DVERSION= -DINPUT= -DOUTPUT= [-DGIT=] -P git_commit.cmake
-# Writes OUTPUT from INPUT with the checkout's commit, and leaves OUTPUT alone where nothing changed.
+# This script runs at every build: cmake -DSOURCE_DIR= -DVERSION= -DINPUT= -DOUTPUT= [-DGIT=] -P git_commit.cmake
+# Writes OUTPUT from INPUT with the checkout's commit; an unchanged OUTPUT is not rewritten.
 set(COMMIT unknown)
 if(GIT)
-  # Also in a checkout that belongs to somebody else, as in a container.
+  # Also works in a checkout owned by another user, as in a container.
   set(GIT ${GIT} -c safe.directory=${SOURCE_DIR})
-  # An empty prefix: SOURCE_DIR is the top of a checkout, not a copy inside somebody else's.
+  # An empty prefix means that SOURCE_DIR is the top of a checkout, not a copy inside another one.
   execute_process(COMMAND ${GIT} rev-parse --show-prefix WORKING_DIRECTORY ${SOURCE_DIR}
                   OUTPUT_VARIABLE prefix RESULT_VARIABLE outside ERROR_QUIET
                   OUTPUT_STRIP_TRAILING_WHITESPACE)

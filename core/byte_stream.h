@@ -12,8 +12,8 @@
 
 namespace flatspeckle {
 
-/// Values one after the other as bytes: numbers as the machine has them, texts and lists behind
-/// their lengths.
+/// Writes values as a sequence of bytes: numbers in the machine's representation, texts and lists
+/// preceded by their lengths.
 class ByteWriter {
  public:
   template <typename Number>
@@ -39,7 +39,7 @@ class ByteWriter {
   std::vector<std::byte> bytes_;
 };
 
-/// Reads them again; throws InputError where there are too few.
+/// Reads values from bytes that ByteWriter has written. Throws InputError if bytes are missing.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -53,7 +53,7 @@ class ByteReader {
   }
   template <typename Value>
   void get(std::vector<Value>& values) {
-    values.resize(believable(get<std::uint64_t>()));
+    values.resize(checked_count(get<std::uint64_t>()));
     for (Value& value : values) get(value);
   }
   template <typename Value>
@@ -63,20 +63,21 @@ class ByteReader {
     return value;
   }
 
-  /// A count that memory can hold.
-  static std::size_t believable(std::uint64_t count) {
+  /// Returns a count read from the bytes. Throws InputError if it is above 2^32, which happens only
+  /// if the bytes are damaged.
+  static std::size_t checked_count(std::uint64_t count) {
     constexpr std::uint64_t most = std::uint64_t{1} << 32;
-    if (count > most) throw InputError("bytes of a result are damaged");
+    if (count > most) throw InputError("a stored result is damaged: an impossible length");
     return count;
   }
   std::span<const std::byte> rest() const { return bytes_; }
   void require_end() const {
-    if (!bytes_.empty()) throw InputError("bytes of a result are left over");
+    if (!bytes_.empty()) throw InputError("a stored result is damaged: too many bytes");
   }
 
  private:
   std::span<const std::byte> next(std::uint64_t count) {
-    if (count > bytes_.size()) throw InputError("bytes of a result are missing");
+    if (count > bytes_.size()) throw InputError("a stored result is damaged: too few bytes");
     const auto part = bytes_.first(count);
     bytes_ = bytes_.subspan(count);
     return part;

@@ -5,8 +5,8 @@
 
 namespace flatspeckle {
 
-/// A function was called with what it does not take, or has not made what it should: a mistake in
-/// the program, not in its input. The program prints the line and ends with status 1.
+/// Exception for a violated precondition or postcondition, that is, a mistake in the program, not
+/// in its input. The program prints the message as one line and exits with status 1.
 class ContractViolation : public std::logic_error {
  public:
   using std::logic_error::logic_error;
@@ -20,8 +20,8 @@ class ContractViolation : public std::logic_error {
 
 }  // namespace flatspeckle
 
-// Preconditions and postconditions at the borders of rooms. They hold in all builds, since wrong
-// numbers cost more than a comparison; inner loops use assert.
+// Preconditions and postconditions at module boundaries. They are checked in all builds, because
+// the checks are cheap and wrong results are not; inner loops use assert instead.
 #define FS_EXPECT(condition) \
   ((condition) ? void() : flatspeckle::violated("precondition", #condition, __FILE__, __LINE__))
 #define FS_ENSURE(condition) \

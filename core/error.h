@@ -6,13 +6,13 @@
 
 namespace flatspeckle {
 
-/// What the user gave cannot be used: a scene key, a flag, a file. The program prints the one line
-/// and exits with status 2, having written nothing.
+/// Exception for unusable input: a wrong scene key, flag or file. The program prints the message as
+/// one line and exits with status 2 without writing a result.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message) : std::runtime_error(message) {}
 
-  /// "key = value: accepted", e.g. "width = -3: must be positive".
+  /// Makes the message "key = value: accepted", e.g. "width = -3: must be positive".
   template <typename Value>
   InputError(const std::string& key, const Value& value, const std::string& accepted)
       : std::runtime_error(line(key, value, accepted)) {}
@@ -26,8 +26,8 @@ class InputError : public std::runtime_error {
   }
 };
 
-/// Reading or writing failed though the input was right (disk full, folder vanished). Exit
-/// status 4.
+/// Exception for a failure to read or write although the input is valid (disk full, folder
+/// removed). The program exits with status 4.
 class IoError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

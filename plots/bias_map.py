@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""How far Monte Carlo is from the exact solver, against 1/(k mean free path) and packing fraction,
-from the table that scripts/bias_map.py makes (default: the shipped data/bias_map.csv)."""
+"""Deviation of Monte Carlo from the exact solver, against 1/(k mean free path) and against packing fraction. Reads
+the table that scripts/bias_map.py writes (default: the shipped data/bias_map.csv)."""
 
 import functools
 import pathlib
@@ -14,12 +14,13 @@ import numpy as np
 SHIPPED = pathlib.Path(__file__).parent.parent / "data" / "bias_map.csv"
 COLUMNS = ("family", "structure", "optical_depth", "k_mean_free_path", "packing_fraction", "k_shift_over_k",
            "mean", "mean_error", "rms", "grazing", "grazing_error")
-KINDS = (("black", "o", "filled: mean over the views"), ("white", "o", "open: RMS"),
-         ("black", "x", "crosses: mean of the views along the faces"))
+KINDS = (("black", "o", "filled: mean over detection directions"), ("white", "o", "open: RMS"),
+         ("black", "x", "crosses: mean of directions along the faces"))
 
 
 def draw_curve(axis, number, label, x, rows):
-    """Mean over the views with its error bar, filled; RMS, open; views along the faces, crosses."""
+    """Draws the mean over the detection directions with its error bar (filled symbols), the RMS (open), and the mean
+    over directions along the faces (crosses)."""
     mean, error, rms, grazing, grazing_error = (
         100 * rows[name] for name in ("mean", "mean_error", "rms", "grazing", "grazing_error"))
     look = {**style.look(number), "linestyle": "none"}

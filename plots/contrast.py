@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Laser speckle contrast: K^2 against the time of exposure, from any number of
-`covariance --exposures` results: each curve over the time at which its |g1| has fallen to 1/e, or
-all over the exposure itself where the delays of one do not show that time."""
+"""Laser speckle contrast: squared contrast K^2 against exposure time, from any number of `covariance --exposures`
+results. Exposure times are divided by the delay at which |g1| of the same result has fallen to 1/e. If |g1| of one
+result does not fall that far within its delays, exposure times are not scaled."""
 
 from lib import labels, script, style
 
@@ -10,7 +10,8 @@ import numpy as np
 
 
 def decay_time(result):
-    """Where |g1| of the first light and view is 1/e, between delays; None where that is not."""
+    """Returns the delay at which |g1| of the first illumination and detection direction is 1/e, interpolated; None if
+    the delays do not reach it."""
     delay = result.axis("field_correlation", 0)
     values = result.values("field_correlation")[:, 0, 0]
     order = np.argsort(delay)
@@ -38,6 +39,6 @@ def draw(results):
         axis.plot(x, (np.expm1(-2 * x) + 2 * x) / (2 * x**2), color=style.GREY, linewidth=0.7,
                   zorder=0, label=r"$|g_1| = e^{-\tau/\tau_c}$")
     axis.set(xscale="log", yscale="log", ylabel=r"squared contrast $K^2$",
-             xlabel=r"exposure $T / \tau_c$" if scaled else "exposure $T$ (unit of the delays)")
+             xlabel=r"exposure time $T / \tau_c$" if scaled else "exposure time $T$ (unit of the delays)")
     axis.legend()
     return figure

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Convergence of a sweep: relative error of every point against its processor time or samples, with
-the target, and the points that missed it (also printed)."""
+"""Convergence of a sweep: relative error of every point against processor time or samples, with the target error.
+Points that missed the target are marked and printed."""
 
 from lib import page, script, style, sweep_file
 
@@ -8,15 +8,15 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 MOST_NAMED, MOST_COLOURS = 6, 8
-X_AXES = {"cpu": ("cpu_s", "processor time (s)"), "samples": ("samples", "samples")}
+X_AXES = {"cpu": ("cpu_s", "processor time (s)"), "samples": ("samples", "number of samples")}
 MAP = plt.get_cmap("viridis")
-SHADES = 0.82  # of the map's range; its lightest end is lost on paper
+SHADES = 0.82  # used part of the colour map; its lightest colours are not visible on paper
 LATE = {"marker": "X", "markersize": 6, "markeredgecolor": "black", "markeredgewidth": 0.6}
 GUIDE = {"color": "black", "linewidth": 0.7, "linestyle": (0, (1, 2))}
 
 
 def colours(sweep, axis):
-    """Colour, from dark to light, and line style of every value of an axis."""
+    """Returns colour, from dark to light, and line style for every value of an axis."""
     values = sweep.values(axis) if axis else [None]
     steps = np.linspace(0, SHADES, len(values)) if len(values) > 1 else [0.3]
     return {value: {"color": MAP(step), "linestyle": style.LINES[number % 4]}
@@ -24,8 +24,8 @@ def colours(sweep, axis):
 
 
 def traces(sweep, method, column):
-    """{point: (x, relative error)} of the selected points; rows without an error cannot be shown on
-    log axes."""
+    """Returns {point: (x, relative error)} of the selected points, without rows that have no error, because the axes
+    are logarithmic."""
     prefix = sweep.prefixes[method] + "trace/"
     point, x, error = (sweep.result.values(prefix + name)
                        for name in ("of_point", column, "relative_error"))
@@ -34,7 +34,7 @@ def traces(sweep, method, column):
 
 
 def missed(sweep, method):
-    """Points that ended above the target or without an error, the worst first."""
+    """Returns the points that ended above the target or without an error, the worst first."""
     target, error = sweep.target(method), sweep.of(method, "relative_error")
     late = [row for row in sweep.rows if target is not None and (error[row] > target or error[row] == 0)]
     return sorted(late, key=lambda row: -error[row])
@@ -43,7 +43,7 @@ def missed(sweep, method):
 def describe(sweep, method, row):
     names = sweep.varying() or ["optical_depth"]
     error = sweep.of(method, "relative_error")[row]
-    reached = f"{100 * error:.2g} %" if error > 0 else "no estimate"
+    reached = f"{100 * error:.2g} %" if error > 0 else "no error estimate"
     return f"{sweep.label([n for n in names if n in sweep.columns], row)}: {reached}"
 
 
@@ -62,7 +62,7 @@ def draw_panel(axis, sweep, method, arguments, looks, coloured):
     if sweep.target(method):
         axis.axhline(sweep.target(method), color=style.GREY, linewidth=0.8, zorder=0)
     x, error = min(shown.values(), key=lambda curve: np.min(curve[1] * np.sqrt(curve[0])))
-    ends = np.array([x.min(), x.max()])  # of a guide of slope -1/2, below the lowest curve
+    ends = np.array([x.min(), x.max()])  # ends of a guide of slope -1/2, below the lowest curve
     axis.plot(ends, 0.6 * np.min(error * np.sqrt(x)) / np.sqrt(ends), **GUIDE, zorder=0)
     axis.set(xscale="log", yscale="log", xlabel=X_AXES[arguments.against][1],
              ylabel="relative error")
@@ -70,7 +70,7 @@ def draw_panel(axis, sweep, method, arguments, looks, coloured):
 
 
 def name_missed(axis, sweep, method, late):
-    """Above the panel: its method, and which points missed the target."""
+    """Writes above the panel its method and the points that missed the target."""
     head = f"{sweep_file.METHODS[method]}: " if method else ""
     if sweep.target(method) is None:
         axis.set_title(f"{head}{len(sweep.rows)} points, no target", fontsize=7)
@@ -98,19 +98,21 @@ def entries(sweep, coloured, looks):
 @script.plot()
 @script.option("--against", choices=list(X_AXES), default="cpu")
 @script.option("--colour", choices=list(sweep_file.PARAMETERS),
-               help="axis that colours the curves (default: the outermost of few values)")
+               help="parameter shown by the colour of the curves (default: the outermost one with few values)")
 @sweep_file.SELECT
 def draw(result, arguments):
     sweep = sweep_file.read(result, arguments)
     axes = sweep.varying()
     if arguments.colour and arguments.colour not in axes:
-        sweep.refuse(f"{arguments.colour} does not vary; --colour one of {', '.join(axes) or 'nothing here'}")
+        sweep.refuse(f"{arguments.colour} does not vary; --colour must be one of "
+                     f"{', '.join(axes) or 'none: no parameter varies'}")
     few = [name for name in axes if len(sweep.values(name)) <= MOST_COLOURS]
     coloured = arguments.colour or next(iter(few), None)
     looks = colours(sweep, coloured)
     if len(looks) > MOST_COLOURS:
-        sweep.refuse(f"{len(looks)} values of {coloured}, at most {MOST_COLOURS} are legible; --colour "
-                     "another", (coloured, MOST_COLOURS))
+        sweep.refuse(f"{coloured} has {len(looks)} values, but colours can show at most {MOST_COLOURS}; "
+                     "choose another --colour",
+                     (coloured, MOST_COLOURS))
     across = len(sweep.prefixes)
     named = max(min(len(missed(sweep, method)), MOST_NAMED + 1) for method in sweep.prefixes)
     figure, axes = plt.subplots(1, across, squeeze=False,
@@ -120,7 +122,7 @@ def draw(result, arguments):
     for axis in axes.flat:
         style.whole_decades(axis)
     limits = np.array([(*axis.get_xlim(), *axis.get_ylim()) for axis in axes.flat])
-    for axis in axes.flat:  # the same decades for both methods
+    for axis in axes.flat:  # both methods have the same range of the error axis
         axis.set(xlim=(limits[:, 0].min(), limits[:, 1].max()), ylim=(limits[:, 2].min(), limits[:, 3].max()))
     page.legend_outside(figure, list(entries(sweep, coloured, looks)), sweep.notes())
     return figure

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A field that `flatspeckle design` found: index over a slice with rays before and after, profile beside
-the closed form, pictures beside what was asked for, and how the search went."""
+"""Result of `flatspeckle design`: the index in a slice with rays before and after the design, the index profile
+compared with the closed form, the pictures compared with the requested ones, and the progress of the search."""
 
 from lib import page, script, style
 
@@ -29,12 +29,12 @@ def draw_slice(axis, result):
 def draw_profile(axis, result):
     r, index, spread = (result.values(f"profile/{name}") for name in ("r", "index", "spread"))
     focus, radius = result.attribute("focus"), r[-1]
-    axis.set(xlabel="$r$", ylabel="$n$ over directions")
+    axis.set(xlabel="$r$", ylabel="index $n$, statistics over directions")
     if focus is not None and focus <= radius:
-        f = focus / radius  # a lens whose index is 1 at its rim, of a focus inside or on it
+        f = focus / radius  # the closed form: a lens with index 1 at its rim and a focus inside or on the rim
         error = np.abs(index - np.sqrt(1 + f**2 - (r / radius)**2) / f)
         axis.semilogy(r[:-1], np.maximum(error, 1e-16)[:-1], color=style.COLOURS[0], label="mean")
-        axis.set_ylabel("distance from the closed form")
+        axis.set_ylabel("deviation from the closed form")
     axis.semilogy(r[1:-1], np.maximum(spread[1:-1], 1e-16), color=style.COLOURS[1], label="spread")
     axis.legend(loc="lower center", handlelength=1.2)
 
@@ -49,19 +49,20 @@ def draw_search(axis, result):
                       markersize=2.5, label=f"$s$: {count}")
     if result.has("rms/held_out_half_step"):
         axis.axhline(float(result.values("rms/held_out_half_step")), color="black", linewidth=0.8,
-                     linestyle=":", label="held out")
-    axis.set(xlabel="traces of each ray", ylabel="rays miss by (rms)")
+                     linestyle=":", label="rays not used")
+    axis.set(xlabel="number of traces of each ray", ylabel="RMS miss distance of rays")
     axis.legend(loc="upper right", handlelength=1.2, fontsize=6)
 
 
 def draw_guide(axis, result):
-    """Distance of n from the parabola n^2 = n0^2 (1 - 2 delta q), over the index step, beside n0 sech(alpha rho)."""
+    """Draws the deviation of n from the parabola n^2 = n0^2 (1 - 2 delta q), divided by the index step, and that of
+    n0 sech(alpha rho)."""
     r, index = result.values("profile/r"), result.values("profile/index")
     n0, delta, radius = (result.attribute(name, group="graded_spline") for name in ("index", "delta", "radius"))
     step = n0 * (1 - np.sqrt(1 - 2 * delta))
     parabola = n0 * np.sqrt(1 - 2 * delta * (r / radius)**2)
     alpha = np.arccosh(1 / np.sqrt(1 - 2 * delta)) / radius
-    axis.plot(r, (index - parabola) / step, color=style.COLOURS[0], label="found")
+    axis.plot(r, (index - parabola) / step, color=style.COLOURS[0], label="designed")
     axis.plot(r, (n0 / np.cosh(alpha * r) - parabola) / step, color="black", linestyle=":", label="sech")
     axis.set(xlabel=r"$\rho$", ylabel=r"$(n - n_\mathrm{parabola})/\Delta n$")
     axis.legend(handlelength=1.2)
@@ -75,8 +76,8 @@ def draw_pictures(axes, result):
             axis.imshow(picture / brightest, cmap="gray", vmin=0, vmax=1, interpolation="nearest")
             axis.set(xticks=[], yticks=[])
         bottom.set_xlabel(f"{result.values('picture/psnr_db')[view]:.1f} dB")
-    axes[0][0].set_ylabel("asked")
-    axes[1][0].set_ylabel("shown")
+    axes[0][0].set_ylabel("requested")
+    axes[1][0].set_ylabel("produced")
 
 
 @script.plot()

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Map of the memory-effect range, q L at C_I = 1/2, over optical depth and g of a sweep, one panel
-per albedo, with lines where diffusion theory is wrong by 1, 5 and 20 %. Hatched: the curve stays
-above 1/2 within the tilts. Dashed: thickness in transport mean free paths."""
+"""Map of the memory-effect range (q L at C_I = 1/2) over optical depth and g from a sweep, one panel per albedo.
+Lines mark where diffusion theory is wrong by 1, 5 and 20 %. Hatched: C_I stays above 1/2 at all tilts. Dashed:
+thickness of 1 and 10 transport mean free paths."""
 
 from lib import page, script, style, sweep_file
 
@@ -10,16 +10,16 @@ import numpy as np
 from matplotlib.colors import LogNorm
 
 AXES = ("g", "optical_depth")
-LEAST_VALUES = 5  # along each axis, for lines between them
+LEAST_VALUES = 5  # along each axis, so that contours can be drawn
 WRONG_BY = {0.01: (0, (1, 1)), 0.05: "-", 0.2: (0, (5, 1.5))}  # line styles
 THICKNESSES = (1, 10)  # transport mean free paths
 MAP = plt.get_cmap("cividis")
 
 
 def check(sweep):
-    """Refuses what is no map."""
+    """Raises Unusable for a sweep that cannot be drawn as a map."""
     if sweep.optional("diffusion_range") is None:
-        sweep.refuse("has no diffusion_range, which slabs alone have")
+        sweep.refuse("has no dataset diffusion_range, which only sweeps of slabs have")
     for name in AXES:
         if sweep.is_list or len(sweep.values(name)) < LEAST_VALUES:
             sweep.refuse(f"the map needs a grid with at least {LEAST_VALUES} values of g and of "
@@ -34,7 +34,7 @@ def check(sweep):
 
 
 def table(sweep, rows, values):
-    """Values of a panel's points as [g, optical depth]."""
+    """Returns values of a panel's points as [g, optical depth]."""
     order = np.lexsort((sweep.columns["optical_depth"][rows], sweep.columns["g"][rows]))
     return values[rows[order]].reshape([len(sweep.values(name)) for name in AXES])
 
@@ -49,7 +49,8 @@ def draw_panel(axis, sweep, rows, method, norm):
     if bounds.any():
         axis.contourf(depths, cosines, bounds.astype(float), [0.5, 1], colors="none",
                       hatches=["////"])
-    # The larger ratio: diffusion theory is no less far off where it is too short.
+    # The larger of ratio and inverse ratio: a range that is too short by a factor is as wrong as one that is too
+    # long.
     wrong_by = np.maximum(diffusion / ranges, ranges / diffusion) - 1
     known = np.ma.array(np.log(wrong_by), mask=bounds)
     for level, line in WRONG_BY.items():
@@ -64,14 +65,14 @@ def draw_panel(axis, sweep, rows, method, norm):
 
 
 def entries():
-    """Legend entries (handle, label)."""
+    """Yields legend entries (handle, label)."""
     for level, line in WRONG_BY.items():
         yield (plt.Line2D([], [], color="black", linewidth=0.9, linestyle=line),
                f"diffusion theory wrong by {100 * level:.0f} %")
     yield (plt.Line2D([], [], color=style.COLOURS[1], linewidth=0.7, linestyle="--"),
            f"{' and '.join(map(str, THICKNESSES))} transport mean free paths")
     yield (plt.Rectangle((0, 0), 1, 1, fill=False, hatch="////", edgecolor="0.4"),
-           "bound: no crossing of 1/2")
+           "lower bound: $C_I$ stays above 1/2")
 
 
 @script.plot()

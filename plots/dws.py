@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
-"""Diffusing-wave spectroscopy: field correlation against delay in transmission through slabs, from
-any number of `covariance --delays` results."""
+"""Diffusing-wave spectroscopy: field correlation of light transmitted through slabs against delay, from any number of
+`covariance --delays` results."""
 
 from lib import decay, script, theory
 
 import numpy as np
 
-LABELS = {2: r"$x = 2\,k\sqrt{D\tau}\,L/\ell^*$", 3: r"$x = \sqrt{6}\,k\sqrt{D\tau}\,L/\ell^*$",
-          None: r"$x = \sqrt{2d}\,k\sqrt{D\tau}\,L/\ell^*$"}  # by dimension d
+# By dimension d; None for results of different dimensions.
+LABELS = {2: r"scaled delay $x = 2\,k\sqrt{D\tau}\,L/\ell^*$",
+          3: r"scaled delay $x = \sqrt{6}\,k\sqrt{D\tau}\,L/\ell^*$",
+          None: r"scaled delay $x = \sqrt{2d}\,k\sqrt{D\tau}\,L/\ell^*$"}
 
 
 def scaled_delay(result, delay):
-    """Q L of diffusion theory without absorption: Q l* = sqrt(2 dimension t), t = k^2 D times the delay where `diffusion`
-    is given, else the delay."""
+    """Returns Q L of diffusion theory without absorption: Q l* = sqrt(2 dimension t), with t = k^2 D tau. If
+    `diffusion` is given, it multiplies the delays; otherwise the delays are t."""
     delay = result.scene.get("diffusion", 1) * delay
     transport = result.attribute("transport_mean_free_path")
     return np.sqrt(2 * theory.dimension(result) * delay) * result.attribute("depth") / transport

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Error against run time: every trace of the given result files, with its fitted slope."""
+"""Relative error against processor time: every convergence trace in the given result files, with its fitted slope."""
 
 import pathlib
 
@@ -13,8 +13,8 @@ MOST_LABELS = 7
 
 
 def traces_of(result):
-    """Names of the groups that hold a trace: trace, mc/trace. Those of state/, kept to resume a run,
-    say the same again."""
+    """Returns the names of the groups that contain a trace, such as trace or mc/trace. Groups in state/ are excluded,
+    because they repeat the same traces for resuming a run."""
     names = []
 
     def visit(name, item):
@@ -29,9 +29,9 @@ def traces_of(result):
 
 
 def read_traces(result, name):
-    """(label, processor seconds, errors) of a trace, or of each point of a sweep's, from four times the
-    samples of the first checkpoint on: the error of a handful of batches says little. Rows without an
-    error cannot be shown on log axes."""
+    """Yields (label, processor seconds, errors) of a trace, or of each point's trace for a sweep. Checkpoints with
+    fewer than four times the samples of the first one are omitted, because errors estimated from few batches are
+    unreliable. Rows without an error cannot be shown on logarithmic axes."""
     columns = [result.values(f"{name}/{column}") for column in ("cpu_s", "samples", "relative_error")]
     is_sweep = result.has(f"{name}/of_point")
     point = result.values(f"{name}/of_point") if is_sweep else np.zeros(len(columns[0]))
@@ -44,7 +44,7 @@ def read_traces(result, name):
 
 
 def read_all(results):
-    """(label, processor seconds, errors) of every trace with something to show."""
+    """Returns (label, processor seconds, errors) of every trace that has errors."""
     traces = []
     for result in results:
         stem = pathlib.Path(result.path).stem if len(results) > 1 else ""
@@ -74,7 +74,7 @@ def draw(results):
     ends = np.array([min(t[1].min() for t in traces), max(t[1].max() for t in traces)])
     level = min(np.min(error * np.sqrt(cpu)) for _, cpu, error in traces)
     axis.plot(ends, 0.6 * level / np.sqrt(ends), color=style.GREY, linewidth=0.7,
-              linestyle=(0, (4, 2)), label="guide: slope $-1/2$", zorder=0)
+              linestyle=(0, (4, 2)), label="guide with slope $-1/2$", zorder=0)
     style.whole_decades(axis)
     axis.set(xlabel="processor time (s)", ylabel="relative error")
     axis.legend()

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Map of a number of a sweep of another subcommand (--value, by default the power on the detector) over two of its keys, with contours and
-its largest value (--smallest: smallest) marked; with one key a curve with its errors, and short tangents where the result has the derivative by
-that key (`render --gradient_by KEY`). --value NAME[i] takes the i-th of several numbers, as in
-power_within[0]. --ideal_lens draws where that number is what an ideal lens before the medium would bring to a point there: all light that
-comes unscattered through the stage, exp(-(mu_s + mu_a) length)."""
+"""Map of a result of `sweep --of SUBCOMMAND` over the two keys that vary. --value names the dataset (default: total,
+the power on the detector); NAME[i] takes number i of several at each point, as in power_within[0]. The largest value
+(with --smallest, the smallest) is marked by a star. If only one key varies, a curve with error bars is drawn, with
+short tangents if the result has derivatives with respect to that key (`render --gradient_by KEY`). --ideal_lens draws
+the contour at which the value equals the power that an ideal lens would focus to a point behind the medium: all light
+that crosses the stage unscattered, exp(-(mu_s + mu_a) length) of the beam."""
 
 import math
 
@@ -16,8 +17,8 @@ import numpy as np
 
 
 class Grid:
-    """The keys that vary with their values, one or two, outermost first; holes where a list has no
-    point."""
+    """Grid of the points of a sweep: the one or two keys that vary, outermost first, with their values. Cells without
+    a point are empty."""
 
     def __init__(self, number):
         self.keys = {key: np.unique(column) for key, column in number.columns.items()
@@ -25,28 +26,29 @@ class Grid:
         path = number.result.path
         if len(self.keys) not in (1, 2):
             raise style.Unusable(f"{path}: {number.name} varies with {', '.join(self.keys) or 'nothing'}; "
-                                 "a map has two keys")
+                                 "a map requires two varying keys, a curve one")
         self.shape = tuple(map(len, self.keys.values()))
         self.places = tuple(np.searchsorted(values, number.columns[key])
                             for key, values in self.keys.items())
         if np.prod(self.shape) > 4 * len(self.places[0]):
-            raise style.Unusable(f"{path}: a list of points that make no grid")
+            raise style.Unusable(f"{path}: the listed points do not form a grid")
 
     def of(self, column):
-        """[point] as [key, key]."""
+        """Returns values [point] as [key, key], with nan for missing points."""
         cells = np.full(self.shape, np.nan)
         cells[self.places] = column.reshape(len(self.places[0]))
         return cells
 
 
 def ideal_lens(result):
-    """What comes unscattered through the stage, along its axis."""
+    """Returns the power of the beam that crosses the stage unscattered along z."""
     keys = result.scene
     try:
         box = keys["stage_box"]
         return math.exp(-(keys.get("mu_s", 0) + keys.get("mu_a", 0)) * (box[5] - box[2])) * keys["beam_light"][7]
     except KeyError as missing:
-        raise style.Unusable(f"{result.path}: --ideal_lens is of a beam along z through a box; there is no {missing}")
+        raise style.Unusable(f"{result.path}: --ideal_lens requires a beam along z through a box "
+                             f"(beam_light and stage_box); the scene lacks {missing}")
 
 
 def is_among(lens, values):
@@ -55,10 +57,11 @@ def is_among(lens, values):
 
 def lens_text(lens, values, best):
     if is_among(lens, values):
-        drawn = "dashed: as much as"
+        drawn = "dashed contour: equal to"
     else:
-        drawn = "everywhere more than" if lens < best else "everywhere less than"
-    return f"{drawn} what an ideal lens brings to a point of the light that is not scattered, {lens:.3g}: the star has {best / lens:.3g} of it"
+        drawn = "all values are larger than" if lens < best else "all values are smaller than"
+    return (f"{drawn} the unscattered power that an ideal lens would focus to a point, {lens:.3g}; "
+            f"the value at the star is {best / lens:.3g} times this power")
 
 
 def key_label(result, key):
@@ -66,7 +69,8 @@ def key_label(result, key):
 
 
 def scale_key(axis, side, values):
-    """A logarithm of what was swept in equal ratios; 2 M in place of 2 beside 1e6 in a corner."""
+    """Makes an axis logarithmic if its values have equal ratios. Large numbers get SI prefixes instead of a common
+    power of ten."""
     if style.in_equal_ratios(values):
         axis.set(**{f"{side}scale": "log"})
     elif max(map(abs, getattr(axis, f"get_{side}lim")())) > 1e5:
@@ -74,10 +78,10 @@ def scale_key(axis, side, values):
 
 
 def draw_tangents(axis, place, values, slopes):
-    """As long as a third of the way to the neighbours."""
+    """Draws tangents that extend over a third of the distance to the neighbouring points."""
     before, after = (np.append(place[0], place[:-1]) + 2 * place) / 3, (np.append(place[1:], place[-1]) + 2 * place) / 3
     for at, value, slope, *ends in zip(place, values, slopes, before, after):
-        x = np.linspace(*ends, 9)  # bent by a logarithmic axis
+        x = np.linspace(*ends, 9)  # several points, because a logarithmic axis bends the tangent
         axis.plot(x, value + slope * (x - at), color="black", linewidth=1, zorder=4,
                   label="derivative" if at == place[0] else None)
 
@@ -98,7 +102,7 @@ def draw_curve(axis, number, grid, lens, best):
 
 
 def draw_map(figure, axis, number, grid, lens, best):
-    """Returns the keys at the star, and whether it lies at the edge."""
+    """Draws the map. Returns the values of the keys at the star, and whether the star is at the edge."""
     (down, y), (across, x) = grid.keys.items()
     values = grid.of(number.values())
     mesh = axis.pcolormesh(x, y, values, cmap="cividis", shading="nearest")
@@ -117,25 +121,26 @@ def draw_map(figure, axis, number, grid, lens, best):
 
 
 def say(figure, axis, number, grid, lens, best, star, at_edge, words):
-    """Above the map and in its caption: the star, and what a reader does not see."""
+    """Writes the value at the star above the map, and in the caption also what is not visible in the map."""
     values = grid.of(number.values())
     value, error = values.flat[best], grid.of(number.errors()).flat[best]
     noise = f" $\\pm$ {error:.2g}" if error > 0 else ""
     edge = ["at the edge of the map"] if at_edge else []
     axis.set_title(", ".join([f"star: {value:.4g}{noise}", *edge]), fontsize=7)
     place = ", ".join(f"{key} = {at:.3g}" for key, at in star.items())
-    luck = f" +- {error:.2g}; the {words[0]} of noisy values is too {words[1]}" if error > 0 else ""
+    bias = (f" +- {error:.2g}; the {words[0]} of several noisy values is biased and tends to be too {words[1]}"
+            if error > 0 else "")
     missing = int(np.isnan(values).sum())
-    style.caption(figure, [f"star: {words[0]}, {place}, {value:.4g}{luck}",
-                           *([f"white: {missing} of {values.size} points are missing"] if missing else []),
-                           *(f"it lies {text}: a better one may lie beyond" for text in edge),
+    style.caption(figure, [f"star: {words[0]}, {place}, {value:.4g}{bias}",
+                           *([f"white cells: {missing} of {values.size} points are missing"] if missing else []),
+                           *(f"the star is {text}; a better value may exist beyond it" for text in edge),
                            *([lens_text(lens, values, value)] if lens else [])])
 
 
 @script.plot()
-@script.option("--value", default="total", help="dataset of one number for each point, or NAME[i]")
-@script.option("--smallest", action="store_true", help="mark the smallest value in place of the largest")
-@script.option("--ideal_lens", action="store_true", help="compare with all light that comes unscattered through a box")
+@script.option("--value", default="total", help="dataset with one number for each point, or NAME[i] (default: total)")
+@script.option("--smallest", action="store_true", help="mark the smallest value instead of the largest")
+@script.option("--ideal_lens", action="store_true", help="compare with all light that crosses the box unscattered")
 def draw(result, arguments):
     number = Number(result, arguments.value)
     grid = Grid(number)

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
-"""Amplitude and phase of the total field on the map of `flatspeckle solve --map`, a row per light,
-with the outlines of the disks. Light of angle 0 travels to the right. The highest 0.1 % of the
-amplitudes share one colour."""
+"""Amplitude and phase of the total field on the map of `flatspeckle solve --map`, one row per illumination, with the
+outlines of the disks. Light at angle 0 travels to the right. The highest 0.1 % of the amplitudes share one colour."""
 
 from lib import script, style
 from lib.pictures import edges
@@ -12,11 +11,11 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.ticker import MaxNLocator
 
 MOST_LIGHTS = 4
-DPI = 118  # pictures without white paper make large files
+DPI = 118  # pictures that fill the page make large files
 
 
 def outlines(result, wavelength):
-    """Rims of the disks, to be drawn once per panel; points have none."""
+    """Returns the outlines of the disks, to be drawn in each panel; point scatterers have none."""
     x, z, radius = (result.values(f"placement/{name}") / wavelength for name in ("x", "z", "radius"))
     size = 2 * radius[radius > 0]
     return {"widths": size, "heights": size, "angles": 0 * size,
@@ -36,7 +35,7 @@ def panel(figure, axis, values, extent, disks, label, bar="neither", **look):
 def draw_light(figure, axes, field, extent, disks):
     amplitude = np.abs(field)
     highest = np.quantile(amplitude, 0.999) or 1
-    panel(figure, axes[0], amplitude, extent, disks, "$|u|$", bar="max", cmap="inferno", vmin=0,
+    panel(figure, axes[0], amplitude, extent, disks, "amplitude $|u|$", bar="max", cmap="inferno", vmin=0,
           vmax=highest)
     bar = panel(figure, axes[1], np.angle(field), extent, disks, "phase of $u$ (rad)",
                 cmap="twilight", vmin=-np.pi, vmax=np.pi)
@@ -49,6 +48,7 @@ def draw_light(figure, axes, field, extent, disks):
 
 @script.plot(dpi=DPI)
 def draw(result):
+    result.require("total_field", "solve with --map writes it")
     field = result.dataset("total_field")
     wavelength = field.attrs["wavelength"]
     x, z = (result.values(name) / wavelength for name in ("map_x", "map_z"))
@@ -60,5 +60,5 @@ def draw(result):
     for light in range(lights):
         draw_light(figure, axes[light], field[light], extent, disks)
         if lights > 1:
-            axes[light, 0].set_title(f"light {style.angle(result.values('light_angle')[light])}")
+            axes[light, 0].set_title(f"illumination at {style.angle(result.values('light_angle')[light])}")
     return figure

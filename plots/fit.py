@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A fit: data and fitted curves, what is left of them in standard errors, and the ellipses of pairs of
-parameters (1 and 2 standard errors)."""
+"""Result of `flatspeckle fit`: data and fitted curves, residuals in standard errors, and error ellipses (1 and 2
+standard errors) for pairs of parameters."""
 
 from lib import script, style
 
@@ -13,13 +13,13 @@ NAMES = {"field_correlation": r"$C_E$", "intensity_correlation": r"$C_I$", "inte
 
 
 def abscissa(result, observable):
-    """Abscissa of every datum and its name: a tilt or angle, a time, or, for covariances of fields, a
-    number."""
+    """Returns the abscissa of every datum and its label: a tilt or angle, a time, or, for covariances of fields, the
+    index of the value."""
     angle, is_pair = result.values("datum_angle"), observable == "field_covariance"
     time = result.values("datum_time") if result.has("datum_time") else 0 * angle
     name = "delay or exposure" if result.has("datum_time") else "tilt or angle (rad)"
     return (np.select([is_pair, time > 0], [np.arange(len(angle)), time], angle),
-            "number of the value" if is_pair.any() else name)
+            "index of the value" if is_pair.any() else name)
 
 
 def draw_data(axis, pulls, result):
@@ -38,20 +38,20 @@ def draw_data(axis, pulls, result):
         axis.plot(angle[rows], result.values("model")[rows], **style.line(int(number)))
         pulls.plot(angle[rows], pull[rows], **symbols)
     for place, (name, row) in enumerate(single):
-        axis.text(0.97, 0.97 - 0.08 * place, f"{NAMES[name]} {value[row]:.3g}, {pull[row]:+.1f} errors",
+        axis.text(0.97, 0.97 - 0.08 * place, f"{NAMES[name]} {value[row]:.3g}, residual {pull[row]:+.1f} errors",
                   transform=axis.transAxes, ha="right", va="top", fontsize=7)
-    axis.set_ylabel("measured")
+    axis.set_ylabel("measured value")
     axis.tick_params(labelbottom=False)
     pulls.axhspan(-1, 1, color="0.9")
     most = 1.2 * max(2, np.abs(pull).max())
-    pulls.set(xlabel=name_of_angle, ylabel="pull", ylim=(-most, most),
+    pulls.set(xlabel=name_of_angle, ylabel="residual / error", ylim=(-most, most),
               xscale="log" if result.has("datum_time") else "linear")
 
 
 def draw_pair(axis, result, i, j):
     names, estimate = result.texts("parameter_name"), result.values("estimate")
     values, vectors = np.linalg.eigh(result.values("parameter_covariance")[np.ix_([j, i], [j, i])])
-    for size, line in ((1, "-"), (2, "--")):  # ellipses of so many standard errors
+    for size, line in ((1, "-"), (2, "--")):  # ellipses of 1 and 2 standard errors
         x, y = vectors @ (size * np.sqrt(np.maximum(values, 0))[:, None] * style.circle())
         axis.plot(estimate[j] + x, estimate[i] + y, line, color=style.COLOURS[0])
     axis.plot(estimate[j], estimate[i], "+", color="k")

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""How many independent patterns make the error of each free key a hundredth of its value, over the
-values of the first two keys, from `fit --plan` with `--vary`, or several plans."""
+"""Number of independent speckle patterns required for an error of 1 % of each free parameter, over the values of the
+first two parameters. From a result of `fit --plan` with `--vary`, or from several plans."""
 
 from lib import script, style
 
@@ -9,7 +9,7 @@ import numpy as np
 
 
 def read(result):
-    """Names of the keys, values and patterns [plan][key]."""
+    """Returns the names of the keys, and their values and numbers of patterns, both [plan][key]."""
     names = result.texts("parameter_name")
     if result.has("point"):
         return names, result.values("point_planned"), result.values("point_patterns_to_percent")
@@ -43,7 +43,7 @@ def draw(results):
                                 squeeze=False)
     for number, (axis, name) in enumerate(zip(axes[0], names)):
         draw_map(axis, values[:, 0], second, patterns[:, number])
-        axis.set(title=f"patterns to know {name} to 1 %", xlabel=names[0])
+        axis.set(title=f"patterns required for {name} to 1 %", xlabel=names[0])
     if len(names) > 1:
         axes[0, 0].set_ylabel(names[1])
     return figure

@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""Spectral correlation of speckle: the correlation with the field at another frequency against the
-shift, from any number of `covariance --frequency_shifts` results (first light and view)."""
+"""Spectral correlation of speckle: correlation of the fields at two frequencies against the frequency shift, from any
+number of `covariance --frequency_shifts` results (first illumination and detection direction)."""
 
 from lib import decay, script, theory
 
 import numpy as np
 
-LABELS = {2: r"$L\sqrt{2\,|k_2 - k_1|/\ell^*}$", 3: r"$L\sqrt{3\,|k_2 - k_1|/\ell^*}$",
-          None: r"$L\sqrt{d\,|k_2 - k_1|/\ell^*}$"}  # by dimension d
+# By dimension d; None for results of different dimensions.
+LABELS = {2: r"scaled frequency shift $L\sqrt{2\,|k_2 - k_1|/\ell^*}$",
+          3: r"scaled frequency shift $L\sqrt{3\,|k_2 - k_1|/\ell^*}$",
+          None: r"scaled frequency shift $L\sqrt{d\,|k_2 - k_1|/\ell^*}$"}
 
 
 def wavenumber(result):
@@ -15,7 +17,7 @@ def wavenumber(result):
 
 
 def scaled_shift(result, shift):
-    """|Q| L of diffusion theory without absorption: Q^2 = dimension i (k2 - k1) / l*."""
+    """Returns |Q| L of diffusion theory without absorption, with Q^2 = dimension i (k2 - k1) / l*."""
     per_lag = theory.dimension(result) / result.attribute("transport_mean_free_path")
     return result.attribute("depth") * np.sqrt(per_lag * wavenumber(result) * np.abs(shift))
 

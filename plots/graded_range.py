@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Memory-effect ranges of slabs with a graded index, over the gradient: results of
-`covariance --index_field linear --covariance memory_effect`, any number; without gradient: index_slope 0 0."""
+"""Memory-effect ranges of slabs with a graded index against the gradient, from any number of results of `covariance
+--index_field linear --covariance memory_effect`. For a slab without gradient use index_slope 0 0."""
 
 from lib import script, slab_ranges, style
 
 
 def gradient(result):
-    """n^2 at the far face less that at the near one."""
+    """Returns n^2 at the far face minus n^2 at the near face."""
     front, back = result.attribute("index_front"), result.attribute("index_back")
     if front is None or back is None:
         raise style.Unusable(f"{result.path}: has no index_front; needs --index_field linear")
@@ -15,4 +15,4 @@ def gradient(result):
 
 @script.plot(several=True, needs=slab_ranges.NEEDS)
 def draw(results):
-    return slab_ranges.draw(results, gradient, "change of $n^2$ over the depth")
+    return slab_ranges.draw(results, gradient, "$n^2$ at the far face minus $n^2$ at the near face")

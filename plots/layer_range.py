@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Memory-effect ranges of layered slabs, over how far apart their scatterers lie: results of
-`covariance --layers --covariance memory_effect`, any number. Across: the standard deviation of the
-depth at which extinction happens, over that of an undivided slab."""
+"""Memory-effect ranges of layered slabs against the spread of their scatterers in depth, from any number of results
+of `covariance --layers --covariance memory_effect`. The spread is the standard deviation of the depth, weighted by
+the extinction coefficient and divided by that of a homogeneous slab."""
 
 from lib import script, slab_ranges
 
@@ -9,7 +9,8 @@ import numpy as np
 
 
 def spread(result):
-    """1 of an undivided slab, 0 of one sheet, sqrt(3) of two sheets at the faces."""
+    """Returns the spread of a layered slab: 1 for a homogeneous slab, 0 for one thin sheet, sqrt(3) for two thin
+    sheets at the faces."""
     thickness, depth = result.values("layer_thickness"), result.values("layer_optical_depth")
     top = np.cumsum(thickness) - thickness
     share, middle = depth / depth.sum(), top + thickness / 2
@@ -20,6 +21,6 @@ def spread(result):
 
 @script.plot(several=True, needs={"layer_thickness": "needs --layers", **slab_ranges.NEEDS})
 def draw(results):
-    figure = slab_ranges.draw(results, spread, "spread of the extinction over depth (undivided: 1)")
+    figure = slab_ranges.draw(results, spread, "spread of the extinction in depth (homogeneous slab: 1)")
     figure.axes[0].set_yscale("log")
     return figure

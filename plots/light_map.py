@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Map of `flatspeckle render` with map_cylinder or map_box: the fluence rate, and beside it the fluence
-rate with its standard errors along a line. Of a cylinder: radius and depth, and along the axis in the
-innermost rings; of a box: the plane and the line of cells through the brightest one."""
+"""Map of `flatspeckle render` with map_cylinder or map_box: the fluence rate in a plane, and the fluence rate with
+standard errors along a line. For a cylinder, the map is over radius and depth and the line follows the axis in the
+innermost rings. For a box, the plane and the line contain the brightest cell."""
 
 from lib import pictures, script, style
 
@@ -13,8 +13,8 @@ PLANES = {"x": ("z", "y"), "y": ("z", "x"), "z": ("x", "y")}
 
 
 def slice_of(result, name, normal):
-    """Names of the axes of a plane, its values [up, right], and those of the row that is drawn apart, with
-    their errors and where it is."""
+    """Returns the names of the two axes of a plane, its values [up, right], the values and errors along the line, and
+    a text that gives the position of the line."""
     values, errors = result.measured(f"map/{name}")
     if values.ndim == 2:
         return "depth", "radius", values, values[0], errors[0], "on the axis"
@@ -28,7 +28,7 @@ def slice_of(result, name, normal):
 
 @script.plot(one_run=True)
 @script.option("--quantity", choices=NAMES, default="fluence")
-@script.option("--normal", choices=PLANES, default="y", help="of the plane through a box (default: y)")
+@script.option("--normal", choices=PLANES, default="y", help="normal of the plane through a box (default: y)")
 @pictures.tone_options("log")
 def draw(result, arguments):
     length = pictures.length_name(result)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Memory effect: intensity correlation against tilt, from one sweep (by both methods: with their
-deviation beneath), or from any number of results of `covariance`, `validate` and `sweep` compared in
-one panel."""
+"""Memory effect: intensity correlation against tilt. Draws one sweep (if it contains two methods, with their
+deviation in a panel below), or compares any number of results of `covariance`, `validate` and `sweep` in one
+panel."""
 
 from lib import correlation_panel, covariance_curves, curve_looks, page, script, style, sweep_file, theory
 from lib.correlation_panel import BELIEVED
@@ -10,19 +10,20 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 MOST_ROWS, MOST_COLUMNS, MOST_CURVES = 5, 4, 8
-BENEATH = 0.35  # height of a panel of deviations, of the one above it
-BAND = 4  # standard errors, as everywhere
-STEPS = 300  # of a line
+BENEATH = 0.35  # height of a panel of deviations relative to the panel above it
+BAND = 4  # standard errors, the tolerance used everywhere
+STEPS = 300  # points of a line
 
 
 def arrange(sweep):
-    """Axes of (rows, columns, curves), None where one is not needed; refuses what a page cannot hold
-    legibly."""
+    """Returns the parameters shown by (rows, columns, curves); None for those not needed. Raises Unusable if a page
+    cannot show all points legibly."""
     axes = sweep.varying()
     if sweep.is_list:
         axes = [None, None, "point"] if len(sweep.rows) <= MOST_CURVES else [None, "point", None]
     if len(axes) > 3:
-        sweep.refuse(f"varies {', '.join(axes)}, rows, columns and curves show three", (axes[0], 1))
+        sweep.refuse(f"varies {', '.join(axes)}, but rows, columns and curves can show only three parameters",
+                     (axes[0], 1))
     rows, columns, curves = axes = [None] * (3 - len(axes)) + axes
     limits = {rows: MOST_ROWS, columns: MOST_COLUMNS, curves: MOST_CURVES}
     if rows is None:
@@ -32,13 +33,14 @@ def arrange(sweep):
     if beyond:
         there = ", ".join(f"{count} points" if name == "point" else f"{count} values of {name}"
                           for name, count in counts.items())
-        sweep.refuse(f"{there}; a page holds {MOST_ROWS} x {MOST_COLUMNS} panels of {MOST_CURVES} "
+        sweep.refuse(f"{there}; a page can show {MOST_ROWS} x {MOST_COLUMNS} panels of {MOST_CURVES} "
                      "curves", *((name, min(3, limits[name])) for name in beyond))
     return axes
 
 
 def parts(sweep, name, rows):
-    """[({name: value}, its rows)] over the values of an axis, also those without any row here."""
+    """Returns [({name: value}, its rows)] for all values of a parameter, including values without any of these
+    rows."""
     if name is None:
         return [({}, rows)]
     column = sweep.columns[name][rows]
@@ -46,8 +48,8 @@ def parts(sweep, name, rows):
 
 
 def panels(sweep, rows, columns):
-    """[row][column]: the values that the panel fixes, and its points; a single axis of panels is
-    wrapped."""
+    """Returns [row][column] of (the values common to a panel, the panel's points). If only one parameter
+    distinguishes panels, they are wrapped into several rows."""
     table = [[({**fixed, **fixed_too}, part) for fixed_too, part in parts(sweep, columns, group)]
              for fixed, group in parts(sweep, rows, sweep.rows)]
     if rows is None and len(table[0]) > MOST_COLUMNS:
@@ -58,8 +60,8 @@ def panels(sweep, rows, columns):
 
 
 class Drawing:
-    """Panels of one sweep that share axes and legend; `curves`: the axis that sets the curves of a
-    panel apart, or None."""
+    """Panels of one sweep that share axes and legend. `curves`: the parameter that distinguishes the curves of a
+    panel, or None."""
 
     def __init__(self, sweep, curves, arguments):
         self.sweep, self.curves, self.arguments = sweep, curves, arguments
@@ -70,20 +72,20 @@ class Drawing:
         self.unseen = correlation_panel.Unseen()
 
     def numbered(self, rows):
-        """[(number of its curve, row)]."""
+        """Returns (number of the curve, row) for each row."""
         if self.curves is None:
             return [(0, row) for row in rows]
         columns = self.sweep.columns[self.curves][rows]
         return list(zip(np.searchsorted(self.sweep.values(self.curves), columns), rows))
 
     def panel(self, axis, fixed, rows):
-        """Draws the points `rows`, which have the values `fixed` in common."""
+        """Draws the points `rows`, which share the values `fixed`."""
         correlation_panel.prepare(axis, self.tilt, self.lowest, self.arguments)
         words = [sweep_file.text(name, value) for name, value in fixed.items()] \
             if "point" not in fixed else [self.sweep.label(self.sweep.varying(), rows[0])]
         axis.set_title(", ".join(words), fontsize=7.5, pad=3)
         if len(rows) == 0:
-            axis.text(0.5, 0.5, "no point", ha="center", transform=axis.transAxes, color=style.GREY)
+            axis.text(0.5, 0.5, "no data", ha="center", transform=axis.transAxes, color=style.GREY)
             return
         self.theories(axis, rows)
         for method, field, error in self.data:
@@ -105,7 +107,7 @@ class Drawing:
             axis.plot(1000 * tilt, field**2, **curve_looks.SINGLE_SCATTERING, zorder=0.5)
 
     def deviations(self, axes, panels):
-        """Monte Carlo less the other method, in combined standard errors of C_E."""
+        """Draws Monte Carlo minus the other method, in combined standard errors of C_E."""
         deviation = self.sweep.table("deviation")
         limit = 1.15 * max(np.abs(deviation[self.sweep.rows]).max(), 1.5 * BAND)
         shown = self.tilt > 0 if self.arguments.log else np.ones(len(self.tilt), bool)
@@ -115,12 +117,12 @@ class Drawing:
             for number, row in self.numbered(rows):
                 look = {**curve_looks.curve_look(number, None), "markersize": 2.2}
                 axis.plot(self.tilt[shown], deviation[row][shown], linestyle="none", **look)
-            axis.set(ylim=(-limit, limit), xlabel="tilt (mrad)", ylabel="deviation")
+            axis.set(ylim=(-limit, limit), xlabel="tilt (mrad)", ylabel="deviation / error")
             if limit < 3 * BAND:
                 axis.set_yticks([-BAND, 0, BAND])
 
     def entries(self):
-        """Legend entries (handle, label)."""
+        """Yields legend entries (handle, label)."""
         sweep, has = self.sweep, self.sweep.result.has
         for number, value in enumerate(sweep.values(self.curves) if self.curves else []):
             row = sweep.rows[sweep.columns[self.curves][sweep.rows] == value][0]
@@ -130,7 +132,7 @@ class Drawing:
         if has("diffusion_theory"):
             yield plt.Line2D([], [], color="black", linewidth=0.7), "lines: diffusion theory"
         if has("single_scattering"):
-            yield plt.Line2D([], [], **curve_looks.SINGLE_SCATTERING), "single scattering alone"
+            yield plt.Line2D([], [], **curve_looks.SINGLE_SCATTERING), "single scattering only"
         if has("deviation"):
             yield plt.Rectangle((0, 0), 1, 1, color="0.9"), \
                 f"deviation of $C_E$ in standard errors, $\\pm${BAND}"
@@ -159,18 +161,18 @@ def draw_sweep(sweep, arguments):
 
 
 @script.plot(several=True)
-@script.option("--log", action="store_true", help="logarithmic tilts; those up to 0 are left out")
-@script.option("--log_correlation", action="store_true", help="logarithmic C_I; left out where C_E, a "
-               f"magnitude, is below {BELIEVED} standard errors")
+@script.option("--log", action="store_true", help="logarithmic tilt axis; tilts up to 0 are omitted")
+@script.option("--log_correlation", action="store_true", help="logarithmic C_I axis; points whose C_E is "
+               f"below {BELIEVED} standard errors are omitted")
 @sweep_file.SELECT
 def draw(results, arguments):
     for result in results:
         for name in filter(result.has, ("field_correlation", "mc/field_correlation")):
             if any(scales and scales[0].name == "/shift" for scales in list(result.dataset(name).dims)[1:]):
-                raise style.Unusable(f"{result.path}: a map over tilts and shifts; plots/tilt_shift.py draws it")
+                raise style.Unusable(f"{result.path}: is a map over tilts and shifts; draw it with plots/tilt_shift.py")
     sweeps = list(filter(covariance_curves.is_sweep, results))
     if arguments.select and not sweeps:
-        raise style.Unusable(f"{results[0].path}: not a sweep, --select has nothing to select")
+        raise style.Unusable(f"{results[0].path}: is not a sweep, so --select cannot be used")
     if len(results) > 1 or not sweeps:
         return covariance_curves.draw(results, arguments)
     return draw_sweep(sweep_file.read(results[0], arguments), arguments)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Range of the memory effect, q L at C_I = 1/2, against one axis of a sweep; a second axis as
-curves, a third as panels. A list of points that differ in several parameters at once: a row for
-each. Arrows: bounds, where a curve does not cross 1/2 within the tilts."""
+"""Range of the memory effect (q L at C_I = 1/2) against one parameter of a sweep. A second parameter distinguishes
+curves, a third one panels. For a list of points that differ in several parameters at once, each point has a row.
+Arrows mark bounds, where C_I does not cross 1/2 within the tilts."""
 
 from lib import curve_looks, page, range_axes, range_list, script, style, sweep_file, theory
 
@@ -10,14 +10,14 @@ import numpy as np
 from matplotlib.transforms import offset_copy
 
 MOST_CURVES, MOST_PANELS, ACROSS = 8, 12, 3
-ASIDE = {None: 0, "mc": -2.5, "wave": 2.5, "transport": 2.5}  # points of print
+ASIDE = {None: 0, "mc": -2.5, "wave": 2.5, "transport": 2.5}  # sideways shift of symbols, in points (1/72 inch)
 DASH = {"marker": "_", "markersize": 9, "markeredgewidth": 0.7}  # diffusion theory of one point
-STEPS = 300  # of a line
+STEPS = 300  # points of a line
 
 
 def carrier(sweep, name):
-    """The axis of the sweep that a parameter varies along: itself, or radius where g depends on
-    it."""
+    """Returns the parameter of the sweep along which `name` varies: `name` itself, or radius if g depends on the
+    radius."""
     if name in sweep.axes:
         return name
     column = sweep.column(name)[sweep.rows]
@@ -30,18 +30,18 @@ def carrier(sweep, name):
 
 
 def arrange(sweep, arguments):
-    """Axes of (horizontal axis, curves, panels); None where one is not needed."""
+    """Returns the parameters of (horizontal axis, curves, panels); None for those not needed."""
     axes = sweep.varying()
     if not axes:
-        sweep.refuse("one point is no curve")
+        sweep.refuse("has a single point; a curve requires several")
     against = arguments.against or ([name for name in axes if name != arguments.curves] or axes)[-1]
     if len(np.unique(sweep.column(against)[sweep.rows])) < 2:
-        sweep.refuse(f"{against} does not vary; --against one of {', '.join(axes)}")
+        sweep.refuse(f"{against} does not vary; --against must be one of {', '.join(axes)}")
     others = [name for name in axes if name not in (against, carrier(sweep, against))]
     if arguments.curves:
         if arguments.curves not in others:
-            sweep.refuse(f"against {against} --curves should be one of "
-                         f"{', '.join(others) or 'nothing, as nothing else varies'}")
+            sweep.refuse(f"with --against {against}, --curves must be one of "
+                         f"{', '.join(others) or 'none: no other parameter varies'}")
         others = [name for name in others if name != arguments.curves] + [arguments.curves]
     if len(others) > 2:
         sweep.refuse_others(others, against)
@@ -49,8 +49,8 @@ def arrange(sweep, arguments):
 
 
 def draw_bounds(axis, sweep, method, rows, x, numbers):
-    """Arrows away from points that are bounds. Those of one place stand side by side, because all
-    curves that stay above 1/2 share their bound."""
+    """Draws bounds as arrows. Arrows at the same position are drawn side by side, because all curves that stay above
+    1/2 have the same bound."""
     value, _, censored = sweep.ranges(method)
     bounds = rows[censored[rows] > 0]
     for position in np.unique(x[bounds]):
@@ -64,12 +64,13 @@ def draw_bounds(axis, sweep, method, rows, x, numbers):
 
 
 def moved(axis, method, points):
-    """Places moved sideways by so many points of print; the methods stand beside each other."""
+    """Returns a transform that shifts positions sideways by `points` (1/72 inch), so that the methods are drawn side
+    by side."""
     return offset_copy(axis.transData, axis.figure, x=points + ASIDE[method], units="points")
 
 
 def draw_curve(axis, sweep, method, rows, x, number):
-    """The points of one curve that are no bounds."""
+    """Draws the points of one curve that are not bounds."""
     value, error, censored = (column[rows] for column in sweep.ranges(method))
     known, place = censored == 0, moved(axis, method, 0)
     axis.errorbar(x[rows][known], value[known], error[known], linestyle="none", elinewidth=0.7,
@@ -79,14 +80,15 @@ def draw_curve(axis, sweep, method, rows, x, number):
 
 
 def entries(sweep, curves, panels, single):
-    """Legend entries (handle, label)."""
+    """Yields legend entries (handle, label)."""
     theory = range_axes.diffusion_in_view(sweep, single)[1]
     for number, value in enumerate(sweep.values(curves) if curves else []):
         yield curve_looks.curve_handle(sweep, number, theory), sweep_file.text(curves, value)
     yield from curve_looks.method_entries(sweep)
     if theory:
         constants = [sweep.columns[name][sweep.rows] for name in (curves, panels) if name]
-        lone = constants and 1 in np.unique(constants, axis=1, return_counts=True)[1]  # of a curve
+        # Theory of a curve with a single point is drawn as a dash.
+        lone = constants and 1 in np.unique(constants, axis=1, return_counts=True)[1]
         marks = "lines and dashes" if lone else "lines"
         yield plt.Line2D([], [], color="black", linewidth=0.7), f"{marks}: diffusion theory"
     yield from curve_looks.range_entries(sweep)
@@ -95,8 +97,8 @@ def entries(sweep, curves, panels, single):
 
 
 def diffusion_line(axis, sweep, part, against, x):
-    """(x, range) of diffusion theory between the points too, where the axis is a parameter of it and
-    the others of it are the same at all of these points."""
+    """Returns (x, range) of diffusion theory, also between the points if x is one of its parameters and all others
+    are the same at these points."""
     medium = {name: sweep.columns[name][part] for name in ("optical_depth", "g", "albedo")}
     stored = x[part], sweep.optional("diffusion_range")[part]
     space = theory.dimension(sweep.result)
@@ -139,8 +141,8 @@ def draw_panel(axis, sweep, rows, against, curves, single):
 
 @script.plot()
 @script.option("--against", choices=list(range_axes.LABELS),
-               help="horizontal axis (default: the innermost that varies)")
-@script.option("--curves", choices=list(range_axes.LABELS), help="axis that sets the curves apart")
+               help="parameter of the horizontal axis (default: the innermost one that varies)")
+@script.option("--curves", choices=list(range_axes.LABELS), help="parameter that distinguishes curves")
 @sweep_file.SELECT
 def draw(result, arguments):
     sweep = sweep_file.read(result, arguments)
@@ -150,7 +152,7 @@ def draw(result, arguments):
     against, curves, panels = arrange(sweep, arguments)
     for name, most, what in ((curves, MOST_CURVES, "curves"), (panels, MOST_PANELS, "panels")):
         if name and len(sweep.values(name)) > most:
-            sweep.refuse(f"{len(sweep.values(name))} {what}, at most {most} are legible", (name, 3))
+            sweep.refuse(f"{len(sweep.values(name))} {what} needed, but at most {most} are legible", (name, 3))
     parts = sweep.groups(panels, sweep.rows)
     across = 2 if len(parts) == 4 else min(ACROSS, len(parts))
     figure, axes = page.page_of_panels(-(-len(parts) // across), across, len(parts))

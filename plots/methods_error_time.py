@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Error against run time of the exact ensemble and of Monte Carlo over sizes and optical depths of boxes,
-from the shipped table data/methods_error_time.csv; prints the table of times to 2 % and how their ratio
-grows."""
+"""Error against processor time of the exact ensemble and of Monte Carlo, for boxes of several sizes and optical
+depths, from a table such as data/methods_error_time.csv. Prints the times to an error of 2 %, and how their ratio
+scales with size and optical depth."""
 
 import functools
 
@@ -17,7 +17,7 @@ METHODS = {"mc": ("Monte Carlo", 1.4), "wave": ("exact ensemble", 0.7)}  # names
 
 
 def boxes(rows):
-    """[(depth, optical depth, {method: its runs, each the rows of one seed})], in rising order."""
+    """Yields (depth, optical depth, {method: its runs, each the rows of one seed}) in ascending order."""
     for depth, optical_depth in np.unique(rows[["depth", "optical_depth"]]):
         box = rows[(rows["depth"] == depth) & (rows["optical_depth"] == optical_depth)]
         yield depth, optical_depth, {
@@ -26,8 +26,9 @@ def boxes(rows):
 
 
 def time_to_target(runs):
-    """Median over the runs of the set-up and the time by slope -1/2 through the points around the
-    target and below it; whether that is beyond the end of any."""
+    """Returns the time to the target error, and whether it is extrapolated for any run. The time is the set-up time
+    plus the time on a line of slope -1/2 fitted to the points near or below the target; the median over the runs is
+    returned."""
     times = []
     for run in runs:
         error = run["relative_error"]
@@ -37,7 +38,7 @@ def time_to_target(runs):
 
 
 def print_table(rows):
-    """Times, ratios, and the fit log ratio = a + p log size + q log optical depth."""
+    """Prints times, ratios, and the fit log ratio = a + p log size + q log optical depth."""
     print("   box      OD  exact to 2 %  Monte Carlo    ratio   (* extrapolated)")
     found = []
     for depth, optical_depth, methods in boxes(rows):

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""How a search of `optimise` went: what was found, evaluation by evaluation, and where. Filled: by the random numbers of the search;
-open: by others. The star is the best place, with its value by random numbers of its own."""
+"""Progress of a search by `optimise`: value of the objective against the number of the evaluation, and against each
+key that varies. Filled symbols use the random numbers of the search, open ones others. The star is the best point,
+with a value from independent random numbers."""
 
 from lib import script, style
 from lib.labels import with_unit
@@ -36,12 +37,12 @@ def draw(result):
             if np.issubdtype(result.dataset(f"search/{key}").dtype, np.number)]
     figure, axes = plt.subplots(1, 1 + len(keys), figsize=(style.COLUMN * min(1 + len(keys), 4) * 0.85, 2.5), squeeze=False)
     draw_values(axes[0, 0], np.arange(len(result.values("search/value"))), result)
-    axes[0, 0].set_xlabel("evaluation")
-    axes[0, 0].legend(title="random numbers of")
+    axes[0, 0].set_xlabel("number of the evaluation")
+    axes[0, 0].legend(title="random numbers for")
     for axis, key in zip(axes[0, 1:], keys):
         draw_key(axis, result, key)
     (lead, doubt), (value, error) = (result.measured(f"best/{name}") for name in ("lead", "value"))
-    apart = "" if abs(lead) >= 2 * doubt else " (not told apart)"
-    style.caption(figure, [f"best {value:.4g} +- {error:.2g}, better than the runner-up with a confidence of "
+    apart = "" if abs(lead) >= 2 * doubt else " (the difference is not significant)"
+    style.caption(figure, [f"best {value:.4g} +- {error:.2g}, better than the second-best point with a confidence of "
                            f"{result.values('best/confidence'):.3g}{apart}"])
     return figure

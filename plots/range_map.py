@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
-"""Map of the memory-effect range, q L at C_I = 1/2, over (g, albedo) of a sweep, one panel per
-optical depth (and method). Hatched: bounds, where a curve does not cross 1/2 within the tilts.
-White: points that are not finished."""
+"""Map of the memory-effect range (q L at C_I = 1/2) over g and albedo from a sweep, one panel per optical depth and
+method. Hatched: bounds, where C_I does not cross 1/2 within the tilts. White: points that are not finished."""
 
 from lib import curve_looks, page, script, style, sweep_file
 
@@ -10,22 +9,22 @@ import numpy as np
 from matplotlib.colors import LogNorm
 
 MOST_PANELS, MOST_CELLS = 12, 16
-LEAST_CONTOURED = 6  # cells across and down: contours of fewer are all corners
-MAP = plt.get_cmap("cividis")  # even steps of lightness, so that it survives in grey
-STEPS = (1, 1.5, 2, 3, 5, 7)  # marks of the scale, in every decade, and contours
-FEW_STEPS, WIDE = (1, 2, 5), 20  # contours where the ranges span more than this factor
+LEAST_CONTOURED = 6  # cells in each direction; contours over fewer cells are too coarse
+MAP = plt.get_cmap("cividis")  # lightness increases uniformly, so that the map is readable in grey
+STEPS = (1, 1.5, 2, 3, 5, 7)  # ticks of the colour scale in every decade, and levels of contours
+FEW_STEPS, WIDE = (1, 2, 5), 20  # levels if the ranges span more than the factor WIDE
 SIGNS = {0: "", 1: ">", 2: "<"}
 DAGGER = "\u2020"
 
 
 def check(sweep):
-    """The axis of the panels, or None; refuses what is no map."""
+    """Returns the parameter that distinguishes panels, or None. Raises Unusable for a sweep that is not a map."""
     for name in ("g", "albedo"):
         if sweep.is_list or name not in sweep.varying():
             sweep.refuse("a map needs a grid with at least two values of g and of albedo; "
-                         "memory_range.py draws ranges of other sweeps")
+                         "draw other sweeps with memory_range.py")
         if len(sweep.values(name)) > MOST_CELLS:
-            sweep.refuse(f"{len(sweep.values(name))} values of {name}, at most {MOST_CELLS} are legible",
+            sweep.refuse(f"{name} has {len(sweep.values(name))} values, but at most {MOST_CELLS} are legible",
                          (name, MOST_CELLS))
     others = [name for name in sweep.varying() if name not in ("g", "albedo")]
     panels = others[-1] if others else None
@@ -36,7 +35,7 @@ def check(sweep):
 
 
 def table(sweep, rows, values):
-    """Values of a panel's points as [albedo, g], albedo rising; masked where there is no point."""
+    """Returns values of a panel's points as [albedo, g], in ascending order, masked where there is no point."""
     axes = [sweep.values(name) for name in ("albedo", "g")]
     cells = np.ma.masked_all([len(axis) for axis in axes], values.dtype)
     cells[tuple(np.searchsorted(axis, sweep.columns[name][rows])
@@ -45,7 +44,8 @@ def table(sweep, rows, values):
 
 
 def number(value):
-    """Three digits, the same decimals for all of a magnitude."""
+    """Returns a number as text with three significant digits; numbers of the same magnitude have the same
+    decimals."""
     return f"{value:.{max(0, 2 - int(np.log10(max(value, 1))))}f}"
 
 
@@ -60,7 +60,7 @@ def draw_numbers(axis, values, censored, few, norm):
 
 
 def contour_levels(sweep, norm, holes):
-    """Levels of the contours; none of a map of few cells or with holes."""
+    """Returns the levels of the contours; none for a map with few cells or with missing points."""
     if holes or min(len(sweep.values(name)) for name in ("g", "albedo")) < LEAST_CONTOURED:
         return []
     steps = FEW_STEPS if norm.vmax > WIDE * norm.vmin else STEPS
@@ -69,7 +69,8 @@ def contour_levels(sweep, norm, holes):
 
 
 def draw_contours(axis, values, censored, levels):
-    """Between the centres of the cells, whose steps need not be equal; none beyond bounds."""
+    """Draws contours, interpolated between the centres of cells, whose steps need not be equal. Cells with bounds are
+    excluded."""
     logarithm = np.ma.array(np.ma.log(values), mask=(censored > 0).filled(True))
     crossed = [np.log(level) for level in levels
                if logarithm.min() < np.log(level) < logarithm.max()]
@@ -105,25 +106,25 @@ def colour_bar(figure, axes, image, levels):
 
 
 def worst_error(sweep):
-    """Largest relative error of a range that is no bound, in words."""
+    """Returns a text with the largest relative error of all ranges that are not bounds."""
     errors = []
     for method in sweep.prefixes:
         value, error, censored = (column[sweep.rows] for column in sweep.ranges(method))
         errors += list((error / value)[censored == 0])
     kind = "errors" if sweep.result.attribute("errors") else "standard errors"
-    return f"{kind} up to {100 * max(errors):.2g} %" if errors else "bounds alone"
+    return f"{kind} up to {100 * max(errors):.2g} %" if errors else "all ranges are bounds"
 
 
 def entries(sweep, holes):
-    """Legend entries (handle, label)."""
+    """Yields legend entries (handle, label)."""
     if sweep.has_bounds():
         yield (plt.Rectangle((0, 0), 1, 1, fill=False, hatch="////", edgecolor="0.4"),
-               "bound: no crossing of 1/2 within the tilts")
+               "bound: $C_I$ does not cross 1/2 within the tilts")
     if sweep.has_few_steps():
         yield (plt.Line2D([], [], linestyle="none", marker=r"$\dagger$", color="black"),
                curve_looks.FEW_STEPS)
     if holes:
-        yield plt.Rectangle((0, 0), 1, 1, fill=False, edgecolor="0.4"), "no point"
+        yield plt.Rectangle((0, 0), 1, 1, fill=False, edgecolor="0.4"), "no data"
 
 
 @script.plot()
@@ -137,7 +138,7 @@ def draw(result, arguments):
     figure, axes = page.page_of_panels(-(-len(shown) // across), across, len(shown))
     ranges = np.concatenate([sweep.of(method, "memory_effect_range")[rows]
                              for method, _, rows in shown])
-    spread = 1 if ranges.max() > 1.1 * ranges.min() else 1.2  # for a scale with room for marks
+    spread = 1 if ranges.max() > 1.1 * ranges.min() else 1.2  # widens the colour scale so that it has room for ticks
     norm = LogNorm(ranges.min() / spread, ranges.max() * spread)
     cells = len(sweep.values("g")) * len(sweep.values("albedo"))
     holes = any(len(rows) < cells for _, _, rows in shown)

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
-"""Ratio of the memory-effect ranges of two sweeps over optical depth and g, in space over in the
-plane say: FIRST over SECOND against optical depth, a curve for each g. Points that are bounds in
-either are left out."""
+"""Ratio of the memory-effect ranges of two sweeps over optical depth and g, for example 3D over 2D. Draws FIRST /
+SECOND against optical depth, with a curve for each g. Points that are bounds in either sweep are omitted."""
 
 from lib import page, script, style, sweep_file
 
@@ -17,7 +16,7 @@ def name_of(sweep):
 
 
 def ranges(sweep):
-    """{(optical depth, g): (range, error)} of a sweep's points that are no bounds."""
+    """Returns {(optical depth, g): (range, error)} for those points of a sweep that are not bounds."""
     for name in AXES:
         sweep.column(name)
     sweep.refuse_others([name for name in sweep.varying() if name not in AXES], "optical_depth and g")
@@ -28,7 +27,7 @@ def ranges(sweep):
 
 
 def curves(first, second):
-    """[(g, optical depths, ratios, errors)] of the points that both have."""
+    """Returns [(g, optical depths, ratios, errors)] for the points that both sweeps contain."""
     common = sorted(set(first) & set(second))
     for g in sorted({g for _, g in common}):
         depths = np.array([depth for depth, of_g in common if of_g == g])
@@ -41,13 +40,13 @@ def curves(first, second):
 @sweep_file.SELECT
 def draw(results, arguments):
     if len(results) != 2:
-        raise style.Unusable("takes two results, FIRST.h5 SECOND.h5")
+        raise style.Unusable("requires two results, FIRST.h5 SECOND.h5")
     sweeps = [sweep_file.read(result, arguments) for result in results]
     drawn = list(curves(*map(ranges, sweeps)))
     if not drawn:
         raise style.Unusable(f"{sweeps[0].path} and {sweeps[1].path} have no point in common")
     if len(drawn) > MOST_CURVES:
-        sweeps[0].refuse(f"{len(drawn)} values of g, at most {MOST_CURVES} are legible",
+        sweeps[0].refuse(f"g has {len(drawn)} values, but at most {MOST_CURVES} curves are legible",
                          ("g", MOST_CURVES))
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.5))
     axis.axhline(1, color=style.GREY, linewidth=0.5)
@@ -59,6 +58,6 @@ def draw(results, arguments):
     axis.set_xscale("log")
     style.few_decades(axis.xaxis)
     axis.set(xlabel="optical depth",
-             ylabel=f"range at $C_I = 1/2$: {' over '.join(map(name_of, sweeps))}")
+             ylabel=f"ratio of ranges at $C_I = 1/2$: {' / '.join(map(name_of, sweeps))}")
     page.legend_outside(figure, entries, sweeps[0].notes())
     return figure

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Rays or curves of `flatspeckle trace` (with path_points) over the index map; of rays with different
-optical paths also how these are spread over the angles or heights at which the rays start; where
-some end on a stop surface, only of those."""
+"""Rays or connecting curves of `flatspeckle trace` (with path_points) over the index map. If the optical paths of the
+rays differ, a second panel shows them against the angle or height at which the rays start. If some rays end on a stop
+surface, the second panel shows only these."""
 
 from lib import script, style
 
@@ -45,12 +45,12 @@ def draw_paths(axis, result, up):
 
 
 def start(result, up):
-    """What tells the rays apart at their start: height, or else angle; of rays that fill a disk or a
-    cone, from the z axis. With its label."""
+    """Returns the quantity that distinguishes rays at their start, and its label: the height, or the angle if all
+    start at one point. For rays that fill a disk or a cone, these are measured from the z axis."""
     x, y, dx, dy, dz = (result.values(f"start/{name}") for name in ("x", "y", "dx", "dy", "dz"))
     if max(np.ptp(x), np.ptp(y)) > 0:
         if min(np.ptp(x), np.ptp(y)) > SAME * max(np.ptp(x), np.ptp(y)):
-            return np.hypot(x, y), "distance from $z$ axis at start"
+            return np.hypot(x, y), "distance from the $z$ axis\nat the start"
         return (x if up == "x" else y), f"${up}$ at the start"
     if min(np.ptp(dx), np.ptp(dy)) > SAME:
         return np.arctan2(np.hypot(dx, dy), dz), "angle to $z$ at the start (rad)"

@@ -1,26 +1,27 @@
 #!/usr/bin/env python3
-"""Image from a reflection matrix: the coherent sum over wavelengths and angles of the far fields of
-`solve --wavelengths`, each turned back by its phase to every point; the smallest disks are circled."""
+"""Image from a reflection matrix: the far fields of `solve --wavelengths` are summed coherently over wavelengths and
+angles, after removing from each the phase of the path through the image point. The smallest disks are circled."""
 
 from lib import script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-STEP = 0.3  # pixels, of the shortest wavelength
-ROWS = 4000  # pixels at a time
+STEP = 0.3  # pixel size, in units of the shortest wavelength
+ROWS = 4000  # number of pixels computed at a time
 FLOOR = -30  # dB
 
 
 def phases(points, k, angles, index):
-    """exp(i k w.r) of plane waves from outside, refracted at z = 0: [point][angle]."""
+    """Returns exp(i k w.r), [point][angle], of plane waves incident from outside and refracted at z = 0."""
     across = k * np.sin(angles)
     deep = np.sign(np.cos(angles)) * np.sqrt((k * index)**2 - across**2)
     return np.exp(1j * (np.outer(points[:, 0], across) + np.outer(points[:, 1], deep)))
 
 
 def image(result, points, index):
-    """|sum over wavelengths, lights and views of A exp(-i (k_i - k_v).r)|^2 at points."""
+    """Returns |sum of A exp(-i (k_i - k_v).r)|^2 at the points r. The sum is over wavelengths, illuminations i and
+    detection directions v."""
     field, wavelengths = result.values("far_field"), result.values("wavelength")
     lights, views = result.values("light_angle"), result.values("view_angle")
     total = np.zeros(len(points), complex)
@@ -39,7 +40,8 @@ def image(result, points, index):
                help="mean index of the medium, relative to its surroundings (default: 1)")
 def draw(result, arguments):
     if result.dataset("far_field").ndim != 3:
-        raise style.Unusable(f"{result.path}: far_field is of one wavelength; needs --wavelengths")
+        raise style.Unusable(f"{result.path}: far_field is of a single wavelength; "
+                             "requires a result of solve --wavelengths")
     x, z, radius = (result.values(f"placement/{name}") for name in ("x", "z", "radius"))
     step = STEP * result.values("wavelength").min()
     across = np.arange(x.min(), x.max() + step, step)

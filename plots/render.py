@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Picture of `flatspeckle render` with tone mapping, and its relative standard error beside it; of
-several results or sensors a row each, with one scale where they measure the same. The brightest
-0.1 % of the pixels share one colour."""
+"""Picture of `flatspeckle render` with tone mapping, and its relative standard error. Several results or sensors have
+a row each; those that measure the same quantity share one colour scale. Sensors without a picture, such as rings, are
+omitted. The brightest 0.1 % of the pixels share one colour."""
 
 from lib import pictures, script, style
 
@@ -10,12 +10,12 @@ import numpy as np
 from matplotlib.colors import LogNorm, PowerNorm
 from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
-DPI = 150  # pictures without white paper make large files
-MOST = 1.0  # of relative errors
+DPI = 150  # pictures that fill the page make large files
+MOST = 1.0  # largest relative error on the colour scale
 
 
 def relative_error(result):
-    """Masked where there is no light."""
+    """Returns the relative error of each pixel, masked where there is no light."""
     value, error = (np.ma.masked_where(result.values("image") <= 0, values)
                     for values in result.measured("image"))
     return error / value
@@ -34,7 +34,7 @@ def draw_image(figure, axis, result, norm):
                 cmap="inferno", norm=norm)
     if not isinstance(norm, LogNorm):
         ticks = MaxNLocator(4).tick_values(0, norm.vmax)[:-1]
-        if isinstance(norm, PowerNorm):  # those too close on a scale of roots are left out
+        if isinstance(norm, PowerNorm):  # ticks that would overlap on a square-root scale are omitted
             ticks = [0.0]
             for tick in MaxNLocator(8).tick_values(0, norm.vmax):
                 if tick <= norm.vmax and norm(tick) - norm(ticks[-1]) > 0.12:
@@ -45,11 +45,11 @@ def draw_image(figure, axis, result, norm):
 
 
 def say_what_is_no_error(axis, result, error):
-    """Hatches show through where the picture is masked; pixels of rare strong paths, and those beside them,
-    have bounds."""
+    """Writes above the panel which pixels have no error estimate (hatched, because they have no light) and which have
+    only upper bounds, because they or their neighbours depend on few high-weight paths."""
     notes = []
     if result.has("image_rare") and np.any(result.values("image_rare")):
-        notes.append("blocks: upper bounds by rare paths")
+        notes.append("blocks: upper bounds (few high-weight paths)")
     if np.ma.is_masked(error):
         axis.patch.set(hatch="xxxx", facecolor="white", edgecolor="0.6")
         notes.append("hatched: no light yet")
@@ -67,19 +67,20 @@ def draw_error(figure, axis, result, norm):
 @script.plot(several=True, one_run=True, dpi=DPI)
 @pictures.tone_options()
 def draw(results, arguments):
-    names, results = zip(*pictures.sensors(results))
+    shown = [(label, result) for label, result in pictures.sensors(results) if pictures.is_picture(result)]
     for result in results:
-        if result.values("image").size == 1:
-            raise style.Unusable(f"{result.path}: is a single pixel, not a picture")
+        if not any(result.file == drawn.file for _, drawn in shown):
+            raise style.Unusable(f"{result.path}: has no picture; requires render with rows and columns of pixels")
+    names, results = zip(*shown)
     if not any(np.any(result.values("image") > 0) for result in results):
-        raise style.Unusable(f"{results[0].path}: no pixel has any light")
+        raise style.Unusable(f"{results[0].path}: all pixels are dark")
     height = np.clip(pictures.height_over_width(results[0]), 0.2, 2) * 0.36 * style.PAGE + 0.4
     figure, axes = plt.subplots(len(results), 2, squeeze=False,
                                 figsize=(style.PAGE, len(results) * height))
-    # The scale of errors begins at the decade of the best pixels of any result.
+    # The colour scale of errors begins at the power of ten below the smallest errors in all results.
     best = min(np.quantile(relative_error(result).compressed(), 0.01) for result in results)
     errors = LogNorm(min(10 ** np.floor(np.log10(best)), MOST / 10), MOST, clip=True)
-    quantities = [pictures.quantity(result) for result in results]  # one scale for all of each
+    quantities = [pictures.quantity(result) for result in results]  # all results with the same quantity share a scale
     norms = {name: pictures.tone([result.values("image") for result, own in zip(results, quantities)
                                   if own == name], arguments.tone, arguments.decades)
              for name in set(quantities)}
@@ -92,5 +93,6 @@ def draw(results, arguments):
         if len(results) > 1:
             left.set_title(label, loc="left")
     if any(result.has("image_rare") for result in results):
-        style.caption(figure, ["errors of pixels that few strong paths make, and of their neighbours, are upper bounds (image_rare)"])
+        style.caption(figure, ["errors of pixels that depend on few high-weight paths, and of their neighbours, "
+                               "are upper bounds (image_rare)"])
     return figure

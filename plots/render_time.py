@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Film strip of `flatspeckle render` with path_bins, each frame the light of a share of the optical
-path, all in one scale; beneath it the pulse with its standard errors and the frames' shares, or
-the pulse alone of a single pixel or of rings. Apart at the sides: what is shorter and longer than
-all bins."""
+"""Time-resolved picture of `flatspeckle render` with path_bins: a film strip of frames, each for an interval of
+optical path, all with one colour scale. The panel below shows the pulse with standard errors and the intervals of the
+frames; for a single pixel or rings, only the pulse is drawn. Separate points at the sides show light with shorter or
+longer optical paths than all bins."""
 
 from lib import pictures, script, style
 
@@ -10,11 +10,11 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 PICOSECOND = 1e-12
-PULSE_DECADES = 6  # below the peak; what is fainter is noise
+PULSE_DECADES = 6  # decades below the peak that are drawn; fainter light is noise
 
 
 def shares(bins, frames):
-    """First and last bin, exclusive, of each frame."""
+    """Returns the first bin and the end bin (exclusive) of each frame."""
     cuts = np.linspace(0, bins, min(frames, bins) + 1).round().astype(int)
     return list(zip(cuts[:-1], cuts[1:]))
 
@@ -41,14 +41,14 @@ def draw_pulse(axis, result, parts):
         axis.axvspan(cuts[first], cuts[last], color="0.93" if number % 2 else "white", zorder=0)
     lit = pulse > pulse.max() * 10.0**-PULSE_DECADES
     if not np.any(lit):
-        raise style.Unusable(f"{result.path}: no bin has any light")
+        raise style.Unusable(f"{result.path}: all bins are dark")
     axis.stairs(np.where(lit, pulse, np.nan), cuts, color=style.COLOURS[0], baseline=None)
     axis.errorbar(path[lit], pulse[lit], pictures.below(pulse, error)[lit], fmt="none",
                   color=style.COLOURS[0], elinewidth=0.6)
     draw_beyond(axis, result, cuts)
     units = pictures.unit_name(result, "pulse")
     axis.set(yscale="log", ylim=(0.3 * pulse[lit].min(), None), xlabel=f"optical path ({pictures.length_name(result)})",
-             ylabel=f"mean in each bin ({units})" if units else "power in each bin")
+             ylabel=f"mean over the pixels, per bin ({units})" if units else "power per bin")
     if result.has("time"):
         rate = result.values("time")[-1] / path[-1] / PICOSECOND
         above = axis.secondary_xaxis("top", functions=(lambda x: x * rate, lambda t: t / rate))
@@ -57,24 +57,24 @@ def draw_pulse(axis, result, parts):
 
 
 def draw_beyond(axis, result, cuts):
-    """Beside the bins, behind lines, where there is any."""
+    """Draws light outside the bins, if there is any, beyond vertical lines at the sides."""
     room = 0.06 * (cuts[-1] - cuts[0])
     for name, edge, side in (("before", cuts[0], -1), ("after", cuts[-1], 1)):
         light, error = result.measured(f"pulse_{name}")
         axis.axvline(edge, color="0.6", linewidth=0.6)
         if light > 0:
             axis.errorbar(edge + side * room / 2, light, pictures.below(light, error), fmt="_",
-                          color=style.COLOURS[1], label="shorter or longer")
+                          color=style.COLOURS[1], label="shorter or longer paths")
     axis.set_xlim(cuts[0] - room, cuts[-1] + room)
 
 
 @script.plot(one_run=True, dpi=150)
 @pictures.tone_options("log")
-@script.option("--sensor", metavar="NAME", help="of several")
-@script.option("--frames", type=int, default=6, help="of the film (default: 6)")
+@script.option("--sensor", metavar="NAME", help="sensor to be drawn, if the result has several")
+@script.option("--frames", type=int, default=6, help="number of frames of the film strip (default: 6)")
 def draw(result, arguments):
     result = pictures.chosen(result, arguments.sensor)
-    result.require("transient", "render with --path_bins")
+    result.require("transient", "requires render with --path_bins")
     if arguments.frames < 1:
         raise style.Unusable("--frames must be positive")
     transient = result.values("transient")

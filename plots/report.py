@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The report of the three result files of `flatspeckle bench`: report.html, one page that needs
-nothing beside it; report.md with its pictures; numbers.json, the numbers under keys."""
+"""Writes the benchmark report from the three result files of `flatspeckle bench`: report.html, a self-contained page;
+report.md with its pictures; and numbers.json, the numbers of the report with a key for each."""
 
 import argparse
 import io
@@ -19,18 +19,18 @@ from report_pages import document, markdown
 from report_pages.numbers import numbers_of
 
 plt.rcParams.update({"svg.hashsalt": "flatspeckle", "svg.fonttype": "path"})
-DPI = 220  # at 7 inches across; larger pictures would weigh too much in a repository
+DPI = 220  # at a width of 7 inches; larger pictures would be too large for a repository
 
 
 def draw_all(bench, folder):
-    """Writes each picture as PNG; name -> SVG of those that there is something to draw for."""
+    """Writes each picture as PNG. Returns {name: SVG} of all pictures for which the files contain data."""
     pictures = {}
     for name, draw in bench_figures.FIGURES.items():
         figure = draw(bench)
         if figure is None:
             continue
         png, svg = io.BytesIO(), io.BytesIO()
-        figure.savefig(png, format="png", dpi=DPI)  # of few colours, which is a third of the size of all
+        figure.savefig(png, format="png", dpi=DPI)  # a palette of few colours reduces the file to a third
         Image.open(png).convert("RGB").quantize(128).save(folder / f"{name}.png", optimize=True)
         figure.savefig(svg, format="svg", metadata={"Date": None})
         pictures[name] = svg.getvalue()
@@ -52,9 +52,9 @@ def write_report(bench, folder, coverage):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     for name in ("error", "stability", "plan"):
-        parser.add_argument(name, metavar=f"{name.upper()}.h5", help=f"of flatspeckle bench {name}")
+        parser.add_argument(name, metavar=f"{name.upper()}.h5", help=f"result of flatspeckle bench {name}")
     parser.add_argument("--coverage", metavar="FILE.json", type=pathlib.Path,
-                        help="of tests/apps/coverage.py")
+                        help="result of tests/apps/coverage.py")
     parser.add_argument("--out", metavar="FOLDER", required=True, type=pathlib.Path)
     arguments = parser.parse_args()
     with script.complaints():

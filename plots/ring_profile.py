@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Light of `flatspeckle render` by rings: irradiance over the distance from the middle of a disk (sensor radial), power
-per solid angle over the polar angle (sensor polar) beside that of a Lambertian surface of the same power, and the power
-within radii; of several results or sensors in one figure. Open symbols: few paths carry the value, and the bar is a bound."""
+"""Ring profiles of `flatspeckle render`: irradiance against the distance from the centre of a disk (sensor radial),
+power per solid angle against the polar angle (sensor polar), compared with a Lambertian surface of the same power,
+and power within given radii. Several results or sensors share one figure. Open symbols: the value depends on few
+paths, and the error bar is an upper bound."""
 
 from lib import pictures, script, style
 
@@ -12,7 +13,7 @@ QUANTITIES = {"radius": "irradiance", "angle": "power per solid angle", "disk_ra
 
 
 def kinds(result):
-    """What the sensor is drawn over, with the dataset that is drawn."""
+    """Returns {horizontal axis: dataset to be drawn} for a sensor."""
     if result.has("power_within"):
         return {"disk_radius": "power_within"}
     return {axis: "image" for axis in ("radius", "angle") if result.has(axis)}
@@ -34,7 +35,7 @@ def draw_kind(axis, results, over):
         if over == "angle":
             angles = np.linspace(0, min(result.values("angle")[-1], np.pi / 2), 200)
             axis.plot(angles, result.values("total") / np.pi * np.cos(angles), linestyle="--",
-                      color=style.look(number)["color"], label="Lambert" if number == 0 else None)
+                      color=style.look(number)["color"], label="Lambertian" if number == 0 else None)
     first = results[0][1]
     units = pictures.unit_name(first, kinds(first)[over])
     unit = "rad" if over == "angle" else pictures.length_name(first)
@@ -51,7 +52,7 @@ def draw(results):
         for over in kinds(result):
             by_kind.setdefault(over, []).append((label, result))
     if not by_kind:
-        raise style.Unusable(f"{results[0].path}: has no rings; render with sensor radial or polar")
+        raise style.Unusable(f"{results[0].path}: has no rings; requires render with sensor radial or polar")
     figure, axes = plt.subplots(1, len(by_kind), squeeze=False,
                                 figsize=(style.PAGE if len(by_kind) > 1 else style.COLUMN, 2.5))
     for axis, over in zip(axes[0], filter(by_kind.get, QUANTITIES)):

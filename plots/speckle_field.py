@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Speckle fields of `flatspeckle field`: intensity of the first realization over views and lights
-(over views and realizations, where there is one light), with lines along which the memory effect
-moves speckles; the histogram of all intensities; and their autocorrelation over the first light's
-views."""
+"""Speckle fields of `flatspeckle field`: intensity of the first realization over detection directions and
+illuminations, with lines along which the memory effect moves speckles; for a single illumination, over detection
+directions and realizations. Further panels show the histogram of all intensities and their autocorrelation over
+detection directions for the first illumination."""
 
 from lib import script, style
 
@@ -11,15 +11,16 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 BRIGHTEST = 5  # times the mean: 0.7 % of a Gaussian field's intensities are above
-UNEVEN = 1.5  # widest over narrowest step from which on cells stand side by side by number
-MOST_NAMES = 9  # of values along an axis by number
-MOST_ROWS = 24  # of realizations side by side
-FEWEST_EXPECTED = 10  # in a bin, for its error bar to mean something
+UNEVEN = 1.5  # if the ratio of widest to narrowest step exceeds this, cells have equal width
+MOST_NAMES = 9  # largest number of tick labels on an axis with cells of equal width
+MOST_ROWS = 24  # largest number of realizations drawn
+FEWEST_EXPECTED = 10  # expected counts in a bin, below which its error bar is meaningless
 
 
 class Cells:
-    """Cells along one axis: at their values where these are about equally far apart; else of one
-    width side by side, named by their values, so that no cell looks wider than what was computed."""
+    """Cells along one axis. If the values are about equally spaced, cells are at their values. Otherwise all cells
+    have the same width and are labelled by their values, so that no cell appears wider than the directions that were
+    computed."""
 
     def __init__(self, values):
         steps = np.abs(np.diff(values))
@@ -30,7 +31,7 @@ class Cells:
         self.edges = np.concatenate([[first], middle, [last]])
 
     def mark(self, side):
-        """Ticks of a matplotlib axis."""
+        """Sets the ticks of a matplotlib axis."""
         if self.even:
             return side.set_major_locator(MaxNLocator(5))
         named = np.unique(np.linspace(0, len(self.values) - 1, MOST_NAMES).round().astype(int))
@@ -38,17 +39,17 @@ class Cells:
 
 
 def views(result):
-    """Coordinate and label of the view axis."""
+    """Returns coordinate and label of the detection axis."""
     if result.has("view_angle"):
-        return np.sin(result.values("view_angle")), r"$\sin v$"
+        return np.sin(result.values("view_angle")), r"sine of the detection angle, $\sin v$"
     x = result.values("sensor_x") / result.attribute("wavelength")
     if len(np.unique(x)) == len(x) and np.all(np.diff(x) * (x[1] - x[0]) > 0):
-        return x, r"sensor $x/\lambda$"
-    return np.arange(len(x), dtype=float), "sensor"
+        return x, r"position of the sensor, $x/\lambda$"
+    return np.arange(len(x), dtype=float), "index of the sensor"
 
 
 def picture(result):
-    """Intensity over its mean [row, view], coordinate and label of the rows."""
+    """Returns intensity / mean intensity [row, view], and coordinate and label of the rows."""
     field, mean = result.dataset("field"), result.values("intensity")
     mean = np.where(mean > 0, mean, 1)
     if field.shape[1] > 1:
@@ -63,15 +64,15 @@ def draw_picture(figure, axis, result):
     order_x, order_y = np.argsort(x), np.argsort(y)
     x, y, intensity = x[order_x], y[order_y], intensity[np.ix_(order_y, order_x)]
     if len(x) < 2 or len(np.unique(y)) < len(y) or len(np.unique(x)) < len(x):
-        raise style.Unusable(f"{result.path}: needs two views or more, and none twice")
+        raise style.Unusable(f"{result.path}: needs at least two detection directions, all of them different")
     across, up = Cells(x), Cells(y)
     mesh = axis.pcolormesh(across.edges, up.edges, intensity, cmap="inferno", vmin=0,
                            vmax=BRIGHTEST, rasterized=True)
-    if y_label == "realization":  # rows have nothing to do with each other
+    if y_label == "realization":  # the rows are independent
         axis.hlines(up.edges[1:-1], *across.edges[[0, -1]], color="white", linewidth=0.7)
         y_label = "realization (one field in each row)"
     if y_label == r"$\sin i$" and result.has("view_angle") and across.even and up.even:
-        # Speckles follow k sin v - k sin i = const as far as the memory effect reaches.
+        # Within the range of the memory effect, speckles move along k sin v - k sin i = const.
         for middle in np.linspace(x[0], x[-1], 7)[1:-1:2]:
             axis.plot(middle + y - y.mean(), y, color="white", linewidth=0.7, linestyle=(0, (4, 4)),
                       scalex=False, scaley=False)
@@ -80,9 +81,9 @@ def draw_picture(figure, axis, result):
     across.mark(axis.xaxis)
     up.mark(axis.yaxis)
     if not (across.even and up.even):
-        style.caption(figure, ["rows or columns that are not equally spaced stand side by side, named "
-                               "by their values"])
-    figure.colorbar(mesh, ax=axis, label=r"$|u|^2/\langle |u|^2\rangle$", extend="max", pad=0.02)
+        style.caption(figure, ["rows or columns that are not equally spaced are drawn with equal width and "
+                               "labelled by their values"])
+    figure.colorbar(mesh, ax=axis, label=r"intensity $|u|^2/\langle |u|^2\rangle$", extend="max", pad=0.02)
 
 
 def draw_histogram(axis, result):
@@ -90,7 +91,7 @@ def draw_histogram(axis, result):
     expected = result.values("histogram_expected")
     width = low[1] - low[0]
     shown = (expected >= FEWEST_EXPECTED) & (counts > 0)
-    shown[-1] = False  # open
+    shown[-1] = False  # the last bin has no upper limit
     unit = expected.sum() * width
     x = np.linspace(0, np.max(low[shown], initial=width) + width, 200)
     axis.semilogy(x, np.exp(-x), color=style.COLOURS[1], label=r"$\exp(-I/\langle I\rangle)$")
@@ -98,13 +99,13 @@ def draw_histogram(axis, result):
                   **style.symbols(0), markersize=2.5, label=f"{len(result.dataset('field'))} fields")
     contrast, spread = result.measured("mean_contrast")
     axis.text(0.05, 0.06, f"contrast {contrast:.3f} $\\pm$ {spread:.1g}", transform=axis.transAxes)
-    axis.set(xlabel=r"$I/\langle I\rangle$", ylabel="probability density")
+    axis.set(xlabel=r"intensity $I/\langle I\rangle$", ylabel="probability density")
     axis.legend(loc="upper right")
 
 
 def draw_autocorrelation(axis, result):
     if not result.has("intensity_autocorrelation"):
-        axis.text(0.5, 0.5, "views are not equally spaced", ha="center", va="center",
+        axis.text(0.5, 0.5, "detection directions\nare not equally spaced", ha="center", va="center",
                   transform=axis.transAxes)
         axis.set_axis_off()
         return
@@ -124,10 +125,10 @@ def draw_autocorrelation(axis, result):
         # The width of a speckle is twice the lag of half the maximum.
         width, error = (float(value) / unit for value in result.measured("grain_width"))
         axis.plot([0, width / 2], [found[0] / 2] * 2, color="black", linewidth=0.8, marker="|", markersize=5)
-        axis.text(0.97, 0.35, f"grain {width:.3g} $\\pm$ {error:.1g}\n(full width, half maximum)", ha="right",
+        axis.text(0.97, 0.35, f"speckle width {width:.3g} $\\pm$ {error:.1g}\n(full width, half maximum)", ha="right",
                   transform=axis.transAxes, fontsize=6.5)
-    axis.set(xlabel=r"$\sin v'-\sin v$" if far else r"distance of sensors$/\lambda$",
-             ylabel="autocorrelation")
+    axis.set(xlabel=r"difference of sines, $\sin v'-\sin v$" if far else r"distance of sensors / $\lambda$",
+             ylabel="intensity autocorrelation")
     axis.xaxis.set_major_locator(MaxNLocator(4))
     axis.legend(loc="upper right")
 

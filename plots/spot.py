@@ -1,20 +1,21 @@
 #!/usr/bin/env python3
-"""The image of rays of `flatspeckle trace` (with image_plane): where they meet the plane, how far from
-the mean by where they start (of rays near the axes of the pupil), optical path differences about the
-point where these are least, and the spot by the plane's place. --wavelength: path differences in
-wavelengths, and how they dim the peak (Strehl ratio of Marechal, for small ones)."""
+"""Image formed by the rays of `flatspeckle trace` (with image_plane): the spot in the image plane; a ray fan, the
+deviation from the mean against the position in the pupil for rays near its axes; the optical path differences
+relative to the point where these are smallest; and the spot radius against the position of the plane. With
+--wavelength, path differences are in wavelengths, and the Strehl ratio is given (Marechal's approximation, for small
+differences)."""
 
 from lib import script, style
 
 import matplotlib.pyplot as plt
 import numpy as np
 
-NEAR_AXIS = 0.1  # of the pupil's radius
+NEAR_AXIS = 0.1  # distance from an axis, in units of the pupil's radius
 
 
 def pupil(result):
-    """Where the rays of the image start, from -1 to 1 along two axes across their mean direction: by
-    place, or of rays from a point by direction."""
+    """Returns pupil coordinates of the rays, from -1 to 1 along two axes perpendicular to their mean direction. They
+    are from the starting points or, for rays from a single point, from the directions."""
     numbers = result.values("image/ray").astype(int)
     place, direction = (np.stack([result.values(f"start/{letter}{axis}")[numbers] for axis in "xyz"], axis=-1)
                         for letter in ("", "d"))
@@ -29,7 +30,7 @@ def pupil(result):
 
 
 def scale_of(values):
-    """A power of ten that values are shown in, and what to write of it."""
+    """Returns a power of ten by which values are divided for drawing, and the text that gives it."""
     most = np.abs(values).max()
     decade = int(np.floor(np.log10(most))) if most > 0 else 0
     decade = 0 if -2 < decade < 3 else decade
@@ -39,15 +40,15 @@ def scale_of(values):
 def draw_spot(axis, at, radius):
     size, power = scale_of(at)
     axis.plot(*(at / size).T, "o", markersize=1.5, color=style.COLOURS[0])
-    axis.plot(*(radius / size * style.circle(100)), color=style.COLOURS[1], label="rms")
-    axis.set(xlabel="$x$ from the mean" + power, ylabel="$y$" + power, aspect="equal", title="spot")
+    axis.plot(*(radius / size * style.circle(100)), color=style.COLOURS[1], label="RMS radius")
+    axis.set(xlabel="$x$ from the mean" + power, ylabel="$y$ from the mean" + power, aspect="equal", title="spot")
     axis.margins(0.15)
     axis.legend(loc="upper right", handlelength=1)
 
 
 def draw_fans(axis, start, values):
-    """values [ray], or [ray, axis], of rays near each axis of the pupil, in order; of rays in a line all.
-    Returns what to write of their power of ten."""
+    """Draws values, [ray] or [ray, axis], for the rays near each axis of the pupil; for rays along a line, for all.
+    Returns the text that gives the power of ten of the values."""
     size, power = scale_of(values)
     for number in (0, 1):
         near = np.flatnonzero(np.abs(start[:, 1 - number]) < NEAR_AXIS)
@@ -62,14 +63,14 @@ def draw_fans(axis, start, values):
 def draw_paths(axis, start, difference, wavelength):
     difference = difference / (wavelength or 1)
     spread = f"Strehl {np.exp(-(2 * np.pi * difference.std())**2):.2f}" if wavelength else \
-        f"rms {difference.std():.2g}"
+        f"RMS {difference.std():.2g}"
     power = draw_fans(axis, start, difference)
-    axis.set(xlabel="pupil", ylabel=("wavelengths" if wavelength else "length") + power,
+    axis.set(xlabel="pupil coordinate", ylabel=("wavelengths" if wavelength else "length") + power,
              title=f"path difference, {spread}")
 
 
 def draw_focus(axis, result, at, slope):
-    """The spot grows as a hyperbola."""
+    """Draws the RMS radius along the normal, a hyperbola."""
     here, focus = result.values("image/distance"), result.values("image/focus")
     width = max(2 * abs(here - focus), 3 * np.std(at - at.mean(axis=0)) / max(np.std(slope - slope.mean(axis=0)), 1e-300))
     where = np.linspace(focus - width, focus + width, 101)
@@ -78,13 +79,13 @@ def draw_focus(axis, result, at, slope):
     radius = np.sqrt((spots**2).sum(axis=2).mean(axis=1))
     size, power = scale_of(radius)
     axis.plot(where, radius / size, color=style.COLOURS[0])
-    axis.axvline(here, color="black", linestyle=":", label="plane")
-    axis.set(xlabel="along the normal", ylabel="rms radius" + power, ylim=(0, None), title="through focus")
+    axis.axvline(here, color="black", linestyle=":", label="image plane")
+    axis.set(xlabel="position along the normal", ylabel="RMS radius" + power, ylim=(0, None), title="through focus")
     axis.legend(handlelength=1.2)
 
 
-@script.plot(needs={"image/x": "trace with --image_plane"})
-@script.option("--wavelength", type=float, metavar="LENGTH", help="in the unit of lengths")
+@script.plot(needs={"image/x": "requires trace with --image_plane"})
+@script.option("--wavelength", type=float, metavar="LENGTH", help="wavelength, in the unit of lengths of the scene")
 def draw(result, arguments):
     at, slope = (np.stack([result.values(f"image/{name}{axis}") for axis in "xy"], axis=-1)
                  for name in ("", "slope_"))
@@ -92,7 +93,7 @@ def draw(result, arguments):
     start, off = pupil(result), at - at.mean(axis=0)
     draw_spot(axes[0, 0], off, result.values("image/spot_radius"))
     power = draw_fans(axes[0, 1], start, off)
-    axes[0, 1].set(xlabel="pupil", ylabel="off the mean" + power, title="ray fan")
+    axes[0, 1].set(xlabel="pupil coordinate", ylabel="deviation from the mean" + power, title="ray fan")
     axes[0, 1].legend(handlelength=1)
     draw_paths(axes[1, 0], start, result.values("image/least_path_difference"), arguments.wavelength)
     if result.has("image/focus"):

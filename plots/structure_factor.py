@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Structure factor of drawn placements, from any number of `place --structure` results."""
+"""Structure factor of random placements, from any number of `place --structure` results."""
 
 from lib import script, style
 
@@ -19,7 +19,7 @@ def draw(results):
     style.mark(axis, 1)
     with_theory = False
     for number, result in enumerate(results):
-        # The unit is the mean spacing, which points have too.
+        # The unit of length is the mean spacing, which is also defined for points.
         area = result.attribute("width") * result.attribute("depth")
         q = result.axis("structure_factor", 0) * np.sqrt(area / result.attribute("count"))
         axis.errorbar(q, *result.measured("structure_factor"), **style.symbols(number),
@@ -28,7 +28,7 @@ def draw(results):
             with_theory = True
             axis.plot(q, result.values("structure_factor_theory"), linewidth=0.7, zorder=1,
                       color=style.look(number)["color"])
-    axis.set(xlim=(0, None), ylim=(0, None), xlabel=r"$q\,\rho^{-1/2}$",
+    axis.set(xlim=(0, None), ylim=(0, None), xlabel=r"wavenumber $q\,\rho^{-1/2}$, number density $\rho$",
              ylabel="structure factor $S(q)$")
     axis.legend(title="lines: Baus and Colot 1987" if with_theory else None, title_fontsize=7)
     return figure

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Correlation over tilts of the light and shifts of the view: a map for each result of `covariance`
-with covariance = "tilt_shift", say transmission beside reflection, above its matched line and axes
-with theory."""
+"""Correlation over tilts of the illumination and shifts of the detection direction or sensor, from results of
+`covariance` with covariance = "tilt_shift". Each result, for example transmission and reflection, has a map; the
+panel below shows the correlation for matched shifts (tilt = shift) and along both axes of the map, with theory."""
 
 from lib import page, script, style
 
@@ -22,11 +22,11 @@ def title(result):
         return f"sensors at $z$ = {', '.join(style.short(depths))}"
     views = np.atleast_1d(result.values("view_angle"))
     sides = {"transmission" if np.cos(view) > 0 else "reflection" for view in views}
-    return " and ".join(sorted(sides)) + ", view " + ", ".join(style.angle(view) for view in views)
+    return " and ".join(sorted(sides)) + ", detection at " + ", ".join(style.angle(view) for view in views)
 
 
 def axes_of(result):
-    """Tilts as q L; shifts times L, or as lengths for near sensors."""
+    """Returns tilts as q L, and shifts times L, or as lengths for near sensors."""
     depth = result.attribute("depth")
     tilts = result.values("tilt_q") * depth
     shifts = result.axis("field_correlation", 1) * (depth if is_far(result) else 1)
@@ -45,18 +45,19 @@ def draw_map(axis, result):
         ends = [max(tilts.min(), shifts.min()), min(tilts.max(), shifts.max())]
         axis.plot(ends, ends, color="white", linewidth=0.7, linestyle=(0, (4, 3)))
     axis.set(title=title(result), xlabel="tilt $qL$",
-             ylabel=r"shift $\Delta(k\,\sin v)\,L$" if is_far(result) else "shift along $x$")
+             ylabel=(r"shift of the direction, $\Delta(k\,\sin v)\,L$" if is_far(result)
+                     else "shift of the sensor along $x$"))
     return image
 
 
 def draw_lines(axis, result):
-    """Matched views with theory, and both axes of the map."""
+    """Draws the correlation for matched detection directions with theory, and along both axes of the map."""
     (tilts, shifts), (field, error) = axes_of(result), result.measured("field_correlation")
     no_tilt, no_shift = np.argmin(np.abs(tilts)), np.argmin(np.abs(shifts))
-    curves = [("tilt alone", tilts, field[:, no_shift], error[:, no_shift])]
+    curves = [("tilt only", tilts, field[:, no_shift], error[:, no_shift])]
     if is_far(result):
-        curves = [("matched views", tilts, *result.measured("matched_correlation")), *curves,
-                  ("shift alone", shifts, field[no_tilt], error[no_tilt])]
+        curves = [("matched directions", tilts, *result.measured("matched_correlation")), *curves,
+                  ("shift only", shifts, field[no_tilt], error[no_tilt])]
     for number, (label, *curve) in enumerate(curves):
         fill = {"markerfacecolor": "white"} if number else {}
         axis.errorbar(*curve, label=label, **style.symbols(number), **fill)
@@ -72,7 +73,7 @@ def draw_lines(axis, result):
 def draw(results):
     for result in results:
         if result.dataset("field_correlation").ndim != 2:
-            raise style.Unusable(f"{result.path}: field_correlation is no map; {NEEDS}")
+            raise style.Unusable(f"{result.path}: field_correlation is not a map; {NEEDS}")
     columns = len(results)
     width = min(style.PAGE, style.COLUMN * columns)
     figure, axes = plt.subplots(2, columns, squeeze=False, figsize=(width, 1.55 * width / columns),
@@ -80,6 +81,6 @@ def draw(results):
     for result, upper, lower in zip(results, *axes):
         image = draw_map(upper, result)
         draw_lines(lower, result)
-    figure.colorbar(image, ax=list(axes[0]), label="$C_E$")
+    figure.colorbar(image, ax=list(axes[0]), label="field correlation $C_E$")
     page.legend_above(figure, page.labelled(axes[1]), 3 if columns == 1 else 5)
     return figure

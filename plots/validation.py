@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Validation: Monte Carlo against the exact wave solver, or of a slab against transport, entry by
-entry: values, relative deviations, and these in standard errors. Of a placement of the user's own: its
-speckle pattern over the mean intensity, and the distribution of their ratio."""
+"""Validation of Monte Carlo against the exact wave solver or, for slabs, against deterministic transport. For each
+entry of the covariance: values, relative deviations, and deviations in standard errors. For a result with the user's
+own placement: its speckle pattern and the mean intensity, and the distribution of their ratio."""
 
 from dataclasses import dataclass
 
@@ -14,16 +14,18 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 
-SIGMAS = 4  # agreement is judged at so many combined standard errors
+SIGMAS = 4  # combined standard errors within which values agree
 BAND = "0.92"
-PEAKED = 8  # highest over lowest value from which on a logarithmic axis shows more
-MOST_RELATIVE, MOST_SIGMAS = 100, 5 * SIGMAS  # that are drawn in place: beyond stand arrows with numbers
-ENTRIES, SENSORS = "number of the entry", "number of the sensor"
+PEAKED = 8  # ratio of highest to lowest value above which the axis is logarithmic
+# Largest deviations on the axes; larger ones are drawn as arrows with numbers.
+MOST_RELATIVE, MOST_SIGMAS = 100, 5 * SIGMAS
+ENTRIES, SENSORS = "index of the entry", "index of the sensor"
 
 
 @dataclass
 class Comparison:
-    """Both methods' entries [curve, x] and their errors; complex ones by distance in the plane."""
+    """Entries [curve, x] of both methods and their errors. Complex entries are compared by their distance in the
+    complex plane."""
 
     reference: str
     x: np.ndarray
@@ -34,25 +36,26 @@ class Comparison:
     mc_error: np.ndarray
     exact: np.ndarray
     exact_error: np.ndarray
-    forward: np.ndarray  # where a fixed number of scatterers tells (conventions, C12)
+    forward: np.ndarray  # entries affected by the fixed number of scatterers (conventions, C12)
 
     def residual(self):
-        """|mc - reference| in combined standard errors, and those."""
+        """Returns |mc - reference| in combined standard errors, and these errors."""
         combined = np.hypot(self.mc_error, self.exact_error)
-        # Entries that are exactly 0 for both have no errors and agree.
+        # Entries that are exactly 0 in both methods have no error and agree.
         return np.divide(np.abs(self.mc - self.exact), combined, out=np.zeros(combined.shape),
                          where=combined > 0), combined
 
     def relative(self):
-        """Monte Carlo over the reference, less 1, and its standard error, in %; of complex values
-        the magnitudes'. nan where the reference is 0."""
+        """Returns Monte Carlo / reference - 1 and its standard error, in %; for complex values, of their magnitudes.
+        The values are nan where the reference is 0."""
         size = np.where(self.exact == 0, np.nan, np.abs(self.exact))
         ratio = np.abs(self.mc) / size
         return 100 * (ratio - 1), 100 * np.hypot(self.mc_error, ratio * self.exact_error) / size
 
     def curves(self):
-        """(number, places, colours of Monte Carlo and of the reference, marker and line): places stand a
-        little apart, to keep error bars apart; one curve alone has two colours."""
+        """Yields (number, abscissae, colours of Monte Carlo and of the reference, marker and line) for each curve.
+        The abscissae are shifted slightly so that error bars do not overlap. For a single curve the two colours
+        differ."""
         count, x = len(self.curve_labels), self.x
         step = min(0.05 * np.median(np.diff(np.sort(x))), 0.012 * np.ptp(x)) if len(x) > 1 else 0
         for number in range(count):
@@ -62,13 +65,13 @@ class Comparison:
 
 
 def read_entries(result, name, reference):
-    """Of both methods values and errors, and which are forward ones."""
+    """Returns values and errors of both methods, and which entries are in the forward lobe."""
     entries = [values for method in ("mc", reference) for values in result.measured(f"{method}/{name}")]
     shape = entries[0].shape
     if any(entry.shape != shape for entry in entries):
-        raise style.Unusable(f"{result.path}: {name} of mc and {reference} is not of one shape")
+        raise style.Unusable(f"{result.path}: {name} has different shapes for mc and {reference}")
     forward = np.zeros(shape, bool)
-    if result.has("forward"):  # of a full covariance [light, view, light, view] its lower triangle
+    if result.has("forward"):  # for a full covariance, the lower triangle of [light, view, light, view]
         stored, size = result.values("forward") > 0, np.prod(shape[:2])
         if len(shape) < 4:
             forward = stored[:forward.size].reshape(shape)
@@ -78,14 +81,14 @@ def read_entries(result, name, reference):
 
 
 def views_of(result, name):
-    """Abscissae of its second axis and what they are: view angles, or numbers of sensors."""
+    """Returns the abscissae of a dataset's second axis and their label: detection angles or indices of sensors."""
     kind, views = result.scale(name, 1)
-    return views, "view angle" if kind == "view_angle" else SENSORS
+    return views, "detection angle" if kind == "view_angle" else SENSORS
 
 
 def intensities(result, reference):
     kind, lights = result.scale("mc/intensity", 0)
-    curves = [f"light {style.angle(light) if kind == 'light_angle' else f'{light:g}'}"
+    curves = [f"illumination {style.angle(light) if kind == 'light_angle' else f'{light:g}'}"
               for light in lights]
     return *views_of(result, "mc/intensity"), curves, \
         with_unit(r"intensity $C_{vv}$", result.unit("mc/intensity")), \
@@ -103,7 +106,7 @@ def covariances(result, reference):
     tilts, (views, kind) = result.axis("mc/covariance", 0), views_of(result, "mc/covariance")
     if len(views) > max(6, len(tilts)):
         return views, kind, [f"tilt {style.angle(tilt)}" for tilt in tilts], "covariance $|C|$", *entries
-    return tilts, "tilt", [f"view {style.angle(view)}" for view in views], "covariance $|C|$", *(
+    return tilts, "tilt", [f"detection at {style.angle(view)}" for view in views], "covariance $|C|$", *(
         entry.T for entry in entries)
 
 
@@ -130,7 +133,7 @@ def draw_values(axis, data, allowance):
 
 
 def draw_within(axis, x, values, errors, limit, look):
-    """Values up to a limit; those beyond as arrows at the edge, with their numbers."""
+    """Draws values up to a limit, and larger ones as arrows at the edge with their numbers."""
     inside = np.abs(values) <= limit
     axis.errorbar(x[inside], values[inside], errors[inside], linestyle="none", elinewidth=0.7, **look)
     for place, value in zip(x[~inside], values[~inside]):
@@ -143,7 +146,8 @@ def draw_within(axis, x, values, errors, limit, look):
 
 
 def reach_of(values, forward, least, most):
-    """Of an axis: that of what should agree, between limits."""
+    """Returns the range of an axis from the entries that should agree (those outside the forward lobe), between
+    limits."""
     return np.clip(1.15 * np.nanmax(np.abs(values[~forward]), initial=0), least, most)
 
 
@@ -155,7 +159,7 @@ def draw_relative(axis, data, allowance):
     for number, x, (own, _), look in data.curves():
         draw_within(axis, x, deviation[number], error[number], limit,
                     {"color": own, "marker": look["marker"], "markersize": 2.5})
-    axis.set(ylim=(-limit, limit), ylabel="deviation (%)")
+    axis.set(ylim=(-limit, limit), ylabel="relative deviation (%)")
 
 
 def draw_residual(axis, data, allowance):
@@ -168,11 +172,11 @@ def draw_residual(axis, data, allowance):
                     zorder=1)
         draw_within(axis, x, residual[number], 0 * x, limit,
                     {"color": own, "marker": look["marker"], "markersize": 3})
-    axis.set(ylim=(0, limit), ylabel=rf"|mc $-$ {data.reference}| / $\sigma$")
+    axis.set(ylim=(0, limit), ylabel=r"|deviation| / $\sigma$")
 
 
 def shade_forward(axes, data):
-    """Behind the places of forward entries."""
+    """Shades the background of entries in the forward lobe."""
     steps = np.diff(np.unique(data.x))
     half = 0.5 * (steps.min() if len(steps) else 1)
     for axis in axes:
@@ -181,7 +185,7 @@ def shade_forward(axes, data):
 
 
 def entries(axis, data, allowance):
-    """Legend entries (handle, label)."""
+    """Yields legend entries (handle, label)."""
     yield from page.labelled([axis])
     own, other = style.COLOURS[:2] if len(data.curve_labels) == 1 else ("black", "black")
     for colour, fill, size, label in ((own, "white", 5, "Monte Carlo"),
@@ -190,10 +194,10 @@ def entries(axis, data, allowance):
                          linestyle="none"), label
     yield plt.Rectangle((0, 0), 1, 1, color=BAND), f"{SIGMAS} standard errors ($\\sigma$)"
     if data.forward.any():
-        yield plt.Rectangle((0, 0), 1, 1, **FORWARD), "forward: a fixed number tells (C12)"
+        yield plt.Rectangle((0, 0), 1, 1, **FORWARD), "forward lobe (fixed number of scatterers)"
     if allowance > 0 and data.reference == "wave":
         yield plt.Line2D([], [], color="black", alpha=0.2, linewidth=4), \
-            f"size of what Monte Carlo neglects, {100 * allowance:.2g} %"
+            f"expected bias of Monte Carlo, {100 * allowance:.2g} %"
 
 
 @script.plot()
@@ -217,8 +221,8 @@ def draw(result):
     shade_forward(axes, data)
     page.legend_above(figure, list(entries(axes[0], data, allowance)), 3)
     if data.forward.any():
-        style.caption(figure, ["forward: there a fixed number of scatterers takes a fluctuation of the coherent field "
-                               "away from the exact covariance, which Monte Carlo has (conventions, C12)"])
+        style.caption(figure, ["forward lobe: with a fixed number of scatterers the exact covariance lacks a "
+                               "fluctuation of the coherent field that Monte Carlo includes (conventions, C12)"])
     if len(data.curve_labels) > 1:
-        style.caption(figure, ["symbols of one place stand a little apart, side by side"])
+        style.caption(figure, ["symbols at the same abscissa are shifted slightly sideways"])
     return figure

@@ -1,16 +1,15 @@
 #!/usr/bin/env python3
-"""Measures how far Monte Carlo is from the exact solver, over k mean free path and packing fraction.
+"""Measures the deviation of Monte Carlo from the exact solver against k times the mean free path and against packing
+fraction.
 
-Runs `flatspeckle validate` on two families of scenes and writes one line per scene:
-  points  resonant points, Poisson, optical depth 1 and 2, box twice as wide as deep
-  disks   TM cylinders, k radius = 1, index 1.2, hard disks in a 12 x 8 box, Monte Carlo with
-          independent positions and with the structure factor of hard disks
-for lights 0 and pi and 16 views around the circle, less those in the forward lobe
-(k |sin view| < 2 pi / width), where a fixed number of disks lacks a part of the covariance. Each
-scene is run ten times with other seeds. A deviation is (mc - exact) / exact, exact averaged over
-the runs; its mean over the views has the error bar of the runs' scatter, its RMS over the views is
-less what the scatter adds to it. Views along the faces (+- pi / 2), where waves diffract at the
-edges of the box, have a mean of their own, `grazing`.
+Runs `flatspeckle validate` on two sets of scenes and writes one line per scene: points resonant points, Poisson,
+optical depth 1 and 2, box twice as wide as deep disks TM cylinders, k radius = 1, index 1.2, hard disks in a 12 x 8
+box, Monte Carlo with independent positions and with the structure factor of hard disks for illumination at 0 and pi
+and 16 detection directions around the circle, except those in the forward lobe (k |sin view| < 2 pi / width), where a
+fixed number of disks lacks a part of the covariance. Each scene is run ten times with different seeds. The deviation
+is (mc - exact) / exact, with exact values averaged over the runs. The error bar of its mean over directions is from
+the scatter of the runs. Noise is subtracted from its RMS. Directions along the faces (+- pi / 2), where waves
+diffract at the edges of the box, have a separate mean, `grazing`.
 """
 
 import argparse
@@ -37,7 +36,7 @@ COLUMNS = ["family", "structure", "k_mean_free_path", "optical_depth", "packing_
 
 
 def call(program, folder, subcommand, threads, **keys):
-    """Runs the program; the result file."""
+    """Runs the program and returns the open result file."""
     words = [program, subcommand, "--threads", str(threads), "--out", str(folder / "result.h5")]
     for key, value in keys.items():
         words += [f"--{key}"] + [str(item) for item in
@@ -57,7 +56,7 @@ class Scene:
         self.exact, self.mc, self.attributes = [], [], {}
 
     def kinds_of_views(self):
-        """Masks over light x view: views to average, and those along the faces."""
+        """Returns masks over light x view: directions to average, and those along the faces."""
         light, view = np.meshgrid([0, math.pi], VIEWS, indexing="ij")
         forward = np.cos(view - light) > 0
         in_lobe = forward & (np.abs(np.sin(view)) * self.keys["width"] < 1)
@@ -88,13 +87,13 @@ class Scene:
 
 
 def mean_over(deviation):
-    """Mean of deviations [run, view] and its standard error, from the scatter of the runs."""
+    """Returns the mean of deviations [run, view] and its standard error, from the scatter of the runs."""
     means = deviation.mean(axis=1)
     return means.mean(), means.std(ddof=1) / math.sqrt(len(means))
 
 
 def compare(call_program, scenes, placements, paths):
-    """Scenes that share the exact solutions of the first; yields a row for each."""
+    """Compares scenes with the exact solutions of the first; returns a row for each."""
     first, *others = scenes
     for seed in range(1, RUNS + 1):
         with call_program("validate", **first.keys, seed=seed, samples=paths,
@@ -125,11 +124,11 @@ def main():
     parser.add_argument("--program", default="build/release/bin/flatspeckle")
     parser.add_argument("--out", default="data/bias_map.csv")
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--effort", type=float, default=1, help="times as many samples")
+    parser.add_argument("--effort", type=float, default=1, help="factor on the number of samples")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as name, open(arguments.out, "w", newline="") as out:
         out.write("# scripts/bias_map.py: Monte Carlo against the exact solver, both of this "
-                  "program; the script says what the columns are.\n")
+                  "program; the script describes the columns.\n")
         table = csv.DictWriter(out, COLUMNS, lineterminator="\n")
         table.writeheader()
 

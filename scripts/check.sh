@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# check.sh [PART...]: what takes too long for every change; by default all parts, hours of them.
+# check.sh [PART...]: runs checks that take too long for every change. By default it runs all parts, which takes
+# hours.
 #   gcc clang  builds without warnings, every file by itself
 #   asan       address and undefined-behaviour sanitizers, all tests but the slow and nightly ones
 #   tsan       thread sanitizer, the tests labelled parallel
@@ -35,7 +36,7 @@ fuzz() {
   for target in scene table grid result result_bytes; do
     found=$PWD/build/fuzz/found/$target
     mkdir -p "$found"
-    # HDF5 itself dies of damaged files, in a child process: docs/development.md.
+    # HDF5 itself crashes on damaged files, so it runs in a child process: docs/development.md.
     ASAN_OPTIONS=allocator_may_return_null=1 build/fuzz/bin/fuzz --target=$target -max_total_time=60 \
       -max_len=2500 -rss_limit_mb=2048 -timeout=60 -detect_leaks=0 -malloc_limit_mb=0 \
       -artifact_prefix="$found/" "$found" "$PWD/tests/fuzz/corpus/$target"

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Compares the fields of `flatspeckle solve` with tables of exact ones (data/reference): prints the
-relative L2 error against each and exits 1 where one is above the limit."""
+"""Compares fields from `flatspeckle solve` with tables of exact fields (data/reference). Prints the relative L2 error
+for each table, and exits with status 1 if an error exceeds the limit."""
 
 import argparse
 import sys
@@ -10,16 +10,16 @@ import numpy as np
 
 
 def positions(scale, wanted):
-    """Indices of the wanted values on a scale."""
+    """Returns the indices of the wanted values on a scale."""
     found = np.abs(scale[None, :] - wanted[:, None]).argmin(axis=1)
     if not np.allclose(scale[found], wanted, rtol=0, atol=1e-12):
-        raise ValueError("the result lacks angles of the table")
+        raise ValueError("the result lacks some of the angles in the table")
     return found
 
 
 def fields_at(result, table):
-    """The result's fields row by row: far fields by angle; near fields where the table was the list
-    of sensors."""
+    """Returns the result's fields in the order of the table: far fields at the angles of the table, or near fields,
+    for which the sensors must be the points of the table."""
     lights = positions(result["light_angle"][...], table["light_angle"])
     if "view_angle" in table.dtype.names:
         return result["far_field"][...][lights, positions(result["view_angle"][...], table["view_angle"])]

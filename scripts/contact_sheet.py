@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""All figures of the guides on one sheet, docs/contact_sheet.jpg, in colour and in grey: to see at a
-glance that each can be read at column width."""
+"""Draws all figures of the guides on one sheet, docs/contact_sheet.jpg, in colour and in grey, to check that
+each is readable at column width."""
 
 import pathlib
 
@@ -16,7 +16,7 @@ GREY = np.array([0.299, 0.587, 0.114])  # luma of Rec. 601
 
 
 def reduced(picture, most=420):
-    """Every so many pixels averaged, so that the longer side has about `most`."""
+    """Returns the picture averaged over blocks, so that the longer side has about `most` pixels."""
     factor = max(1, max(picture.shape[:2]) // most)
     down, across = (size // factor for size in picture.shape[:2])
     blocks = picture[:down * factor, :across * factor, :3].reshape(down, factor, across, factor, 3)
@@ -24,7 +24,7 @@ def reduced(picture, most=420):
 
 
 def draw(figures):
-    """Each figure beside itself in grey."""
+    """Draws each figure in colour and in grey."""
     down = -(-2 * len(figures) // ACROSS)
     sheet, axes = plt.subplots(down, ACROSS, figsize=(2.2 * ACROSS, 2 * down), squeeze=False)
     for axis in axes.flat:

@@ -7,20 +7,20 @@ flatspeckle=$(realpath "$1")
 results=$(realpath -m "$2")
 steps=("${@:3}")
 [[ ${#steps[@]} -gt 0 ]] || steps=(slab both_methods ten_disks)
-PATH=/usr/bin:$PATH  # Debian's python3, which knows h5py and matplotlib
+PATH=/usr/bin:$PATH  # Debian's python3, which has h5py and matplotlib
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mkdir -p "$results/ten_disks"
 
 say() { printf '\n== %s\n' "$*"; }
 
 drawing=()
-draw() {  # PLOT RESULT PREFIX: while the next is computed
+draw() {  # PLOT RESULT PREFIX: runs in the background
   python3 "plots/$1.py" "$2" --out "$3" & drawing+=($!)
 }
 
 reference=data/reference/g10
 
-solve_and_compare() {  # KIND FLAG...: KIND as in the names of the reference's tables
+solve_and_compare() {  # KIND FLAG...: KIND is part of the names of the reference tables
   local kind=$1 result=$results/ten_disks/$1.h5 sensors=$results/ten_disks/sensors_$1.csv
   awk -F, '{ print $2 "," $3 }' "$reference/nearfield_$kind.csv" > "$sensors"
   "$flatspeckle" solve --placement "$reference/placement.csv" "${@:2}" \
@@ -29,7 +29,7 @@ solve_and_compare() {  # KIND FLAG...: KIND as in the names of the reference's t
 }
 
 ten_disks() {
-  say "Ten disks of different sizes, solved exactly, against an independent program's fields"
+  say "Ten disks of different sizes: exact fields against those of an independent program"
   mapfile -t views < <(awk -F, 'NR > 1 && $1 == 0 { print $2 }' "$reference/farfield_D.csv")
   solve_and_compare D --scatterer soft
   solve_and_compare N --scatterer hard
@@ -38,7 +38,7 @@ ten_disks() {
 }
 
 both_methods() {
-  say "Resonant points in a box: both methods, entry by entry"
+  say "Resonant points in a box: Monte Carlo against the exact solver, entry by entry"
   "$flatspeckle" validate --config data/scenes/box_points.toml --out "$results/box_points.h5"
   draw validation "$results/box_points.h5" "$results/validation"
   draw error_time "$results/box_points.h5" "$results/error_time"

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian 12) and makes a Debian package that any x86-64 can run: build/package/flatspeckle_*.deb.
+# Installs missing packages (Debian 12) and makes a Debian package for any x86-64:
+# build/package/flatspeckle_*.deb.
 set -euo pipefail
 # shellcheck source=scripts/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# quickstart.sh [FOLDER]: installs what is missing (Debian 12), builds the program, and runs it on
+# quickstart.sh [FOLDER]: installs missing packages (Debian 12), builds the program, and runs it on
 # shipped data and scenes (first_results.sh). Results and plots go to FOLDER, by default results/ in
 # the checkout.
 set -euo pipefail

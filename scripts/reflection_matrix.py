@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
-"""Placement and scene of the reflection-matrix imaging case (docs/exact_solver.md): 2100 weak cylinders
-(diameter 0.7, index 1.4) and 84 targets (diameter 0.3, index 2.5) in a box of 140 x 60, index 1.33 around
-them, lengths in micrometres; TM, vacuum wavelengths 0.7 to 1, NA 0.5, 140 directions in and out.
-Writes reflection.csv and reflection.toml into the working folder."""
+"""Writes the placement and scene of the example of reflection-matrix imaging (docs/exact_solver.md): 2100 weak
+cylinders (diameter 0.7, index 1.4) and 84 targets (diameter 0.3, index 2.5) in a box of 140 x 60, index 1.33 around
+them, lengths in micrometres; TM polarisation, vacuum wavelengths 0.7 to 1, numerical aperture 0.5, 140 illumination
+and 140 detection directions. Writes reflection.csv and reflection.toml into the working folder."""
 
 import numpy as np
 
 WIDTH, DEPTH, AROUND = 140, 60, 1.33
-GAP = 0.05  # between rims, at the least
+GAP = 0.05  # smallest gap between two disks
 
 
 def targets():
-    """Centres on a grid that leans, so that no two share a depth or an x: 12 by 7."""
+    """Returns the centres on a 12 by 7 oblique grid, so that no two have the same depth or x."""
     column, row = np.meshgrid(np.arange(12), np.arange(7), indexing="ij")
     x = -WIDTH / 2 + 8 + 11 * column + 0.9 * row
     z = 6 + 8 * row + 0.35 * column
@@ -19,12 +19,12 @@ def targets():
 
 
 def add_disks(centres, radii, count, radius, random):
-    """One after the other where there is room."""
+    """Adds disks one by one at random positions without overlap."""
     centres, radii = list(centres), list(radii)
     while count > 0:
         new = random.uniform((-WIDTH / 2 + radius, radius), (WIDTH / 2 - radius, DEPTH - radius))
-        room = np.hypot(*(np.array(centres) - new).T) - np.array(radii) - radius
-        if room.min() > GAP:
+        space = np.hypot(*(np.array(centres) - new).T) - np.array(radii) - radius
+        if space.min() > GAP:
             centres.append(new)
             radii.append(radius)
             count -= 1

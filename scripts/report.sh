@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# report.sh [FOLDER]: installs what is missing (Debian 12), builds the program, and makes the report:
-# what accuracy costs (bench error), where it breaks (bench stability), what plans leave out (bench
-# plan) and whether error bars hold (tests/apps/coverage.py). Result files, report.html, report.md with its pictures and numbers.json go to FOLDER,
-# by default results/report in the checkout. Exit status 5: a row failed; the report says which.
+# report.sh [FOLDER]: installs missing packages (Debian 12), builds the program, and makes the
+# report: error against time (bench error), extreme cases (bench stability), savings of plans (bench
+# plan) and coverage of error bars (tests/apps/coverage.py). Result files, report.html, report.md
+# with its pictures and numbers.json go to FOLDER, by default results/report in the checkout. Exit
+# status 5: a row failed; the report shows which.
 set -euo pipefail
 report=${1:+$(realpath -m "$1")}
 # shellcheck source=scripts/setup.sh

@@ -1,9 +1,9 @@
-# shellcheck shell=bash
-# Sourced by the other scripts: goes to the root of the checkout; how to prepare a machine and build.
+# shellcheck shell=bash Sourced by the other scripts. Changes to the root of the checkout, and defines functions that
+# install packages and build.
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit
 
 jobs=$(nproc)
-# Debian's own tools go together; another python, say, would not know the packages installed here.
+# Prefers Debian's own tools, because another Python would not find the packages installed here.
 PATH=/usr/bin:$PATH
 
 as_root() {
@@ -14,10 +14,10 @@ is_installed() {
   [[ $(dpkg-query --show --showformat='${db:Status-Abbrev}' "$1" 2>/dev/null) == ii* ]]
 }
 
-# install_missing PACKAGE...: those that are not there yet, on Debian; elsewhere it only names them.
+# install_missing PACKAGE...: installs missing packages on Debian; elsewhere it only lists them.
 install_missing() {
   if ! command -v apt-get dpkg-query >/dev/null; then
-    echo "Not Debian: nothing is installed here. Needed, by Debian's names: $*"
+    echo "Not Debian: install these packages yourself (Debian names): $*"
     return
   fi
   local package missing=()
@@ -31,18 +31,18 @@ install_missing() {
     install "${missing[@]}"
 }
 
-# For the program alone.
+# Packages for the program alone.
 install_build_packages() {
   install_missing g++ cmake ninja-build pkg-config libhdf5-dev liblapacke-dev libopenblas-dev \
     libfftw3-dev libnlopt-dev libeigen3-dev libcli11-dev librandom123-dev libtomlplusplus-dev
 }
 
-# For the subcommand bench.
+# Packages for the subcommand bench.
 install_bench_packages() {
   install_missing libboost-dev
 }
 
-# For the tests; MPI, xarray and plots are tested where they are there.
+# Packages for the tests; MPI, xarray and plots are tested only if installed.
 install_test_packages() {
   install_bench_packages
   install_plot_packages
@@ -58,7 +58,7 @@ install_plot_packages() {
   install_missing python3-h5py python3-matplotlib
 }
 
-# build_release TARGET OPTION...: into build/release.
+# build_release TARGET OPTION...: builds in build/release.
 build_release() {
   cmake --preset release "${@:2}"
   cmake --build --preset release --parallel "$jobs" --target "$1"

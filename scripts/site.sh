@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian 12) and builds the site of the guides: scripts/site.sh [FOLDER], build/site by default.
+# Installs missing packages (Debian 12) and builds the site of the guides: scripts/site.sh [FOLDER],
+# build/site by default.
 set -euo pipefail
 # shellcheck source=scripts/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"

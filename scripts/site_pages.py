@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The guides as a site: site_pages.py FOLDER. Pages by Sphinx (MyST, furo), the libraries' by Doxygen; no
-network. A warning, or a link that leads nowhere, ends it with status 1. scripts/site.sh installs
-what it takes."""
+"""Builds the site of the guides: site_pages.py FOLDER. Uses Sphinx (MyST, furo) for pages and Doxygen for the
+libraries, without network. Exits with status 1 after a warning or a broken link. scripts/site.sh installs the
+required packages."""
 
 import ast
 import html.parser
@@ -16,13 +16,13 @@ import urllib.parse
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 
-# What stands in the sidebar, in this order; a test sees that every guide is here.
+# Pages of the sidebar, in this order; a test checks that every guide is included.
 CHAPTERS = {
-    "First": ["tour", "questions", "tutorials", "gallery"],
+    "First": ["start_speckle", "start_graphics", "start_tissue", "start_sound", "tour", "questions", "tutorials", "gallery"],
     "Speckle": ["monte_carlo", "exact_solver", "media", "sweeps", "experiments", "imaging", "fit"],
     "Rays and light": ["rays", "design", "render"],
     "Reference": ["commands", "scenes", "keys", "format", "conventions", "python", "library"],
-    "About": ["report/report", "development", "contributing", "changelog", "sources"],
+    "About": ["report/report", "development", "contributing", "changelog", "theory"],
 }
 PICTURE = re.compile(r"!\[([^\]]*)\]\(([^)]+\.(?:png|jpg))\)")
 LINK = re.compile(r"(\]\()(?:docs/)?([^):]+\))")
@@ -30,7 +30,7 @@ NAMED_BY_FILE = re.compile(r"\[(?:docs/)?[\w/]+\.md\]\(([\w/]+)\.md\)")
 
 
 def flattened(text):
-    """Of a page at the root of the checkout: the site has the guides at its own."""
+    """Adapts links of a page at the root of the checkout: the site has the guides at its root."""
     text = LINK.sub(r"\1\2", text)
     return text.replace("(CONTRIBUTING.md", "(contributing.md").replace("(CHANGELOG.md", "(changelog.md")
 
@@ -40,7 +40,7 @@ def title_of(page):
 
 
 def name_links(source):
-    """Links that a checkout's reader knows by the file have the page's title here."""
+    """Replaces link texts that are file names by the titles of the pages."""
     for page in source.rglob("*.md"):
         text = NAMED_BY_FILE.sub(lambda link: f"[{title_of(source / f'{link[1]}.md')}]({link[1]}.md)", page.read_text())
         page.write_text(text)
@@ -55,17 +55,17 @@ def sidebar():
 
 
 def tutorial_page(script):
-    """What a script says of itself, its picture, and all of it."""
+    """Returns the page of a tutorial: docstring, picture and code of its script."""
     text = script.read_text()
-    said = ast.get_docstring(ast.parse(text)).strip()
-    first, _, rest = said.partition("\n\n")
+    description = ast.get_docstring(ast.parse(text)).strip()
+    first, _, rest = description.partition("\n\n")
     code = text.split('"""', 2)[2].strip()
     return (f"# {first.rstrip('.')}\n\n{rest}\n\n![{first}]({script.stem}.png)\n\n"
             f"```python\n{code}\n```\n")
 
 
 def gallery(source):
-    """Every picture of the guides as a thumbnail that leads to where it is explained."""
+    """Returns a page with every picture of the guides as a thumbnail linked to its explanation."""
     tiles, shown = [], set()
     for page in [page for pages in CHAPTERS.values() for page in pages if page != "gallery"]:
         folder = (source / page).parent.relative_to(source)
@@ -100,11 +100,11 @@ def write_source(source):
 
 def run(*command, **more):
     if subprocess.run(command, **more).returncode != 0:
-        sys.exit(f"site: {command[0]} found what must be mended")
+        sys.exit(f"site: {command[0]} reported warnings or errors: see above")
 
 
 class Links(html.parser.HTMLParser):
-    """Where a page leads, and the places in it that others may lead to."""
+    """Collects the links of a page and the anchors in it."""
 
     def __init__(self, text):
         super().__init__()
@@ -120,7 +120,7 @@ class Links(html.parser.HTMLParser):
 
 
 def dead_links(site):
-    """(page, link) of those within the site that lead nowhere; Doxygen looks after its own."""
+    """Returns (page, link) of the broken links within the site; Doxygen checks its own pages."""
     pages = {path: Links(path.read_text()) for path in site.rglob("*.html")
              if path.relative_to(site).parts[0] != "api"}
     dead = []
@@ -148,7 +148,7 @@ def main(folder):
     shutil.rmtree(site / ".doctrees", ignore_errors=True)
     dead = dead_links(site)
     for page, link in dead:
-        print(f"{page}: {link} leads nowhere")
+        print(f"{page}: broken link {link}")
     if dead:
         sys.exit(1)
     print(f"{site}/index.html")

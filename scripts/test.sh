@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# test.sh [--all]: installs what is missing (Debian 12), builds the release preset and runs its tests;
-# with --all also the nightly ones, which take hours.
+# test.sh [--all]: installs missing packages (Debian 12), builds the release preset and runs its
+# tests; with --all also the nightly ones, which take hours.
 set -euo pipefail
 case "$*" in
   "") preset=release ;;

@@ -9,12 +9,13 @@
 
 namespace flatspeckle::tests {
 
-/// Chance that a correct library fails any of its chi-square tests at fresh seeds, and how many
-/// such tests there are (rounded up): each is held to the Sidak share.
+/// Probability that a correct library fails any of its chi-square tests with fresh seeds, and the
+/// number of such tests (rounded up), which determines the Sidak level of each.
 inline constexpr double suite_significance = 1e-3;
 inline constexpr int suite_size = 50;
 
-/// Counts against the probabilities of the bins; neighbours are merged until each expects 5.
+/// Chi-square test of counts with the probabilities of the bins; neighbours are merged until each
+/// expects 5.
 struct ChiSquare {
   double statistic = 0;
   int degrees = 0;
@@ -24,22 +25,25 @@ struct ChiSquare {
   double limit() const;
 };
 
-/// The probabilities must be those of all that was counted.
+/// Checks counts; the probabilities must sum to 1.
 void check_chi_square(const std::vector<double>& counts, const std::vector<double>& probabilities);
 
-/// The seed of this number; where FLATSPECKLE_TEST_SEED is set (scripts/check.sh), a fresh one.
+/// Returns the seed with this number, or a fresh one if FLATSPECKLE_TEST_SEED is set
+/// (scripts/check.sh).
 std::uint64_t fresh_seed(std::uint64_t number);
 
-/// Whether tests take all of their samples and cases (FLATSPECKLE_TEST_WHOLE is set), as by night.
+/// Whether tests use all of their samples and cases (FLATSPECKLE_TEST_WHOLE is set), as in nightly
+/// runs.
 inline const bool is_night = std::getenv("FLATSPECKLE_TEST_WHOLE") != nullptr;
 
-/// Long tests take this part of their samples, a quarter by day, and their errors may be so much larger.
+/// Fraction of the samples that long tests use, a quarter by day, and the factor by which their
+/// errors may grow.
 struct Effort {
   double samples = 0.25, errors = 2;
 };
 Effort effort();
 
-/// Integral by adaptive Gauss-Kronrod quadrature, to a relative 1e-10 or so.
+/// Integrates by adaptive Gauss-Kronrod quadrature, to a relative error of about 1e-10.
 double integral(const std::function<double(double)>& f, double from, double to);
 
 }  // namespace flatspeckle::tests

@@ -32,26 +32,28 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// Keys of files that are looked for where they are used.
+/// Keys whose values are names of input files although Key::is_file() is false. The code that reads
+/// these files checks that they exist.
 const std::set<std::string> also_files{"compare",     "measurement", "near_sensors", "near_sources",
                                        "phase_table", "points",      "points_table"};
-/// Keys that choose by a word or name a file.
+/// Keys whose value is either one of several words or the name of an input file.
 const std::set<std::string> words_or_files{"placement", "structure"};
 
 /// Whether the value of a key in a scene file is the path of a file that the program reads.
 bool names_a_file(const Key& key, const std::string& value) {
   if (key.is_file() || key.is_number()) return key.is_file();
-  const bool is_output = key.help().starts_with("Result file");  // the structure that place writes
+  // the key `structure` of the subcommand `place` names an output file
+  const bool is_output = key.help().starts_with("Result file");
   return also_files.contains(key.name()) || (words_or_files.contains(key.name()) && !is_output &&
                                              value.find_first_of("./") != std::string::npos);
 }
 
-/// Scene files for CLI11. Relative paths of files are looked for beside the scene file first, then
-/// in the working folder.
+/// Parser of scene files, as CLI11 requires it. Relative paths of input files are searched in the
+/// folder of the scene file first, then in the working folder.
 class SceneFile : public CLI::Config {
  public:
   SceneFile() = default;
-  /// keys: those whose values may be paths.
+  /// keys: definitions of the keys, which also determine whose values are paths of input files.
   SceneFile(const Keys& keys, const CLI::App& app) : keys_(&keys), app_(&app) {}
 
   std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
@@ -70,10 +72,11 @@ class SceneFile : public CLI::Config {
     }
     return found;
   }
-  /// Never asked for.
+  /// Required by the base class, but not used.
   std::string to_config(const CLI::App*, bool, bool, std::string) const override { return ""; }
 
-  /// Throws InputError for a file of the scene that is in neither folder.
+  /// Throws InputError if a file named in the scene exists neither in the scene's folder nor in the
+  /// working folder.
   void require_files() const {
     if (missing_.empty()) return;
     for (const Key& key : keys_->rows())
@@ -81,7 +84,7 @@ class SceneFile : public CLI::Config {
         if (missing_.contains(value) && names_a_file(key, value))
           throw InputError(key.name(), value,
                            "no such file in " + std::filesystem::absolute(folder()).string() +
-                               ", where the scene is, nor in the working folder " +
+                               ", the folder of the scene, nor in the working folder " +
                                std::filesystem::current_path().string());
   }
 
@@ -91,7 +94,8 @@ class SceneFile : public CLI::Config {
     return file.has_parent_path() ? file.parent_path() : ".";
   }
 
-  /// The path that leads to a file of the scene from the working folder.
+  /// Returns the path of a file named in the scene: the path in the folder of the scene file if the
+  /// file exists there, otherwise the given path, which is relative to the working folder.
   std::string beside_the_scene(const std::string& value) const {
     std::error_code none;
     const std::filesystem::path path = value, beside = (folder() / path).lexically_normal();
@@ -103,11 +107,13 @@ class SceneFile : public CLI::Config {
 
   const Keys* keys_ = nullptr;
   const CLI::App* app_ = nullptr;
-  mutable std::set<std::string> missing_;  ///< files that are in neither folder
+  /// Files named in the scene that exist neither in the folder of the scene file nor in the working
+  /// folder.
+  mutable std::set<std::string> missing_;
 };
 
-/// Throws InputError for a run of figures too long for a number, which the search for units and
-/// libraries would be slow with.
+/// Throws InputError for a number with very many digits, which would make unit parsing and
+/// libraries slow.
 void refuse_long_numbers(const std::string& key, const std::string& text) {
   constexpr std::size_t most = 400;
   std::size_t figures = 0;
@@ -115,22 +121,23 @@ void refuse_long_numbers(const std::string& key, const std::string& text) {
     figures = letter == '.' || std::isdigit(static_cast<unsigned char>(letter)) ? figures + 1 : 0;
     if (figures > most)
       throw InputError(key, text.substr(0, 20) + "...",
-                       "a number must have at most " + std::to_string(most) + " figures");
+                       "a number must have at most " + std::to_string(most) + " digits");
   }
 }
 
 const std::map<std::string, double> sizes = {{"nm", 1e-9}, {"um", 1e-6}, {"mm", 1e-3},
                                              {"cm", 1e-2}, {"m", 1},     {"km", 1e3}};
 
-/// A length, an inverse or an inverse square in a text: power 1, -1, -2 of a unit.
+/// A number with a unit of length found in a text, such as 532nm, 10/mm or 0.05/um^2: its position,
+/// its number, its unit, and the power of the unit (1, -1 or -2).
 struct LengthText {
   std::size_t begin, end;
-  double number, unit;  ///< the unit in metres
+  double number, unit;  ///< `unit`: the unit of length in metres
   int power;
 };
 
-/// The first that begins at `from` or later: a number, perhaps a slash, a unit, perhaps ^2, with no
-/// letter behind it.
+/// Returns the first length that begins at or after the position `from`: a number, a slash or
+/// nothing, a unit, ^2 or nothing, and no letter after it.
 std::optional<LengthText> next_length(const std::string& text, std::size_t from) {
   const auto is_space = [](unsigned char c) { return std::isspace(c) != 0; };
   const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0; };
@@ -153,7 +160,9 @@ std::optional<LengthText> next_length(const std::string& text, std::size_t from)
   return std::nullopt;
 }
 
-/// Places and what stands with them in a row, "x y z power", may have either.
+/// Whether the values of a key may be given with a unit of length to this power. Keys whose values
+/// are rows of positions and other numbers, such as "x y z power", accept lengths and inverse
+/// lengths.
 bool may_have(const Key& key, int power) {
   const std::string& unit = key.unit();
   const bool row =
@@ -164,14 +173,16 @@ bool may_have(const Key& key, int power) {
          (unit == "1/length^2" && power == -2);
 }
 
-/// To 15 digits, which hide what the powers of ten have rounded.
+/// Returns the value as text with 15 digits, which hides rounding errors of the conversion of
+/// units.
 std::string to_15_digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.15g", value);
   return text;
 }
 
-/// Metres of "um", "0.5mm" or "1e-6"; no value if the text is anything else.
+/// Returns the length that a text such as "um", "0.5mm" or "1e-6" means, in metres; nullopt for any
+/// other text.
 std::optional<double> metres_of(const std::string& text) {
   if (const auto number = read_number(text)) return number;
   if (const auto size = sizes.find(text); size != sizes.end()) return size->second;
@@ -181,8 +192,9 @@ std::optional<double> metres_of(const std::string& text) {
   return found->number * found->unit;
 }
 
-/// Writes "532nm", "10/mm" or "0.05/um^2" of a key in the scene's unit of length, which has so many
-/// metres, and leaves other texts as they are. Throws InputError where the scene has no such unit.
+/// Converts lengths such as "532nm", "10/mm" or "0.05/um^2" in a text to the scene's unit of
+/// length; returns other texts unchanged. metres: the scene's unit of length in metres. Throws
+/// InputError if the scene has no unit of length.
 std::string in_unit_of_length(const Key& key, const std::string& text,
                               const std::optional<double>& metres) {
   std::string numbers;
@@ -191,7 +203,8 @@ std::string in_unit_of_length(const Key& key, const std::string& text,
     if (!may_have(key, found->power)) return text;
     if (!metres)
       throw InputError(key.name(), text,
-                       "has a unit; say too what lengths without one are in: length_unit = um");
+                       "has a unit: also give length_unit, such as length_unit = um, the unit of "
+                       "all lengths given without one");
     numbers += text.substr(done, found->begin - done) +
                to_15_digits(found->number * std::pow(found->unit / *metres, found->power));
     done = found->end;
@@ -200,21 +213,22 @@ std::string in_unit_of_length(const Key& key, const std::string& text,
 }
 
 constexpr const char* length_unit_key = "length_unit";
-/// Keys whose texts are values of others: depth=10um:1mm.
+/// Keys whose values assign values to other keys, as in --vary depth=10um:1mm.
 const std::set<std::string> assigning{"vary", "free", "against"};
-/// Keys of earlier versions, and what became of them.
+/// Keys of earlier versions, with a text for the error message about what replaces them.
 const std::map<std::string, std::string> gone{
     {"photon_radius", "; the photon map is a baseline of `bench error`"},
     {"rate", "; the search adam is a baseline of `bench error`"}};
 
-/// -.4 and -pi are numbers; CLI11 would take them for the flags "." and "p" with a value.
+/// Returns "0-.4" for the number -.4 and "0-pi" for -pi, because CLI11 would parse these arguments
+/// as flags "." and "p".
 std::string with_figure(const std::string& argument) {
   const bool number = argument.starts_with("-.") || argument.starts_with("-pi");
   const std::string first = argument.substr(0, argument.find_first_of(",:"));
   return number && written_number(first, Written::angle) ? "0" + argument : argument;
 }
 
-/// Returns the words that follow the subcommand, the last first.
+/// Returns the arguments after the subcommand in reverse order, as CLI11 requires.
 Arguments reversed(const Arguments& arguments) {
   Arguments flags;
   std::transform(arguments.rbegin(), arguments.rend() - 2, std::back_inserter(flags), with_figure);
@@ -235,12 +249,13 @@ std::string unknown_key(const Keys& keys, const std::string& name) {
   if (gone.contains(name)) return name + ": unknown key" + gone.at(name);
   const auto owners = key_owners();
   const auto owner = owners.find(name);
-  const std::string advice = owner == owners.end() ? did_you_mean(keys, name)
-                                                   : "; a key of " + joined(owner->second, ", ");
-  return name + ": unknown key" + advice + " (--help lists the known ones)";
+  const std::string advice = owner == owners.end()
+                                 ? did_you_mean(keys, name)
+                                 : "; it is a key of " + join_texts(owner->second, ", ");
+  return name + ": unknown key" + advice + " (--help lists all keys)";
 }
 
-/// CLI11's message as one line in this program's words.
+/// Converts an error of CLI11 to a one-line message in the form of this program's messages.
 std::string explain(const Keys& keys, const CLI::App& app, const CLI::ParseError& error) {
   std::string message = error.what();
   std::replace(message.begin(), message.end(), '\n', ' ');
@@ -252,7 +267,7 @@ std::string explain(const Keys& keys, const CLI::App& app, const CLI::ParseError
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) {
     const bool many = message.find("At Most") != std::string::npos;
     return message.substr(2, message.find(':') - 2) +
-           (many ? ": must have one value, and be given once" : ": must have a value");
+           (many ? ": must have one value and be given once" : ": must have a value");
   }
   return message;
 }
@@ -262,9 +277,9 @@ void refuse_strays(const Keys& keys, const std::vector<std::string>& strays) {
   const std::string& word = strays.front();
   if (word.starts_with("--"))
     throw InputError(unknown_key(keys, word.substr(2, word.find('=') - 2)));
-  throw InputError(word + ": stands alone; expected --key value" +
-                   (word.ends_with(".toml") ? " (of a scene file: --config FILE)"
-                                            : " (switches have none, most keys only one)"));
+  throw InputError(word + ": does not belong to a key; expected --key value" +
+                   (word.ends_with(".toml") ? " (for a scene file: --config FILE)"
+                                            : " (switches take no value, most keys only one)"));
 }
 
 }  // namespace
@@ -276,13 +291,14 @@ Subcommand::Subcommand(std::string name, std::string purpose)
   app_->set_config("--config");
   app_->allow_config_extras(CLI::config_extras_mode::error);
   app_->config_formatter(std::make_shared<SceneFile>(keys_, *app_));
-  app_->allow_extras();  // refused below, in clearer words
+  app_->allow_extras();  // unknown arguments are rejected later, with a clearer message
   app_->add_flag("--print-config", print_config_)->configurable(false);
 }
 
 Subcommand::~Subcommand() = default;
 
-/// Where there are lengths, and no key of the physics that says what they are in.
+/// Adds the key length_unit if any key is a length and the subcommand does not define length_unit
+/// itself.
 void Subcommand::add_length_unit() {
   const auto& rows = keys_.rows();
   const bool lengths =
@@ -291,14 +307,15 @@ void Subcommand::add_length_unit() {
   keys_.group("Units");
   keys_
       .add(length_unit_key, length_unit_,
-           "What lengths without a unit are in, um or 1e-6, where some are written with one: 532nm")
+           "Unit of lengths that are given without a unit: um, or 1e-6 (metres); required if any "
+           "length is given with a unit, such as 532nm")
       .positive()
       .unit("m")
       .effort();
   keys_.read(length_unit_);
 }
 
-/// Each name once, whatever the number of its rows.
+/// Adds a flag for each key name; several definitions may share a name.
 void Subcommand::add_flags() {
   std::set<std::string> names;
   for (const Key& key : keys_.rows()) {
@@ -313,7 +330,8 @@ void Subcommand::add_flags() {
   }
 }
 
-/// What is given of a key; CLI11 lets an option without a value take the flag that follows it.
+/// Returns the given values of a key. If a flag has no value, CLI11 takes the next flag as its
+/// value; this is rejected here.
 std::vector<std::string> Subcommand::results_of(const Key& key) const {
   const CLI::Option* const option = app_->get_option("--" + key.name());
   for (const std::string& value : option->results()) {
@@ -324,19 +342,23 @@ std::vector<std::string> Subcommand::results_of(const Key& key) const {
   return option->results();
 }
 
-/// Of "um" and the like, in metres.
+/// Returns the value of the key length_unit in metres; nullopt if it is not given.
 std::optional<double> Subcommand::take_length_unit() {
   const Key* const key = keys_.find(length_unit_key);
   if (key == nullptr) return std::nullopt;
   const auto given = results_of(*key);
   if (given.empty()) return std::nullopt;
   const auto metres = metres_of(given.back());
-  if (!metres) throw InputError(key->name(), given.back(), "must be um, mm, 0.5um, or in metres");
+  if (!metres)
+    throw InputError(
+        key->name(), given.back(),
+        "must be um, mm or another unit, a length such as 0.5um, or a number of metres");
   keys_.set(key->name(), {number_text(*metres)});
   return metres;
 }
 
-/// Without units of length, in values that a text gives to another key too.
+/// Returns the value of a key with all lengths converted to numbers, also in values such as
+/// depth=10um:1mm that assign values to another key.
 std::string Subcommand::in_numbers(const Key& key, const std::string& text,
                                    const std::optional<double>& metres) const {
   if (!assigning.contains(key.name())) return in_unit_of_length(key, text, metres);
@@ -357,12 +379,13 @@ void Subcommand::take_results() {
     } catch (const InputError& error) {
       const std::string table = key.name() + "_table";
       if (keys_.find(table) == nullptr) throw;
-      throw InputError(error.what() + ("; a table is given by " + table));
+      throw InputError(error.what() + ("; to give a table, use the key " + table));
     }
   }
 }
 
-/// Turns CLI11's complaints into ours; CallForHelp passes.
+/// Runs a parser of CLI11, then sets the variables of the keys and checks their values. Errors of
+/// CLI11 are converted to InputError; the exception CLI::CallForHelp is passed on.
 template <typename Parser>
 void Subcommand::parse_by(const Parser& parser) {
   add_flags();
@@ -384,7 +407,8 @@ const Keys& Subcommand::all_keys() {
   return keys_;
 }
 
-/// In the order in which CLI11 takes them, last first; less the words before them.
+/// Returns the arguments in reverse order, as CLI11 requires, without the words before the first
+/// flag, which are stored in *word_.
 Arguments Subcommand::flags_of(const Arguments& arguments) {
   Arguments flags = reversed(arguments);
   for (; word_ != nullptr && !flags.empty() && !flags.back().starts_with('-'); flags.pop_back())
@@ -398,7 +422,7 @@ bool Subcommand::parse(const Arguments& arguments) {
   const auto parser = [&] {
     try {
       app_->parse(Arguments(own));
-    } catch (const InputError& error) {  // from the scene file
+    } catch (const InputError& error) {  // the error is in the scene file
       throw InputError(app_->get_config_ptr()->as<std::string>() + ", " + error.what());
     }
   };
@@ -434,8 +458,8 @@ void Subcommand::print_help() const {
   std::puts(
       "\nProgram:\n"
       "  -h,--help                       Print this help and exit\n"
-      "  --config FILE                   Scene file: these flags as keys, one a line (TOML)\n"
-      "  --print-config                  Check all, print the resolved scene and exit");
+      "  --config FILE                   Scene file: these flags as keys, one per line (TOML)\n"
+      "  --print-config                  Check all keys, print the resolved scene and exit");
 }
 
 std::string value_ahead(const std::string& key, const Arguments& arguments) {

@@ -13,12 +13,12 @@ class App;
 
 namespace flatspeckle::apps {
 
-/// argv of the program; [1] is the subcommand.
+/// Arguments of the command line (argv): [0] is the program, [1] the subcommand.
 using Arguments = std::vector<std::string>;
 
-/// The parser of a subcommand: flags, scene file, help and resolved scene, all by the rows of its
-/// keys. A scene file (--config) holds the flags as flat keys, a flag beats the file, unknown keys
-/// are errors.
+/// Parser of the command line of a subcommand. Its flags, the keys of its scene file, its help and
+/// the resolved scene all follow from the key definitions. A scene file (--config) contains the
+/// flags as keys without tables. Flags override the scene file; unknown keys are errors.
 class Subcommand {
  public:
   Subcommand(std::string name, std::string purpose);
@@ -26,25 +26,26 @@ class Subcommand {
 
   Keys& keys() { return keys_; }
   const Keys& keys() const { return keys_; }
-  /// With those that follow from others, once these are added.
+  /// Returns all keys, including length_unit, which is added here if any key is a length. To be
+  /// called after all other keys are added.
   const Keys& all_keys();
 
-  /// Binds what stands before the flags to a text, as `explain FILE` has it.
+  /// Makes parse() store the words before the flags, such as FILE in `explain FILE`, in `word`.
   void take_word(std::string& word) { word_ = &word; }
 
-  /// Fills the members of the keys and checks what their rows accept. Throws InputError. False
-  /// where there is no more to do: after --help and the like.
+  /// Sets the variables of all keys and checks their values. Returns false if there is nothing more
+  /// to do, for example after --help. Throws InputError.
   bool parse(const Arguments& arguments);
-  /// The same for the text of a scene file alone.
+  /// Like parse(), but reads the text of a scene file instead of command-line arguments.
   void parse_config(const std::string& config);
 
-  /// After all that is asked for has been made of the keys: throws InputError for those that
-  /// nothing read. False where no more is wanted than the resolved scene (--print-config).
+  /// Throws InputError if a key is given that no code has read. To be called after everything has
+  /// been made from the keys. With --print-config, prints the resolved scene and returns false.
   bool settle() const;
-  /// Before that: whether it is.
+  /// Whether --print-config is given, so that settle() will only print the resolved scene.
   bool only_prints() const { return print_config_; }
 
-  /// As typed.
+  /// Returns the command line as typed.
   const std::string& text() const { return text_; }
 
  private:
@@ -68,10 +69,12 @@ class Subcommand {
   bool print_config_ = false;
 };
 
-/// The value of a key that says which others there are, from the flags or the scene file that they
-/// name; empty where it is not given. What else is wrong shows when all is parsed.
+/// Returns the value of a key before the other keys are defined, for the key `of`, on which the set
+/// of other keys depends. The value is taken from the flags or from the scene file named by
+/// --config; it is empty if the key is not given. Errors are ignored here; Subcommand::parse()
+/// reports them.
 std::string value_ahead(const std::string& key, const Arguments& arguments);
-/// Returns the same from the text of a scene file.
+/// Returns the value of a key in the text of a scene file; empty if it is not given.
 std::string value_in(const std::string& key, const std::string& config);
 
 }  // namespace flatspeckle::apps

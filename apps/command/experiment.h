@@ -13,42 +13,44 @@
 
 namespace flatspeckle::apps {
 
-/// Work that is planned, and what becomes of its sums.
+/// Plan of an experiment: its batches, and the function that writes the result.
 struct PlannedExperiment {
-  std::string plan;  ///< how the numbers are found
+  std::string plan;  ///< description of the method, for the result file
   BatchJob batches;
-  /// The result of all batches, all that the file has but provenance, traces and states. tells:
-  /// also what a run of its own tells, tables on standard output, notes, and counts of the work
-  /// that depend on threads and interruptions.
-  std::function<void(ResultFile&, const GroupedSums&, bool tells)> write;
+  /// Writes the result of all batches, except provenance, traces and states. If `prints` is true,
+  /// also prints tables and notes, and writes counts of work, which depend on threads and
+  /// interruptions. `prints` is true for a single run, and false within a sweep or search.
+  std::function<void(ResultFile&, const GroupedSums&, bool prints)> write;
 };
 
-/// What a subcommand makes of its keys: one result. An object is one run of it, which a subcommand
-/// does alone and a sweep many times with other values.
+/// One run that makes one result from the values of its keys. A subcommand such as `covariance`
+/// makes one run; a sweep makes many runs with different values.
 class Experiment {
  public:
   virtual ~Experiment() = default;
 
-  /// In place of the default; before add_keys(). What has no chance in it takes no seed that is
-  /// given, but any default.
+  /// Sets the default seed; to be called before add_keys(). Deterministic experiments ignore it,
+  /// and reject a seed given by the user.
   void set_default_seed(std::uint64_t seed) { run_.seed = static_cast<std::int64_t>(seed); }
-  /// Only the keys are wanted (--print-config): what takes time in read() may be left out. Before
-  /// read().
+  /// Declares that only the keys will be printed (--print-config), so that read() may omit slow
+  /// work. To be called before read().
   void only_print() { only_prints_ = true; }
-  /// Keys of all it reads, those of the run too; they are bound to this object.
+  /// Adds all keys that read() uses, including those of the run (out, threads ...). The keys set
+  /// members of this object.
   virtual void add_keys(Keys& keys) = 0;
-  /// Makes the scene. All that can be refused is refused here: throws InputError.
+  /// Makes the scene from the keys and checks all input. Throws InputError.
   virtual void read(const Keys& keys) = 0;
-  /// What to know of the scene before it is run: on standard error.
+  /// Prints notes about the scene on standard error, before the run.
   virtual void note() const {}
-  /// After read(). May take some time, as a pilot does.
+  /// Plans the run; to be called after read(). May take some time for a pilot run.
   virtual PlannedExperiment plan() const = 0;
-  /// One run as a call of the program. Returns the exit status.
+  /// Makes the run as the only one of the program, writes its result, and returns the exit status.
   virtual int run_alone(Session& session, const std::string& label) const;
 
   const RunSettings& run() const { return run_; }
   const StopRule& stop() const { return stop_; }
-  /// What the scene takes from other files, as text.
+  /// Returns the contents of the other files that the scene uses, as text; it is part of the
+  /// identity of the run.
   const std::string& inputs() const { return inputs_; }
 
  protected:
@@ -60,21 +62,22 @@ class Experiment {
   bool only_prints_ = false;
 };
 
-/// A result that is made in one go.
+/// An experiment whose result is made in one piece, without batches.
 class OneShot : public Experiment {
  public:
-  OneShot() { stop_.samples = 2; }  // batches
-  /// Plans two batches, of which the first makes the result and the second is empty. The result is
-  /// kept in this process alone: where another one ran the first batch, or an interrupted one, it
-  /// is made again when it is written.
+  OneShot() { stop_.samples = 2; }  // two batches, as explained at plan()
+  /// Plans two batches: the first calls make(), and the second does nothing. The result is stored
+  /// only in this process; if the first batch was run by another process or before an interruption,
+  /// PlannedExperiment::write calls make() again.
   PlannedExperiment plan() const override;
   int run_alone(Session& session, const std::string& label) const override;
 
  protected:
-  /// Makes the result. tells: on standard output, too. Within a sweep or a search it throws
-  /// Interrupted once a signal has come; signals end a run alone at once.
-  virtual Made make(ResultFile& file, bool tells) const = 0;
-  /// Of a file of its own.
+  /// Computes the result and writes it to `file`. prints: whether the result is also printed on
+  /// standard output. In a sweep or search, throws Interrupted after a signal; a single run is
+  /// ended by the signal at once.
+  virtual Made make(ResultFile& file, bool prints) const = 0;
+  /// Returns where the result file of a single run is built: in memory or on disk.
   virtual ResultFile::Storage storage() const { return ResultFile::Storage::memory; }
   int threads() const {
     return run_.threads > 0 ? static_cast<int>(run_.threads) : default_threads();

@@ -19,7 +19,7 @@ std::unique_ptr<Call> list_keys(const std::string& of);
 
 namespace {
 
-/// A text of JSON.
+/// Quotes a text for JSON.
 std::string quoted(const std::string& text) {
   std::string all = "\"";
   for (const char c : text) {
@@ -29,7 +29,7 @@ std::string quoted(const std::string& text) {
   return all + '"';
 }
 
-/// A text of manual pages.
+/// Escapes a text for manual pages (roff).
 std::string roff(const std::string& text) {
   std::string all = text.starts_with('.') || text.starts_with('\'') ? "\\&" : "";
   for (const char c : text) {
@@ -44,7 +44,8 @@ std::size_t letters_apart(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);
   for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t before = i;  // of a's letters up to i and b's up to j
+    // Levenshtein distance of the first i letters of a from the first j letters of b.
+    std::size_t before = i;
     row[0] = i + 1;
     for (std::size_t j = 0; j < b.size(); ++j) {
       const std::size_t changed = before + (a[i] == b[j] ? 0 : 1);
@@ -74,25 +75,26 @@ const char* type_of(const Key& key) {
                            : "text";
 }
 
-/// "NUMBER ..." with the default.
+/// Returns the text that stands for the value of a key in its line of --help, with the default: "
+/// FLOAT=1 ...".
 std::string shape_of(const Key& key) {
   if (key.is_switch()) return "";
   std::string shape = key.is_whole() ? " INT" : key.is_number() ? " FLOAT" : " TEXT";
-  if (!key.default_value().empty()) shape += '=' + joined(key.default_value(), ",");
+  if (!key.default_value().empty()) shape += '=' + join_texts(key.default_value(), ",");
   return shape + (key.is_list() ? " ..." : "");
 }
 
 std::string quoted_list(const std::vector<std::string>& texts) {
   std::vector<std::string> all;
   for (const std::string& text : texts) all.push_back(quoted(text));
-  return '[' + joined(all, ", ") + ']';
+  return '[' + join_texts(all, ", ") + ']';
 }
 
 const char* json(bool value) {
   return value ? "true" : "false";
 }
 
-/// One object for each row.
+/// Prints the key definitions as a JSON list of objects.
 void print_json(const Keys& keys) {
   const char* between = "\n";
   std::cout << '[';
@@ -112,7 +114,7 @@ void print_json(const Keys& keys) {
   std::cout << "\n]";
 }
 
-/// Groups whole, in the order in which they come first.
+/// Returns the key definitions sorted by their groups. Groups are in the order of their first keys.
 std::vector<const Key*> in_groups(const Keys& keys) {
   std::map<std::string, std::size_t> first;
   std::vector<const Key*> rows;
@@ -136,7 +138,7 @@ void print_markdown(const Keys& keys, const std::string& subcommand) {
     group = key.group();
     std::string meaning;
     for (const char c : key.help()) meaning += c == '|' ? std::string("\\|") : std::string(1, c);
-    std::cout << "| `" << key.name() << "` | " << joined(key.default_value(), " ") << " | "
+    std::cout << "| `" << key.name() << "` | " << join_texts(key.default_value(), " ") << " | "
               << meaning << " |\n";
   }
 }
@@ -166,7 +168,7 @@ void print_dictionary(const Keys& keys) {
   }
 }
 
-/// The keys of a subcommand in one of the forms.
+/// Prints the keys of a subcommand in the format `form`.
 void print_keys(const Keys& keys, const std::string& subcommand, const std::string& form) {
   if (form == "json") print_json(keys);
   if (form == "markdown") print_markdown(keys, subcommand);
@@ -175,7 +177,7 @@ void print_keys(const Keys& keys, const std::string& subcommand, const std::stri
   if (form == "dictionary") print_dictionary(keys);
 }
 
-/// What stands before, between and after the keys of the subcommands.
+/// Texts of an output format: before, between and after the keys of the subcommands.
 struct Frame {
   const char *form, *before, *between, *after;
 };
@@ -212,12 +214,13 @@ const Frame& frame_named(const std::string& form) {
 }
 
 void print_owners() {
-  std::cout << "\n## Which key belongs to which subcommand\n\n| key | of |\n|---|---|\n";
+  std::cout << "\n## Which key belongs to which subcommand\n\n| key | subcommands |\n|---|---|\n";
   for (const auto& [key, owners] : key_owners())
-    std::cout << "| `" << key << "` | " << joined(owners, ", ") << " |\n";
+    std::cout << "| `" << key << "` | " << join_texts(owners, ", ") << " |\n";
 }
 
-/// Of completion: what the first word may be; the others are flags of it.
+/// For shell completion, prints the names of the subcommands, which are completed as the first
+/// word, and the beginning of the `case` statement that selects the flags of a subcommand.
 void print_first_words(const std::string& shell) {
   std::cout << '"';
   for (const SubcommandEntry& entry : subcommands()) std::cout << entry.name << ' ';
@@ -233,7 +236,8 @@ void print_heading(const std::string& form, const SubcommandEntry& entry) {
     std::cout << ".SH flatspeckle " << roff(entry.name) << '\n' << roff(entry.purpose) << '\n';
 }
 
-/// JSON begins with the version, and each subcommand's purpose.
+/// Prints the keys of all subcommands in the format that the user has named. JSON also contains the
+/// version and the purpose of each subcommand.
 int print_all_keys(const Subcommand&, OneWord& values) {
   const std::string form = values.word.empty() ? "json" : values.word;
   const Frame& frame = frame_named(form);
@@ -274,7 +278,9 @@ void print_help_lines(const Keys& keys) {
 }
 
 std::unique_ptr<Call> list_keys(const std::string&) {
-  return call_with<OneWord>("keys", "The keys of all subcommands: keys FORM, json if not given",
+  return call_with<OneWord>("keys",
+                            "Lists the keys of all subcommands: keys FORMAT, one of json markdown "
+                            "man dictionary completion zsh (default: json)",
                             print_all_keys);
 }
 

@@ -6,14 +6,14 @@
 
 namespace flatspeckle::apps {
 
-/// "; did you mean depth?", of the key that a misspelt name was likely meant to be: of the fewest
-/// letters to add, take out or change, at most two, one of short names (Levenshtein 1966). Empty
-/// where there is none.
+/// Returns a text such as "; did you mean depth?" for a misspelt key name. It names the key with
+/// the fewest inserted, deleted or changed letters (Levenshtein 1966): at most two, or one for
+/// short names. Empty if there is no such key.
 std::string did_you_mean(const Keys& keys, const std::string& name);
 
-// Keys as texts for people and programs, all by their rows.
+// Printing of the keys of a subcommand.
 
-/// The lines of --help, by groups.
+/// Prints the lines of --help about the keys, sorted by their groups.
 void print_help_lines(const Keys& keys);
 
 }  // namespace flatspeckle::apps

@@ -17,8 +17,9 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// Whether each is far below the index of all media without absorption; metals absorb.
-bool looks_like_excess(const std::vector<Complex>& indices) {
+/// Whether the refractive indices are probably excesses n - 1: all real and imaginary parts are
+/// below 0.5. The latter excludes metals, whose imaginary part is large.
+bool resembles_excess(const std::vector<Complex>& indices) {
   constexpr double least = 0.5;
   return !indices.empty() && std::ranges::all_of(indices, [](const Complex& index) {
     return index.real() < least && std::abs(index.imag()) < least;
@@ -35,9 +36,10 @@ std::vector<Complex> indices_of(const Table& table) {
 }
 
 void note_index(const Key& key, const std::vector<Complex>& indices) {
-  if (looks_like_excess(indices))
+  if (resembles_excess(indices))
     std::cerr << "note: " << key.name() << " = " << key.shown() << ": the index is below 0.5"
-              << (indices.size() > 1 ? " everywhere" : "") << "; it is n, not n - 1\n";
+              << (indices.size() > 1 ? " everywhere" : "")
+              << "; this key is the index n, not n - 1\n";
 }
 
 void note_excess(const Key& key) {
@@ -45,7 +47,7 @@ void note_excess(const Key& key) {
   const auto excess = ResultReader(key.shown()).dataset<double>("excess");
   if (!excess.empty() && std::ranges::min(excess) > most)
     std::cerr << "note: " << key.name() << " = " << key.shown()
-              << ": the excess is above 0.9 everywhere; it is n - 1, not n\n";
+              << ": the excess is above 0.9 everywhere; this key is n - 1, not n\n";
 }
 
 void note_key(const Key& key) {

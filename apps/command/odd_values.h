@@ -4,8 +4,8 @@
 
 namespace flatspeckle::apps {
 
-/// Says on standard error which values can be used and are more often slips: no scatterers, and
-/// indices that look like n - 1, or n - 1 that looks like n.
+/// Prints notes on standard error for values that are valid but are often mistakes: no scatterers,
+/// a refractive index n that may be meant as n - 1, or an excess n - 1 that may be meant as n.
 void note_odd_values(const Keys& keys);
 
 }  // namespace flatspeckle::apps

@@ -17,7 +17,7 @@ InputError error_at(const toml::source_region& source, const std::string& what) 
   return InputError("line " + std::to_string(source.begin.line) + ": " + what);
 }
 
-/// Writes a value that is no list.
+/// Returns a single (not a list) TOML value as text.
 std::string text_of(const std::string& key, const toml::node& value) {
   if (const auto* text = value.as_string()) return text->get();
   if (const auto* whole = value.as_integer()) return std::to_string(whole->get());
@@ -31,7 +31,7 @@ std::string text_of(const std::string& key, const toml::node& value) {
 SceneEntry entry_of(const std::string& key, const toml::node& value) {
   SceneEntry entry{key, {}};
   if (std::isalpha(static_cast<unsigned char>(key[0])) == 0)
-    throw error_at(value.source(), key + ": no key has such a name");
+    throw error_at(value.source(), key + ": must begin with a letter");
   if (const auto* list = value.as_array())
     for (const toml::node& element : *list) entry.values.push_back(text_of(key, element));
   else
@@ -41,12 +41,14 @@ SceneEntry entry_of(const std::string& key, const toml::node& value) {
   return entry;
 }
 
-/// The line where the text is no TOML, and why.
+/// Returns an error whose message contains the line that is not valid TOML and the reason.
 InputError explain(const std::string& text, const toml::parse_error& error) {
   std::istringstream lines(text);
   std::string line;
   for (auto left = error.source().begin.line; left > 0; --left) std::getline(lines, line);
-  const auto is_beyond_ascii = [](unsigned char c) { return c > 0x7F; };  // maybe no UTF-8 either
+  const auto is_beyond_ascii = [](unsigned char c) {
+    return c > 0x7F;
+  };  // such characters may be invalid UTF-8
   std::replace_if(line.begin(), line.end(), is_beyond_ascii, '?');
   const std::string_view why = error.description();  // "Error while parsing value: ..."
   return error_at(error.source(), line + ": " + std::string(why.substr(why.find(": ") + 2)) +

@@ -11,8 +11,8 @@ struct SceneEntry {
   std::vector<std::string> values;
 };
 
-/// Reads TOML: one flat list of keys, whose values are texts, numbers, true, false or lists of
-/// these. Throws InputError naming the line.
+/// Parses a scene file in TOML: keys (not in tables) whose values are texts, numbers, true, false
+/// or lists of these. Throws InputError, whose message gives the line number.
 std::vector<SceneEntry> read_scene(const std::string& text);
 
 }  // namespace flatspeckle::apps

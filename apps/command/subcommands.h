@@ -13,17 +13,18 @@ namespace flatspeckle::apps {
 
 class Experiment;
 
-/// One call of a subcommand: its keys, bound to values of its own, and what is done with them.
+/// One call of a subcommand: its keys with their values, and the work done with them.
 class Call {
  public:
   virtual ~Call() = default;
   virtual Subcommand& command() = 0;
-  /// Once the keys are filled. Returns the exit status.
+  /// Does the work, after the values of the keys are set. Returns the exit status.
   virtual int run() = 0;
 };
 
-/// With a struct of values; add_keys(keys, values) is found by the struct's name. A member `word`
-/// is what stands before the flags, as in `explain FILE`.
+/// Call whose values are the members of a struct. The keys that set the members are added by the
+/// function add_keys(keys, values) in the namespace of the struct. If the struct has a member
+/// `word`, it receives the words before the flags, such as FILE in `explain FILE`.
 template <typename Values>
 class CallWith : public Call {
  public:
@@ -56,33 +57,35 @@ struct OneWord : NoKeys {
   std::string word;
 };
 
-/// A subcommand of the program: a call of its own, or an experiment, which makes one result
-/// and which sweeps and searches run too.
+/// A subcommand of the program. It is defined either by `make`, which makes its call, or by
+/// `experiment`, if it makes one result and can also be run by sweeps and searches.
 struct SubcommandEntry {
   const char *name, *purpose;
-  /// of: the subcommand whose keys it has too, empty where its own keys alone are wanted.
+  /// Makes the call; nullptr if `experiment` is given. of: for sweep and optimise, the subcommand
+  /// whose keys are included; if empty, the call has only its own keys.
   std::unique_ptr<Call> (*make)(const std::string& of);
-  const char* title = nullptr;  ///< of an experiment: the head of --help
+  const char* title = nullptr;  ///< heading of --help, if `experiment` is given
   std::unique_ptr<Experiment> (*experiment)() = nullptr;
-  /// The subcommand meant where the key `of` is not given; nullptr where there is no such key.
+  /// Default of the key `of`; nullptr if the subcommand has no key `of`.
   const char* of = nullptr;
 };
 
-/// All of them, in the order of the help. A new subcommand is declared and listed in
+/// Returns all subcommands, in the order of --help. To add one, declare and list it in
 /// subcommands.cpp.
 std::span<const SubcommandEntry> subcommands();
 
-/// A call whose keys are at their defaults.
+/// Makes a call of a subcommand, with all keys at their defaults.
 std::unique_ptr<Call> make_call(const SubcommandEntry& entry, const std::string& of = "");
-/// How a call ended: the exit status, and whether it makes a result, apart from what it prints.
+/// Outcome of a call: the exit status, and whether the call has written a result file besides
+/// printing.
 struct CallEnd {
   int status = ExitStatus::done;
   bool has_result = false;
 };
-/// Parses the arguments and runs.
+/// Parses the arguments and runs the subcommand.
 CallEnd run_subcommand(const SubcommandEntry& entry, const Arguments& arguments);
 
-/// Which subcommands have a key, by its name, in the order of the help.
+/// Returns, for each key name, the subcommands that have the key, in the order of the help.
 std::map<std::string, std::vector<std::string>> key_owners();
 
 }  // namespace flatspeckle::apps

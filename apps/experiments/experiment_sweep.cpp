@@ -11,15 +11,16 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// Of the sweep as a whole, not of its points.
+/// Keys that apply to the sweep as a whole, not to the run at each point.
 const std::set<std::string> keys_of_the_sweep{"of",      "vary",    "shard", "out",
                                               "threads", "seconds", "resume"};
 
 std::string line(const std::string& key, const std::vector<std::string>& values) {
-  return key + " = " + joined(values, " ") + '\n';
+  return key + " = " + join_texts(values, " ") + '\n';
 }
 
-/// Of the values, which may be very many: how many, and a checksum of their texts (FNV-1a).
+/// Returns a short text that identifies a list of values, which may be long: their number and a
+/// checksum (FNV-1a) of their texts.
 std::string digest(const AxisValues& values) {
   std::uint64_t sum = 0xcbf29ce484222325;
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -28,7 +29,7 @@ std::string digest(const AxisValues& values) {
   return std::to_string(values.size()) + " values " + std::to_string(sum);
 }
 
-/// By the rows of its key alone.
+/// Checks that all values of an axis are accepted by the key that it varies.
 void check_values(const SweepPoints& points, std::size_t number, const Keys& keys) {
   const SweepAxis& axis = points.axes[number];
   SweepPoints alone{{axis}, points.is_list};
@@ -39,7 +40,7 @@ void check_values(const SweepPoints& points, std::size_t number, const Keys& key
   }
 }
 
-/// The first and the last values of all axes.
+/// Whether a point is a corner of the grid: it has the first or last value of every axis.
 bool is_corner(const SweepPoints& points, std::size_t point) {
   for (std::size_t axis = 0; axis < points.axes.size(); ++axis) {
     const AxisValues& values = points.axes[axis].values;
@@ -52,15 +53,15 @@ bool is_corner(const SweepPoints& points, std::size_t point) {
 }  // namespace
 
 ExperimentSweep::ExperimentSweep(const std::string& of)
-    : Sweep(std::string("A sweep of: ") + ExperimentFamily(of).purpose()),
-      family_(of),
-      base_(family_.unset()) {
+    : Sweep(std::string("A sweep of: ") + ExperimentKind(of).purpose()),
+      kind_(of),
+      base_(kind_.unset()) {
   of_ = of;
   Keys& keys = this->keys();
   base_->add_keys(keys);
   add_run_keys_of_many(keys, run_);
   keys.group("Sweep");
-  keys.add("of", of_, "The subcommand whose results these are");
+  keys.add("of", of_, "Subcommand whose results are swept");
   add_keys(keys, vary_);
   add_share_key();
 }
@@ -70,23 +71,25 @@ void ExperimentSweep::check() {
   keys.read(of_);
   keys.read(run_.seconds);
   points_ = varied_points(keys, vary_, keys);
-  std::set<std::string> noted = keys_of_the_sweep;  // of a key that is varied as a whole, nothing
+  // Keys that the runs do not share: the keys of the sweep itself, and the keys that an axis
+  // varies.
+  std::set<std::string> noted = keys_of_the_sweep;
   noted.insert(keys.name(vary_.points));
   for (const SweepAxis& axis : points_.axes) noted.insert(axis.key);
-  family_.take_given(keys, noted);
+  kind_.take_given(keys, noted);
   check_points();
 }
 
-/// Values one by one, and scenes of as many points as can soon be made.
+/// Checks all values of each axis, and the scenes of a limited number of points.
 void ExperimentSweep::check_points() {
-  const auto scratch = family_.unset();
+  const auto scratch = kind_.unset();
   Keys all;
   scratch->add_keys(all);
-  family_.set_given(all);
+  kind_.set_given(all);
   for (std::size_t axis = 0; axis < points_.axes.size(); ++axis) check_values(points_, axis, all);
   set_point(points_, points_.count() - 1, all);
   for (const std::size_t point : points_to_check()) experiment(point, {&all, &keys()});
-  all.join_reads(keys());  // the seed
+  all.merge_reads(keys());  // includes keys that only the sweep itself has read, such as the seed
   all.refuse_unread();
   inputs_ = experiment(0)->inputs();
 }
@@ -104,9 +107,9 @@ std::vector<std::size_t> ExperimentSweep::points_to_check() const {
 }
 
 std::unique_ptr<Experiment> ExperimentSweep::experiment(
-    std::size_t point, const std::vector<const Keys*>& joined) const {
+    std::size_t point, const std::vector<const Keys*>& also_marked) const {
   return at_point(points_, point, [&] {
-    return family_.run([&](const Keys& keys) { set_point(points_, point, keys); }, joined);
+    return kind_.run([&](const Keys& keys) { set_point(points_, point, keys); }, also_marked);
   });
 }
 
@@ -121,7 +124,7 @@ SweepRun ExperimentSweep::open(std::size_t point) const {
 
 std::string ExperimentSweep::identity_of_points() const {
   std::string text = "flatspeckle " + version() + ", sweep of " + of_ + ", format 1\n";
-  text += family_.given();
+  text += kind_.given();
   std::vector<std::string> axes;
   for (const SweepAxis& axis : points_.axes) axes.push_back(axis.key);
   return text + line("varied", axes) + inputs_;

@@ -14,17 +14,18 @@ namespace flatspeckle::apps {
 const DatasetTable stacked_table{
     .name = "sweep of results",
     .rows = {{"relative_error", Data::real, "SWEPT", "1",
-              "RMS error relative to the RMS value; 1e300 where none is known"},
-             {"samples", Data::real, "SWEPT", "1", "samples"},
+              "RMS error relative to the RMS value; 1e300 if unknown"},
+             {"samples", Data::real, "SWEPT", "1", "number of samples"},
              {"cpu_s", Data::real, "SWEPT", "s", "processor time, all threads"},
              {"wall_s", Data::real, "SWEPT", "s",
-              "time from the first batch to the last, other points' included"}},
-    .attributes = {{"", "of", "text", "the subcommand whose results these are"},
-                   {"", "complete", "bool", "0: points are missing"},
-                   {"", "ranks", "int64", "processes that worked on it (MPI)"},
-                   {"", "swept", "texts", "keys that were swept, in the order of their axes"},
-                   {"", "left_out", "texts",
-                    "datasets of some points that others have not, or in another shape"}}};
+              "time from the first batch of the point to the last, including time spent on other "
+              "points"}},
+    .attributes = {
+        {"", "of", "text", "the subcommand whose results were swept"},
+        {"", "complete", "bool", "whether all points are finished"},
+        {"", "ranks", "int64", "number of processes (MPI)"},
+        {"", "swept", "texts", "swept keys, in the order of their axes"},
+        {"", "left_out", "texts", "datasets that some points lack or have in another shape"}}};
 
 namespace {
 
@@ -40,7 +41,8 @@ std::size_t value_bytes(const CollectedDataset::Held& values) {
   return std::visit([](const auto& held) { return sizeof(held.front()); }, values);
 }
 
-/// At most so many points that follow each other: the last axes whole, a part of the one before.
+/// Returns the extents of a chunk of at most `most` consecutive points. Beginning with the last
+/// axis, axes are covered in full as long as possible; the next axis is covered in part.
 Extents chunk_of(const Extents& extents, std::size_t most) {
   Extents chunk(extents.size(), 1);
   for (std::size_t axis = extents.size(); axis-- > 0 && most > 1;) {
@@ -58,15 +60,15 @@ Values values_of(const CollectedDataset::Held& held) {
       held);
 }
 
-/// Holds what all points of a sweep have in one dataset, the axes of the sweep in front. Values
-/// come point by point, in the order of the points, and are written by whole chunks of some 64 kB:
-/// no more than that is in memory, or one point's.
+/// Writes a dataset that combines one dataset of all points of a sweep; the axes of the sweep
+/// precede its own axes. The values are added point by point, in order, and written in chunks of
+/// about 64 kB. At most one chunk or one point is in memory.
 class StackedDataset {
  public:
   using Held = CollectedDataset::Held;
 
-  /// of_point: its axes are those of each point; its values say their kind and number alone.
-  /// grid: the axes of the sweep, with scales; extents: how long they are.
+  /// of_point: the dataset of one point, from which axes, type and number of values are taken.
+  /// grid: axes of the sweep, whose scales are already written. extents: lengths of these axes.
   StackedDataset(ResultFile& file, const CollectedDataset& of_point, const std::vector<Axis>& grid,
                  const Extents& extents)
       : file_(file),
@@ -84,7 +86,7 @@ class StackedDataset {
                        of_point.long_name);
   }
 
-  /// Takes the values of the next point.
+  /// Adds the values of the next point.
   void add(const Held& values) {
     std::visit(
         [&]<typename Value>(std::vector<Value>& held) {
@@ -101,7 +103,7 @@ class StackedDataset {
   }
 
   void add(double value) { add(std::vector{value}); }
-  /// The next point has none: 0.
+  /// Adds zeros for the next point, which has no values.
   void add_none() {
     Held none = waiting_;
     std::visit([&](auto& held) { held.assign(of_each_, {}); }, none);
@@ -109,7 +111,7 @@ class StackedDataset {
   }
 
  private:
-  /// The first point that waits.
+  /// Returns the index along each axis of the sweep of the first point that is not yet written.
   Extents start() const {
     Extents start(extents_.size());
     std::size_t rest = points_;
@@ -118,7 +120,8 @@ class StackedDataset {
     return start;
   }
 
-  /// Of the chunk there, what is not beyond the end.
+  /// Returns the number of points along each axis in the chunk that begins at `start`; smaller
+  /// chunks at the ends of the axes.
   Extents count(const Extents& start) const {
     Extents count = chunk_;
     for (std::size_t axis = 0; axis < count.size(); ++axis)
@@ -130,7 +133,8 @@ class StackedDataset {
   std::string name_;
   std::vector<std::size_t> extents_, chunk_;
   std::size_t of_each_;
-  std::size_t points_ = 0, waiting_points_ = 0;  ///< that are written, and that are not yet
+  /// Number of points that are already written, and number of points in `waiting_`.
+  std::size_t points_ = 0, waiting_points_ = 0;
   Held waiting_;
 };
 
@@ -142,12 +146,12 @@ std::string unit_of(const Key& key) {
   return key.unit().empty() ? "1" : key.unit();
 }
 
-/// What is known of a dataset of all points.
+/// Comparison of one dataset (by name) between all points of the sweep.
 struct Surveyed {
   CollectedDataset first;
-  std::size_t points = 0;  ///< that have it
+  std::size_t points = 0;  ///< number of points that have the dataset
   bool fits = true, same = true;
-  std::uint64_t marks = 0;  ///< of a mark: that are set
+  std::uint64_t marks = 0;  ///< for a dataset of marks (NAME_rare): number of marks that are 1
 
   void add(const CollectedDataset& of_point) {
     ++points;
@@ -181,11 +185,13 @@ double number_of(const Attribute& value) {
 }
 
 bool is_number(const Attribute& value) {
-  return value.index() < 4;  // bool, int64, uint64, double
+  // the first four types of the variant are bool, int64, uint64 and double
+  return value.index() < 4;
 }
 
-/// In two passes over the points: what they have, then its values. Neither holds more than one of
-/// them in memory, and what a StackedDataset does.
+/// Combines the results of all points in two passes over the points: the first determines which
+/// datasets the points have, the second copies the values. Only one point is in memory at a time,
+/// besides the chunks of StackedDataset.
 class Stack {
  public:
   Stack(ResultFile& file, const ExperimentSweep& sweep, const PointStore& store)
@@ -205,7 +211,7 @@ class Stack {
   }
 
  private:
-  /// Adds the value of a point.
+  /// Function that adds the values of one point to a combined dataset. number: index of the point.
   using Column = std::function<void(StackedDataset&, std::size_t number, const FinishedPoint&)>;
 
   void survey(const CollectedResult& result) {
@@ -224,7 +230,8 @@ class Stack {
                           column);
   }
 
-  /// Of a sweep: the swept ones, but where a result has that name itself.
+  /// Returns the name of the dataset of a swept axis, with the prefix swept_ if the results have a
+  /// dataset of the same name.
   std::string name_of(const SweepAxis& axis) const {
     const std::string name = axis_name(axis);
     const bool taken = sets_.contains(name) || has_row(stacked_table, name) || name == "point";
@@ -253,7 +260,8 @@ class Stack {
     extents_.push_back(extent);
   }
 
-  /// Of words the scale only counts.
+  /// Writes the scale of an axis. If the values are numbers, the scale contains them. If they are
+  /// words, it contains 0, 1, ..., and the words are written to a separate dataset.
   void write_axis(const SweepAxis& axis) {
     const Key& key = sweep_.key(axis);
     const std::string name = name_of(axis);
@@ -270,7 +278,8 @@ class Stack {
                     "", key.help());
   }
 
-  /// Of an axis as a list: a value for each point.
+  /// Begins a dataset with the value of a swept key at each point, for sweeps whose points are
+  /// written as a list instead of a grid.
   void begin_column(std::size_t axis) {
     const Key& key = sweep_.key(sweep_.points().axes[axis]);
     const std::string name = name_of(sweep_.points().axes[axis]);
@@ -303,7 +312,7 @@ class Stack {
     begin("wall_s", &FinishedPoint::wall_s);
   }
 
-  /// Which datasets are of all points, in the same shape; scales first.
+  /// Selects the datasets that all points have in the same shape, and puts scales first.
   void select() {
     std::vector<std::string> left_out;
     for (const std::string& name : order_) {
@@ -314,7 +323,7 @@ class Stack {
       else
         left_out.push_back(name);
     }
-    const auto hangs = [&](const Surveyed* set) {  // on an axis that is left out
+    const auto hangs = [&](const Surveyed* set) {  // whether a dataset has an axis that is left out
       return std::ranges::any_of(set->first.axes, [&](const Axis& axis) {
         const auto* name = std::get_if<std::string>(&axis);
         return name != nullptr && std::ranges::count(left_out, *name) > 0;
@@ -348,14 +357,16 @@ class Stack {
                       std::to_string(store_.finished() * first.count()));
   }
 
-  /// One that differs from point to point only counts; its values stand beside it.
+  /// Writes a scale of the results. If its values differ between points, the scale contains 0, 1,
+  /// ..., and the values are written to a separate dataset.
   void write_scale(const Surveyed& set) const {
     const auto& [name, is_scale, axes, units, long_name, values] = set.first;
     std::vector<double> numbers = std::get<0>(values);
     if (!set.same)
       for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<double>(i);
-    file_.scale(name, numbers, set.same ? units : "1",
-                set.same ? long_name : "number of what differs from point to point: " + long_name);
+    file_.scale(
+        name, numbers, set.same ? units : "1",
+        set.same ? long_name : "index of a value that differs between points: " + long_name);
   }
 
   void begin_attributes() {
@@ -369,7 +380,8 @@ class Stack {
     }
   }
 
-  /// One of the root that differs from point to point.
+  /// Begins a dataset with the value at each point of an attribute of the root that differs between
+  /// points.
   void begin_attribute(const std::string& name) {
     add_column({name, false, {}, "", "attribute of each point", std::vector<double>(1)},
                [name](StackedDataset& all, std::size_t, const FinishedPoint& point) {

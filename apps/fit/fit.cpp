@@ -29,7 +29,8 @@ namespace flatspeckle::apps {
 
 namespace {
 
-constexpr char step_kind = 's';  // of the records of a search
+// letter of the records that contain the steps of a search (see Journal)
+constexpr char step_kind = 's';
 
 std::vector<std::byte> record_of(const mc::FitStep& step) {
   ByteWriter record;
@@ -52,7 +53,7 @@ mc::FitStep step_of(ByteReader& record) {
   return step;
 }
 
-/// What the user asks.
+/// Values of the keys of the subcommand `fit`.
 struct FitKeys {
   mc::MovingSpec medium;
   std::vector<std::string> free, measurements, compare;
@@ -70,40 +71,45 @@ void add_keys(Keys& keys, FitKeys& values) {
   values.medium.domain = "slab";
   values.medium.scatterer = "hg";
   keys.group("Fit");
-  keys.add(
-      "free", values.free,
-      "Keys that are fitted and their bounds, as g=0.5:0.99; what the scene gives one is where "
-      "it starts");
+  keys.add("free", values.free,
+           "Keys to fit and their bounds, such as g=0.5:0.99; the value of the key in the scene, "
+           "if given, is the start value");
   keys.add("measurement", values.measurements,
-           "Files that are fitted together: results of covariance, flux and sweep (.h5), tables")
+           "Files to fit jointly: results of covariance, flux and sweep (.h5), or tables (CSV)")
       .file();
   keys.add("compare", values.compare,
-           "No measurement: results of fits of the same measurements by other media, side by side");
+           "Files to compare: results of fits of the same measurements with different media; "
+           "requires no measurement");
   keys.add("starts", values.starts,
-           "Of each free key without a start: values of a grid, the best of which is gone on from, "
-           "and two more where it ends in no likely medium")
+           "Number of grid values of each free key without a start value; the fit starts from the "
+           "best grid point, and also from the next two if chi^2 is improbably large")
       .from(1, 100);
-  keys.add("most_iterations", values.most_iterations, "Steps after which a fit gives up")
+  keys.add("most_iterations", values.most_iterations, "Largest number of steps of the fit")
       .from(1, 10000);
   keys.add("method", values.method,
-           "The model: transport through slabs, or Monte Carlo; auto: transport where all "
-           "measurements are of slabs whose scatterers do not flow")
+           "Model: transport through slabs, or mc (Monte Carlo); auto: transport if all "
+           "measurements are of slabs without flow of the scatterers, else mc")
       .one_of({"transport", "mc", "auto"});
   keys.add("model_share", values.model_share,
-           "Of the estimates' variances: what chance in a model by Monte Carlo may add")
+           "Monte Carlo model: largest fraction of the variances of the estimates that its noise "
+           "may cause")
       .from(0.001, 1);
   keys.add("trust_paths", values.trust_paths,
-           "Of a model by Monte Carlo: what paths neglect of waves counts as no error of it");
+           "Trust the Monte Carlo model: do not add to the errors what its neglect of wave effects "
+           "may cause");
   keys.add("plan", values.plan,
-           "No measurement: how well the free keys, at the values that the scene gives them, would "
-           "be known from speckle in these views under these tilts");
-  keys.add("patterns", values.patterns, "Independent patterns of each view")
+           "Plan a measurement instead of fitting one: compute the errors with which speckle in "
+           "view_angles under tilts determines the free keys, at their values in the scene");
+  keys.add("patterns", values.patterns,
+           "Number of independent speckle patterns measured in each view")
       .positive()
       .only_of("plan");
   add_vary_key(keys, values.varied);
   keys.group("Plan", "plan");
-  keys.add("light_angles", values.medium.light_angles, "Direction of the light, from +z").angle();
-  keys.add("view_angles", values.medium.view_angles, "Directions of the views, from +z").angle();
+  keys.add("light_angles", values.medium.light_angles, "Direction of the light, angle from +z")
+      .angle();
+  keys.add("view_angles", values.medium.view_angles, "Directions of the views, angles from +z")
+      .angle();
   keys.add("tilts", values.medium.tilts, "Rotations of the light").angle();
   keys.group("");
   add_scatterer_keys(keys, values.medium);
@@ -114,12 +120,13 @@ void add_keys(Keys& keys, FitKeys& values) {
   add_dimension_key(keys, values.medium);
   mc::add_motion_keys(keys, values.medium);
   add_output_key(keys, values.run);
-  add_seed_key(keys, values.run, "Of the paths of a model by Monte Carlo");
-  keys.add("seconds", values.run.seconds, "After which a model by Monte Carlo draws no more paths")
+  add_seed_key(keys, values.run, "Random seed of a Monte Carlo model");
+  keys.add("seconds", values.run.seconds,
+           "Time after which a Monte Carlo model draws no more paths")
       .positive();
   add_thread_key(keys, values.run);
   keys.add("resume", values.run.resume,
-           "Go on with a search by Monte Carlo that was ended, from OUT.search, if it is there")
+           "Continue an interrupted search by Monte Carlo from OUT.search, if it exists")
       .effort();
 }
 
@@ -127,26 +134,28 @@ bool is_free(const mc::FitTask& task, const std::string& key) {
   return std::ranges::find(task.free, key, &mc::FreeParameter::key) != task.free.end();
 }
 
-/// An optical depth is that of one thickness.
+/// Throws InputError if the optical depth is a free parameter but the measurements have different
+/// thicknesses.
 void check_depths(const mc::FitTask& task) {
   std::set<double> depths;
   for (const auto& measurement : task.measurements)
     for (const auto& curve : measurement.curves) depths.insert(curve.scene.depth.value_or(0));
   if (depths.size() > 1 && is_free(task, "optical_depth"))
     throw InputError("free", "optical_depth",
-                     "is of one thickness; measurements of several share mean_free_path");
+                     "requires measurements of one thickness; for several, fit mean_free_path");
 }
 
-/// Reads what a scene makes use of.
+/// Checks the scene of a measurement, and marks the keys that this scene uses as read.
 void read_scene(const Keys& keys, const SceneSpec& scene) {
   const Keyed<SceneSpec> keyed(scene);
   const Scene made = make_scene(keyed.keys, keyed.values);
   if (made.profile || made.index)
-    throw InputError("layers, index_field: fit takes media that are the same everywhere");
-  keys.join_reads(keyed.keys);
+    throw InputError("layers, index_field: must not be given: fit requires homogeneous media");
+  keys.merge_reads(keyed.keys);
 }
 
-/// The same of all measurements, which bring lights and views.
+/// Checks the scenes of all measurements, with lights and views from the measurements and the free
+/// parameters in the middle of their bounds.
 void check_scenes(const Keys& keys, const mc::FitTask& task) {
   const Eigen::VectorXd middle = (lower_coordinates(task.free) + upper_coordinates(task.free)) / 2;
   for (const auto& measurement : task.measurements)
@@ -163,28 +172,29 @@ mc::PlanTask plan_of(const Keys& keys, const FitKeys& values, const mc::MovingSp
   task.free = mc::read_free_parameters(keys.required(values.free), medium);
   for (const auto& free : task.free)
     if (free.start.value_or(0) == 0)
-      throw InputError("free", free.key, "a plan needs its value, which must not be 0");
+      throw InputError("free", free.key, "must have a value other than 0 in the scene for a plan");
   read_scene(keys, task.scene);
   return task;
 }
 
-/// Lights and views that are given are of no use beside a measurement.
+/// Throws InputError if keys give lights, views or tilts, because these are taken from the
+/// measurements.
 void refuse_views(const Keys& keys, const FitKeys& values) {
   for (const auto* list :
        {&values.medium.light_angles, &values.medium.view_angles, &values.medium.tilts})
     if (keys.given(*list))
       throw InputError(keys.name(*list), list->front(),
-                       "measurements bring their own; leave it out");
+                       "is determined by the measurements; leave it out");
 }
 
-/// Whether transport can do all of it.
+/// Whether transport can model the curve: the medium is a slab, and its scatterers do not flow.
 bool is_still_slab(const mc::FitTask& task, const mc::Curve& curve) {
   const bool flows = !curve.scene.only_diffuses() || is_free(task, "velocity_x") ||
                      is_free(task, "velocity_z") || is_free(task, "shear");
   return curve.scene.domain == "slab" && !(curve.moving() && flows);
 }
 
-/// Of motion, what the measurements have use for.
+/// Reads the keys about motion of the scatterers that the measurements require.
 void read_motion(const Keys& keys, const FitKeys& values, const mc::FitTask& task) {
   const auto curves = mc::curves_of(task);
   const bool contrast = std::ranges::any_of(curves, [](const mc::Curve& curve) {
@@ -201,11 +211,12 @@ void read_motion(const Keys& keys, const FitKeys& values, const mc::FitTask& tas
       keys.read(member);
     else if (is_free(task, keys.name(member)))
       throw InputError("free", keys.name(member),
-                       "nothing that was measured tells of it: needs delays or exposures");
+                       "cannot be determined: requires measurements with delays or exposures");
   }
 }
 
-/// Where the model is by Monte Carlo.
+/// Returns the settings of a model by Monte Carlo paths; nullopt if the model is computed by
+/// transport.
 std::optional<mc::PathSettings> paths_of(const Keys& keys, const FitKeys& values,
                                          const mc::FitTask& task, const Session& session) {
   const std::string method = keys.read(values.method);
@@ -235,7 +246,8 @@ mc::FitTask task_of(const Keys& keys, const FitKeys& values, const Session& sess
   return task;
 }
 
-/// Plans of all combinations of what is varied.
+/// Makes and prints plans of a measurement for all combinations of the varied keys. Returns the
+/// exit status.
 int run_plans(const Session& session, const Subcommand& command, const FitKeys& values) {
   const Keyed<mc::MovingSpec> medium(values.medium);
   const SweepPoints points = varied_points(command.keys(), values.varied, medium.keys);
@@ -269,11 +281,12 @@ int run_plan(const Session& session, const Subcommand& command, const FitKeys& v
   });
 }
 
-void tell_guesses(const mc::FitTask& task) {
+void note_guessed_errors(const mc::FitTask& task) {
   for (const auto& measurement : task.measurements)
     if (measurement.guessed_independent)
       std::cerr << "note: " << measurement.name
-                << " does not tell how its errors are correlated: they count as independent\n";
+                << " contains no covariances between the errors of its values: they are assumed "
+                   "independent\n";
 }
 
 std::string model_of(const mc::FitTask& task, const mc::MediumFit& fit) {
@@ -281,11 +294,11 @@ std::string model_of(const mc::FitTask& task, const mc::MediumFit& fit) {
     return std::string("transport through slabs, ") +
            (fit.reversed ? "reversed paths" : "no reversed paths");
   std::ostringstream text;
-  text << "Monte Carlo, " << fit.paths << " paths of each run at the end";
+  text << "Monte Carlo, " << fit.paths << " paths in each run of the last step";
   return text.str();
 }
 
-/// All that a search depends on.
+/// Returns a text of all inputs on which the search for the best fit depends.
 std::string identity_of(const Keys& keys, const mc::FitTask& task) {
   std::string text = version() + '\n' + keys.identity() + inputs_text(keys);
   for (const mc::Measurement& one : task.measurements)
@@ -296,9 +309,9 @@ std::string identity_of(const Keys& keys, const mc::FitTask& task) {
 int run_fit(const Session& session, const Subcommand& command, const FitKeys& values) {
   mc::FitTask task = task_of(command.keys(), values, session);
   if (!command.settle()) return ExitStatus::done;
-  tell_guesses(task);
-  // The steps of a search, so that one that was ended, however, can go on; gone once the result is
-  // there.
+  note_guessed_errors(task);
+  // Journal of the steps of the search, from which an interrupted search continues. It is removed
+  // when the result is written.
   const std::filesystem::path path = session.out() + ".search";
   std::error_code none;
   std::optional<Journal> journal;
@@ -329,7 +342,8 @@ int run_fit(const Session& session, const Subcommand& command, const FitKeys& va
                 fit.converged ? ExitStatus::done : ExitStatus::error_not_reached};
   });
   if (journal && status == ExitStatus::interrupted_for_good) {
-    std::printf("interrupted; %s holds what is done, --resume goes on\n", path.c_str());
+    std::printf("interrupted; %s contains the finished steps; continue with --resume\n",
+                path.c_str());
     return ExitStatus::interrupted_resumable;
   }
   if (journal) std::filesystem::remove(path, none);
@@ -349,7 +363,7 @@ int fit_or_plan(const Subcommand& command, FitKeys& values) {
 }  // namespace
 
 std::unique_ptr<Call> fit(const std::string&) {
-  return call_with<FitKeys>("fit", "The medium that gave these measurements, with errors",
+  return call_with<FitKeys>("fit", "Estimates medium parameters, with errors, from measurements",
                             fit_or_plan);
 }
 

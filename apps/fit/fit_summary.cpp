@@ -28,7 +28,7 @@ struct ComparedFit {
 ComparedFit fit_of(const std::string& path) {
   const ResultReader file(path);
   if (!file.has("estimate") || !file.has("measured") || !file.has_attribute("/", "chi_squared"))
-    throw InputError("compare", path, "is no result of fit");
+    throw InputError("compare", path, "must be a result of fit");
   ComparedFit fit;
   fit.path = path;
   fit.scatterer = value_in("scatterer", file.attribute<std::string>("/", "config"));
@@ -37,14 +37,15 @@ ComparedFit fit_of(const std::string& path) {
   fit.parameters = static_cast<double>(file.dataset<double>("estimate").size());
   try {
     fit.freedom = file.attribute<double>("/", "degrees_of_freedom");
-  } catch (const InputError&) {  // an integer, in results of versions before
+  } catch (const InputError&) {  // in results of earlier versions, the attribute is an integer
     fit.freedom = static_cast<double>(fit.measured.size()) - fit.parameters;
   }
   return fit;
 }
 
-/// Returns the chance of a chi^2 as large or larger, by Wilson's and Hilferty's cube root.
-double chance(double chi_squared, double freedom) {
+/// Returns the probability that chi^2 is at least this large, by the approximation of Wilson and
+/// Hilferty. freedom: degrees of freedom.
+double tail_probability(double chi_squared, double freedom) {
   if (freedom < 1) return 1;
   const double width = 2 / (9 * freedom),
                normal = (std::cbrt(chi_squared / freedom) - 1 + width) / std::sqrt(width);
@@ -55,7 +56,7 @@ using Eigen::Index;
 
 void print_growth(const mc::PlanTask& task, const char* what, const std::vector<double>& angles,
                   const Eigen::MatrixXd& growth) {
-  std::printf("without %-8s errors are larger by\n%-12s", what, "");
+  std::printf("factors by which the errors grow without one %s\n%-12s", what, "");
   for (const auto& free : task.free) std::printf(" %14s", free.key.c_str());
   for (Index i = 0; i < growth.rows(); ++i) {
     std::printf("\n%-12.6g", angles[static_cast<std::size_t>(i)]);
@@ -75,18 +76,20 @@ void print_correlations(const mc::FitTask& task, const mc::MediumFit& fit) {
     }
 }
 
-/// Returns what a reader of the estimate has to know of it.
+/// Returns a remark to print after an estimate that is at one of its bounds, or that the data
+/// determine no better than the bounds do. known: whether the data determine it better.
 std::string remark(const mc::FreeParameter& parameter, double estimate, bool known) {
   const double nearest = std::min(estimate - parameter.lower, parameter.upper - estimate);
   if (nearest < 1e-6 * (parameter.upper - parameter.lower)) return "  at its bound";
-  return known ? "" : "  not known better than by its bounds";
+  return known ? "" : "  not determined better than by its bounds";
 }
 
-/// The bias that is to be expected of the estimates, which their errors hold.
+/// Prints the expected bias of the estimates that is due to neglected wave effects. The printed
+/// errors of the estimates include this bias.
 void print_neglected(const mc::FitTask& task, const mc::MediumFit& fit) {
   const Eigen::VectorXd bias = fit.by_neglect.diagonal().cwiseSqrt();
   if (!(fit.by_neglect.trace() > 0)) return;
-  std::printf("of the errors, what paths neglect of waves:");
+  std::printf("part of the errors due to wave effects neglected by paths:");
   for (std::size_t i = 0; i < task.free.size(); ++i)
     std::printf(" %s %.2g", task.free[i].key.c_str(), bias[static_cast<Eigen::Index>(i)]);
   std::puts("");
@@ -111,7 +114,7 @@ void print_compared_fits(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     fits.push_back(guarded_read(path, [&] { return fit_of(path); }));
     if (fits.back().measured != fits.front().measured)
-      throw InputError("compare", path, "fits other measurements than " + paths.front());
+      throw InputError("compare", path, "must fit the same measurements as " + paths.front());
   }
   std::ranges::sort(fits, {}, &ComparedFit::information);
   double sum = 0;
@@ -120,11 +123,11 @@ void print_compared_fits(const std::vector<std::string>& paths) {
   };
   for (const ComparedFit& fit : fits) sum += weight(fit);
   std::printf("%-28s %-12s %10s %10s %10s %10s %10s\n", "fit", "scatterer", "parameters", "chi^2",
-              "freedom", "chance", "weight");
+              "freedom", "p-value", "weight");
   for (const ComparedFit& fit : fits)
     std::printf("%-28s %-12s %10g %10.4g %10g %10.2g %10.2g\n", fit.path.c_str(),
                 fit.scatterer.c_str(), fit.parameters, fit.chi_squared, fit.freedom,
-                chance(fit.chi_squared, fit.freedom), weight(fit) / sum);
+                tail_probability(fit.chi_squared, fit.freedom), weight(fit) / sum);
 }
 
 void print_plan(const mc::PlanTask& task, const mc::FitPlan& plan) {
@@ -134,14 +137,15 @@ void print_plan(const mc::PlanTask& task, const mc::FitPlan& plan) {
     std::printf("%-16s %12.6g %14.2g %20.2g\n", task.free[i].key.c_str(), plan.values[j],
                 plan.errors[j], plan.patterns_to_percent[j]);
   }
-  std::printf("from %g independent patterns of each view; condition %.3g\n", task.patterns,
+  std::printf("from %g independent patterns of each view; condition number %.3g\n", task.patterns,
               plan.condition);
   if (plan.views.size() > 1) print_growth(task, "view", plan.views, plan.without_view);
   if (plan.tilts.size() > 1) print_growth(task, "tilt", plan.tilts, plan.without_tilt);
 }
 
 void print_plans(const mc::PlanTask& task, const std::vector<mc::PlanPoint>& points) {
-  std::printf("independent patterns of each view to 1 %%\n%-36s", "");
+  std::printf("number of independent patterns of each view required for an error of 1 %%\n%-36s",
+              "");
   for (const auto& free : task.free) std::printf(" %14s", free.key.c_str());
   for (const mc::PlanPoint& point : points) {
     std::printf("\n%-36s", point.name.c_str());
@@ -154,19 +158,22 @@ void print_fit(const mc::FitTask& task, const mc::MediumFit& fit) {
   print_parameters(task, fit);
   if (task.paths) print_neglected(task, fit);
   print_correlations(task, fit);
-  std::printf("chi^2 %.4g of %td values less %zu parameters; condition %.3g\n", fit.chi_squared,
-              fit.residuals.size(), task.free.size(), fit.condition);
+  std::printf("chi^2 %.4g for %td values and %zu parameters; condition number %.3g\n",
+              fit.chi_squared, fit.residuals.size(), task.free.size(), fit.condition);
   const auto count = static_cast<double>(fit.residuals.size() - fit.estimates.size());
   if (fit.degrees_of_freedom < 0.95 * count)
     std::printf("errors of the values are correlated: chi^2 has %.3g degrees of freedom, not %g\n",
                 fit.degrees_of_freedom, count);
   if (!mc::is_likely(fit.chi_squared, fit.degrees_of_freedom))
-    std::printf("chi^2 is unlikely: this model cannot give these measurements with their errors\n");
+    std::printf(
+        "chi^2 is unlikely: the model does not fit these measurements within their errors\n");
   if (const std::string words = mc::degeneracy(task, fit); !words.empty())
     std::printf("%s\n", words.c_str());
   constexpr double small = 0.1;
   if (fit.numerical > small)
-    std::printf("the model's numerical error is up to %.2g standard errors\n", fit.numerical);
+    std::printf(
+        "the numerical error of the model is up to %.2g standard errors of the measured values\n",
+        fit.numerical);
   if (!fit.converged)
     std::printf("not converged after %zu steps: this is the best point so far\n", fit.trace.size());
 }

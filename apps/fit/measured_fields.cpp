@@ -27,14 +27,15 @@ struct Nearer {
   }
 };
 
-/// What a table has of one view: the tilts, least first, and [pattern][tilt] fields or intensities.
+/// Data of a table for one light and one view: the tilts, sorted by magnitude, and the fields or
+/// intensities [pattern][tilt].
 struct SeenView {
   double light = 0, view = 0;
   std::vector<double> tilts;
   std::vector<Complex> values;
 };
 
-/// Rows of a table by light and view, pattern and tilt.
+/// Data of a table, grouped by light and view. In each group, the values are [pattern][tilt].
 class Patterns {
  public:
   Patterns(const std::string& path, const Table& table, const std::vector<Complex>& values)
@@ -47,8 +48,7 @@ class Patterns {
       if (!pattern.emplace(tilts[row], values[row]).second)
         throw InputError("measurement", path,
                          "row " + std::to_string(row + 1) +
-                             " has the pattern, view and tilt of "
-                             "another");
+                             " repeats the pattern, view and tilt of another row; leave one out");
     }
   }
 
@@ -73,7 +73,7 @@ class Patterns {
       view.values.push_back(value);
     }
     if (tilts != view.tilts)
-      throw InputError("measurement", path_, "every pattern must have the same tilts of a view");
+      throw InputError("measurement", path_, "all patterns of a view must have the same tilts");
   }
 
   std::string path_;
@@ -85,11 +85,13 @@ void check_columns(const std::string& path, const Table& table,
   for (const std::string& name : table.names())
     if (name != "pattern" && name != "light_angle" && name != "view_angle" && name != "tilt" &&
         std::ranges::find(values, name) == values.end())
-      throw InputError("measurement", path, "column " + name + ": nothing here has use for it");
+      throw InputError("measurement", path, "column " + name + ": is not used here; remove it");
   table.column("pattern");
 }
 
-/// The light turned by each tilt and the view that it takes along: the lower triangle of pairs.
+/// Returns, for each pair of tilts i >= j, the angles of light and view of both channels of the
+/// pair (four numbers). Channel i is the light rotated by tilt i, in the view that matches this
+/// rotation.
 std::vector<double> matched_pairs(const mc::MovingSpec& scene, const SeenView& seen) {
   mc::MovingSpec tilted = scene;
   tilted.light_angles = {seen.light};
@@ -126,12 +128,12 @@ void append_fields(Measurement& to, const Curve& curve, const std::vector<Comple
   const std::size_t patterns = fields.size() / channels;
   if (channels > most)
     throw InputError("measurement", to.name,
-                     std::to_string(channels) + " fields of a pattern: at most " +
-                         std::to_string(most) + ", give fewer views or tilts");
+                     std::to_string(channels) + " fields per pattern: must be at most " +
+                         std::to_string(most) + "; give fewer views or tilts");
   if (patterns <= channels)
     throw InputError("measurement", to.name,
                      std::to_string(patterns) + " patterns of " + std::to_string(channels) +
-                         " fields: must be more patterns than fields");
+                         " fields: must have more patterns than fields");
   to.samples.push_back({channels, static_cast<double>(patterns), known_scale});
   const MatrixXcd covariance = mc::sample_covariance(fields, channels);
   append(to, curve, mc::packed(covariance), mc::sample_errors(to.samples.back(), covariance));
@@ -144,7 +146,8 @@ Curve field_curve(const mc::MovingSpec& scene, std::size_t channels) {
   return curve;
 }
 
-/// Of all tilts but the first.
+/// Returns the curve of the intensity correlation C_I over all tilts except the first one, which is
+/// 0.
 Curve correlation_curve(const mc::MovingSpec& medium, const SeenView& seen) {
   Curve curve{medium, Observable::intensity_correlation, {}, {}};
   curve.scene.light_angles = {seen.light};
@@ -191,12 +194,13 @@ Measurement measurement_of_intensities(const std::string& path, const Table& tab
   found.name = path;
   for (const SeenView& seen : Patterns(path, table, intensities).views()) {
     if (seen.tilts.front() != 0)
-      throw InputError("measurement", path, "every view must have intensities of tilt 0");
+      throw InputError("measurement", path, "every view must have intensities at tilt 0");
     const std::size_t tilts = seen.tilts.size(), patterns = seen.values.size() / tilts;
     constexpr std::size_t more = 10;
     if (patterns <= tilts + more)
-      throw InputError("measurement", path,
-                       std::to_string(patterns) + " patterns: must be more than the tilts and ten");
+      throw InputError(
+          "measurement", path,
+          std::to_string(patterns) + " patterns: must be more than the number of tilts plus 10");
     const auto pairs = mc::likeliest_correlations(real_parts(seen.values), tilts);
     append(found, correlation_curve(medium, seen), pairs.values, pairs.covariance);
   }

@@ -24,20 +24,22 @@ using Eigen::Index;
 using mc::Curve;
 using mc::Observable;
 
-/// What a measurement fixes, not the medium.
+/// Keys that describe the arrangement of a measurement (domain, lights, views ...), not the medium.
 const std::set<std::string> arrangement = {
     "wavelength",   "domain",         "width",      "depth",        "dimension",  "light_angles",
     "near_sources", "beam_waist",     "beam_depth", "view_angles",  "covariance", "tilts",
     "shifts",       "beam_positions", "pairs",      "near_sensors",
 };
 
-/// A dataset and what it is beside.
+/// Values of an observable in a result file, with their errors and the variable (tilt, delay ...)
+/// over which they are given.
 struct Observed {
   Observable observable;
   std::vector<double> values, errors, abscissa;
-  bool of_times = false;  ///< delays or exposures
+  bool of_times = false;  ///< true if `abscissa` contains delays or exposures
 
-  /// Of values [time][light][view], the time's number comes first.
+  /// Returns the tilt, delay or exposure of the value with this index. If `abscissa` contains
+  /// times, the values are ordered [time][light][view].
   double place(std::size_t entry) const {
     return of_times ? abscissa[entry / (values.size() / abscissa.size())]
                     : abscissa[entry % abscissa.size()];
@@ -49,8 +51,10 @@ struct Contents {
   bool numerical = false, of_placements = false, fixed_count = false, flows = false;
   double beta = 1;
   std::vector<Observed> observed;
-  std::vector<double> delays;    ///< of the entries
-  std::vector<Complex> entries;  ///< of the request, then after each delay
+  std::vector<double> delays;  ///< delays of the covariances in `entries`
+  /// Covariance entries of the request. If there are delays: first the intensities, then the
+  /// covariances after each delay.
+  std::vector<Complex> entries;
   std::optional<GroupedSums> sums;
 };
 
@@ -67,12 +71,13 @@ Observed observed(const ResultReader& file, Observable observable, const std::st
   if (!fits || found.errors.size() != size)
     throw InputError("measurement", file.path().string(),
                      name + " has " + std::to_string(size) + " values for " +
-                         std::to_string(found.abscissa.size()) + " of " + axis +
-                         ": must be of one medium");
+                         std::to_string(found.abscissa.size()) + " values of " + axis +
+                         ": must be the result for one medium, not for a sweep");
   return found;
 }
 
-/// The sums that a run of Monte Carlo keeps.
+/// Returns the sums over samples that a run has stored in its result; nullopt if the file does not
+/// contain them.
 std::optional<GroupedSums> sums_of(const ResultReader& file) {
   const std::string group = "state/run";
   if (!file.has(group)) return std::nullopt;
@@ -81,7 +86,7 @@ std::optional<GroupedSums> sums_of(const ResultReader& file) {
   return read_state(file, group, shape[1]).sums;
 }
 
-/// In the order of the request.
+/// Returns the covariance entries of a result file, in the order of its CovarianceRequest.
 std::vector<Complex> entries_of(const ResultReader& file, Observable observable) {
   if (observable == Observable::intensity) {
     const auto values = file.dataset<double>("intensity");
@@ -95,7 +100,8 @@ std::vector<Complex> entries_of(const ResultReader& file, Observable observable)
   return entries;
 }
 
-/// What decays, from which contrasts follow too.
+/// Reads the covariances over delays of a result file, from which speckle contrasts can also be
+/// computed.
 void read_delays(const ResultReader& file, Contents& contents) {
   contents.delays = file.dataset<double>("delay");
   contents.flows = file.has("complex_covariance");
@@ -132,8 +138,8 @@ Contents contents_of(const ResultReader& file) {
   }
   if (found.observed.empty())
     throw InputError("measurement", file.path().string(),
-                     "has none of field_correlation over tilts or delays, squared_contrast, "
-                     "intensity of far views, reflectance and transmittance");
+                     "must contain field_correlation over tilts or delays, squared_contrast, "
+                     "intensity of far views, or reflectance and transmittance");
   const Observed& first = found.observed.front();
   if (first.of_times)
     read_delays(file, found);
@@ -143,7 +149,8 @@ Contents contents_of(const ResultReader& file) {
   return found;
 }
 
-/// The lines of a configuration that tell the arrangement.
+/// Returns the lines of a scene file whose keys describe the arrangement of the measurement, not
+/// the medium.
 std::string arrangement_of(const std::string& config) {
   std::istringstream lines(config);
   std::string kept, line;
@@ -152,26 +159,28 @@ std::string arrangement_of(const std::string& config) {
   return kept;
 }
 
-/// What the fit states of the arrangement too must be the same there.
-void check_same(const std::string& path, const Keys& asked, const Keys& there) {
+/// Throws InputError if the user has given the fit a key of the arrangement with another value than
+/// in the measurement.
+void check_same(const std::string& path, const Keys& fit_keys, const Keys& there) {
   for (const Key& row : there.rows()) {
     if (!arrangement.contains(row.name())) continue;
-    const Key* const here = asked.find(row.name());
+    const Key* const here = fit_keys.find(row.name());
     if (here != nullptr && here->given() && here->value() != row.value())
       throw InputError(row.name(), here->shown(),
                        path + " has " + row.shown() + ": leave the key out");
   }
 }
 
-/// The medium as it was arranged for the measurement.
-mc::MovingSpec arranged(const std::string& path, const std::string& config, const Keys& asked,
+/// Returns the scene that the fit models: its medium, with domain, lights, views ... of the
+/// measurement.
+mc::MovingSpec arranged(const std::string& path, const std::string& config, const Keys& fit_keys,
                         const mc::MovingSpec& medium) {
   Subcommand there("measurement", "");
   SceneSpec measured;
   add_keys(there.keys(), measured);
   add_dimension_key(there.keys(), measured);
   there.parse_config(arrangement_of(config));
-  check_same(path, asked, there.keys());
+  check_same(path, fit_keys, there.keys());
   Keyed<mc::MovingSpec> keyed(medium);
   for (const Key& row : there.keys().rows())
     if (arrangement.contains(row.name()) && row.given()) keyed.keys.set(row.name(), row.value());
@@ -180,22 +189,26 @@ mc::MovingSpec arranged(const std::string& path, const std::string& config, cons
   return keyed.values;
 }
 
-/// K^2 of still scatterers is the arrangement's.
-void take_beta(const std::string& path, const Contents& there, const Keys& asked,
+/// Sets beta, the squared speckle contrast of static scatterers, to its value in the measurement.
+/// Throws InputError if the user has given the fit another value.
+void take_beta(const std::string& path, const Contents& there, const Keys& fit_keys,
                mc::MovingSpec& scene) {
   if (there.delays.empty()) return;
-  const Key* const here = asked.find("beta");
+  const Key* const here = fit_keys.find("beta");
   if (here != nullptr && here->given() && scene.beta != there.beta)
     throw InputError("beta", here->shown(), path + " has " + number_text(there.beta));
   scene.beta = there.beta;
 }
 
-/// A correlation at no tilt or delay is 1, which tells nothing.
-bool tells(const Observed& of, std::size_t entry) {
+/// Whether the value with this index contains information; a correlation at tilt or delay 0 does
+/// not, because it is always 1.
+bool is_informative(const Observed& of, std::size_t entry) {
   return of.observable != Observable::field_correlation || of.place(entry) != 0;
 }
 
-/// Of sums of paths, whose closed part is what is missing in them.
+/// Returns the estimator of the covariance entries from the sums over paths. The entries also have
+/// a part that the run has computed in closed form; it is the difference between the stored entries
+/// and the mean of the sums, and is added as a constant.
 Estimator path_covariance(const Contents& there) {
   auto closed = sample_mean(there.sums->total_samples(), there.sums->total());
   closed.resize(there.entries.size());
@@ -207,7 +220,8 @@ Estimator path_covariance(const Contents& there) {
   };
 }
 
-/// The shares of each light.
+/// Returns the estimator of one flux fraction for each light. share: index of the fraction among
+/// the sums of a light, such as mc::reflected.
 Estimator power(std::size_t lights, std::size_t per_light, std::size_t share) {
   return [=](double samples, std::span<const Complex> sums) {
     std::vector<Complex> shares;
@@ -217,7 +231,7 @@ Estimator power(std::size_t lights, std::size_t per_light, std::size_t share) {
   };
 }
 
-/// The values of a curve that were measured, from the sums.
+/// Returns the estimator that computes the values of a curve from the stored sums.
 Estimator estimator_of(const Contents& there, const Curve& curve) {
   if (mc::is_flux(curve.observable)) {
     const std::size_t lights = curve.scene.light_angles.size();
@@ -238,7 +252,8 @@ Estimator estimator_of(const Contents& there, const Curve& curve) {
   };
 }
 
-/// The covariance of what was measured, from the sums; empty where they do not tell.
+/// Returns the covariance matrix of the errors of all measured values, by the jackknife over the
+/// stored sums; empty if the file does not contain the sums needed.
 Eigen::MatrixXd errors_of(const Contents& there, const std::vector<Curve>& curves) {
   const bool of_paths = !mc::is_flux(curves.front().observable);
   if (!there.sums ||
@@ -256,7 +271,8 @@ Eigen::MatrixXd errors_of(const Contents& there, const std::vector<Curve>& curve
   });
 }
 
-/// Squares over variances are numbers.
+/// Throws InputError if values or errors are so large or small that their squares or ratios would
+/// overflow.
 void check_sizes(const mc::Measurement& measurement) {
   constexpr double most = 1e50;
   const auto is_fit = [](double variance) {
@@ -281,30 +297,33 @@ Eigen::MatrixXd independent_errors(const std::string& path, const std::vector<do
   return variances.asDiagonal();
 }
 
-/// Of `field`, whose lights are all that were tilted.
-std::optional<mc::Measurement> drawn_fields(const std::string& path, const Keys& asked,
+/// Reads a result of the subcommand `field`, in which each tilt is a light angle of its own.
+/// Returns nullopt for results of other subcommands.
+std::optional<mc::Measurement> drawn_fields(const std::string& path, const Keys& fit_keys,
                                             const mc::MovingSpec& medium) {
   const ResultReader file(path);
   if (!file.has("realization") || !file.has("field")) return std::nullopt;
-  mc::MovingSpec scene = arranged(path, file.attribute<std::string>("/", "config"), asked, medium);
+  mc::MovingSpec scene =
+      arranged(path, file.attribute<std::string>("/", "config"), fit_keys, medium);
   scene.tilts.clear();
   scene.light_angles = file.dataset<double>("light_angle");
   if (!file.has("view_angle"))
-    throw InputError("measurement", path, "has fields of near sensors: must be of far views");
+    throw InputError("measurement", path,
+                     "must have fields in far-field views (view_angle), not at near sensors");
   return measurement_of_drawn_fields(path, scene, file.dataset<Complex>("field"));
 }
 
-mc::Measurement measurement_of_result(const std::string& path, const Keys& asked,
+mc::Measurement measurement_of_result(const std::string& path, const Keys& fit_keys,
                                       const mc::MovingSpec& medium) {
-  if (auto fields = guarded_read(path, [&] { return drawn_fields(path, asked, medium); }))
+  if (auto fields = guarded_read(path, [&] { return drawn_fields(path, fit_keys, medium); }))
     return *fields;
   const Contents there = guarded_read(path, [&] { return contents_of(ResultReader(path)); });
   if (there.numerical)
     throw InputError("measurement", path,
-                     "has numerical errors, not those of a measurement: make it by --method mc, "
-                     "or give a table with errors");
-  mc::MovingSpec scene = arranged(path, there.config, asked, medium);
-  take_beta(path, there, asked, scene);
+                     "has numerical errors instead of measurement errors: compute it with --method "
+                     "mc, or give a table with errors");
+  mc::MovingSpec scene = arranged(path, there.config, fit_keys, medium);
+  take_beta(path, there, fit_keys, scene);
   mc::Measurement found;
   found.name = path;
   found.by_paths = !there.of_placements;
@@ -320,7 +339,7 @@ mc::Measurement measurement_of_result(const std::string& path, const Keys& asked
     curve.flows = there.flows;
     curve.fixed_count = there.fixed_count;
     for (std::size_t entry = 0; entry < of.values.size(); ++entry) {
-      if (!tells(of, entry)) continue;
+      if (!is_informative(of, entry)) continue;
       curve.entries.push_back(entry);
       curve.abscissa.push_back(of.place(entry));
       values.push_back(of.values[entry]);
@@ -337,9 +356,9 @@ mc::Measurement measurement_of_result(const std::string& path, const Keys& asked
   return found;
 }
 
-mc::Measurement read_measurement(const std::string& path, const Keys& asked,
+mc::Measurement read_measurement(const std::string& path, const Keys& fit_keys,
                                  const mc::MovingSpec& medium) {
-  mc::Measurement found = path.ends_with(".h5") ? measurement_of_result(path, asked, medium)
+  mc::Measurement found = path.ends_with(".h5") ? measurement_of_result(path, fit_keys, medium)
                                                 : measurement_of_table(path, medium);
   check_sizes(found);
   return found;

@@ -17,7 +17,8 @@ using Eigen::Index;
 using mc::Curve;
 using mc::Observable;
 
-/// Fields have tables of their own.
+/// Names of the columns that contain observables. Fields, the last observable, are left out,
+/// because their tables have other columns.
 const std::vector<std::string> columns_of_values(mc::observable_words.begin(),
                                                  mc::observable_words.end() - 1);
 
@@ -27,12 +28,12 @@ Observable observable_of(const std::string& path, const Table& table) {
     if (table.has(columns_of_values[i])) found.push_back(static_cast<Observable>(i));
   if (found.size() != 1)
     throw InputError("measurement", path,
-                     "must have one column among " + joined(columns_of_values, " ") +
+                     "must have one column among " + join_texts(columns_of_values, " ") +
                          ", or field_re and field_im, or speckle_intensity");
   return found.front();
 }
 
-/// What a table's correlations are over.
+/// Variable of a table over which its values are given as a curve.
 enum class CurveAxis { none, tilt, delay, exposure };
 const std::vector<std::string> axis_words = {"", "tilt", "delay", "exposure"};
 
@@ -42,7 +43,7 @@ CurveAxis axis_of(const Table& table, Observable observable) {
   return table.has("delay") ? CurveAxis::delay : CurveAxis::tilt;
 }
 
-/// Throws for columns that nothing would read.
+/// Throws InputError if the table has columns that are not used for this observable and axis.
 void check_columns(const std::string& path, const Table& table, Observable observable,
                    CurveAxis axis) {
   const std::string covariance = "covariance_";
@@ -53,11 +54,11 @@ void check_columns(const std::string& path, const Table& table, Observable obser
                        (name == "view_angle" && !mc::is_flux(observable)) ||
                        name == axis_words[static_cast<std::size_t>(axis)];
     if (!known)
-      throw InputError("measurement", path, "column " + name + ": nothing here has use for it");
+      throw InputError("measurement", path, "column " + name + ": is not used here; remove it");
   }
 }
 
-/// To rounding.
+/// Whether a matrix is symmetric up to rounding errors.
 bool is_symmetric(const Eigen::MatrixXd& matrix) {
   double largest = 0, skew = 0;
   for (Index i = 0; i < matrix.rows(); ++i)
@@ -72,12 +73,13 @@ Eigen::MatrixXd covariance_of(const std::string& path, const Table& table) {
   if (table.has("error")) {
     const auto errors = table.column("error");
     if (table.has("covariance_1"))
-      throw InputError("measurement", path, "has errors and a covariance: leave one out");
+      throw InputError("measurement", path,
+                       "must have a column error or columns covariance_1 ..., not both");
     return independent_errors(path, {errors.begin(), errors.end()});
   }
   if (!table.has("covariance_1"))
     throw InputError("measurement", path,
-                     "has no errors: must have a column error, or covariance_1, covariance_2 ...");
+                     "must have a column named error, or columns covariance_1, covariance_2 ...");
   const auto size = static_cast<Index>(table.rows());
   Eigen::MatrixXd covariance(size, size);
   for (Index j = 0; j < size; ++j) {
@@ -86,12 +88,14 @@ Eigen::MatrixXd covariance_of(const std::string& path, const Table& table) {
   }
   if (table.has("covariance_" + std::to_string(size + 1)) || !is_symmetric(covariance))
     throw InputError("measurement", path,
-                     "must have as many columns covariance_1 ... as rows, a symmetric matrix");
+                     "must have one column covariance_1, covariance_2 ... for each row, which form "
+                     "a symmetric matrix");
   return covariance;
 }
 
-/// Curves of rows that follow each other and have the same depth and light and, of tilts and times,
-/// view.
+/// Groups consecutive rows of a table into curves. A new curve begins where the depth changes; for
+/// correlations over tilts and times, also where the light or the view changes, and for intensities
+/// where the light changes.
 class CurvesOfRows {
  public:
   CurvesOfRows(const Table& table, Observable observable, CurveAxis axis,
@@ -109,7 +113,7 @@ class CurvesOfRows {
   std::vector<Curve> curves() const {
     std::vector<Curve> found;
     for (std::size_t row = 0; row < lights_.size(); ++row) {
-      if (row == 0 || !joins(row)) found.push_back(begun(row));
+      if (row == 0 || !continues_curve(row)) found.push_back(begun(row));
       add(found.back(), row);
     }
     for (Curve& curve : found)
@@ -121,7 +125,7 @@ class CurvesOfRows {
   }
 
  private:
-  bool joins(std::size_t row) const {
+  bool continues_curve(std::size_t row) const {
     if (depths_[row] != depths_[row - 1]) return false;
     const bool same_light = lights_[row] == lights_[row - 1];
     if (axis_ != CurveAxis::none) return same_light && views_[row] == views_[row - 1];
@@ -139,7 +143,7 @@ class CurvesOfRows {
     return curve;
   }
 
-  /// The list that rows of a curve go into.
+  /// Returns the list of a curve to which each row appends its tilt, delay, exposure or angle.
   std::vector<double>& list(Curve& curve) const {
     if (axis_ == CurveAxis::tilt) return curve.scene.tilts;
     if (axis_ != CurveAxis::none) return curve.times;
@@ -166,8 +170,8 @@ void check_times(const std::string& path, CurveAxis axis, const std::vector<doub
                        axis_words[static_cast<std::size_t>(axis)] + " must be positive");
 }
 
-/// Throws InputError for shares and correlations above 1, or below 0 and -1, that noise does not
-/// explain: percent, or a contrast that is not one.
+/// Throws InputError for flux fractions outside [0, 1] and correlations outside [-1, 1], unless
+/// noise explains the excess. Such values may be meant as percentages.
 void check_values(const mc::Measurement& measured, Observable observable) {
   if (observable == Observable::intensity) return;
   const bool share = observable > Observable::intensity;
@@ -175,18 +179,19 @@ void check_values(const mc::Measurement& measured, Observable observable) {
   for (Index i = 0; i < measured.values.size(); ++i) {
     const double noise = std::min(5 * std::sqrt(measured.covariance(i, i)), most_noise);
     const double value = measured.values[i];
-    if (std::abs(value) > most_input) continue;  // which is refused with all numbers
+    if (std::abs(value) > most_input) continue;  // such values are rejected by another check
     if (value > 1 + noise || value < least - noise)
       throw InputError("measurement = " + measured.name + ", " +
                            mc::observable_words[static_cast<std::size_t>(observable)],
                        value,
                        std::string("must be from ") + (share ? "0" : "-1") +
-                           " to 1, up to 5 errors; percent must be divided by 100");
+                           " to 1, within 5 errors; divide percentages by 100");
   }
 }
 
-/// Without rows of no tilt or delay, whose correlations are 1 and tell nothing.
-Table telling(const std::string& path, const Table& table) {
+/// Returns the table without rows at tilt or delay 0, because their correlation is always 1 and
+/// contains no information.
+Table without_trivial_rows(const std::string& path, const Table& table) {
   const char* const axis = table.has("delay") ? "delay" : "tilt";
   const bool correlations = table.has("field_correlation") || table.has("intensity_correlation");
   if (!correlations || !table.has(axis)) return table;
@@ -203,7 +208,8 @@ Table telling(const std::string& path, const Table& table) {
       if (at[row] != 0) columns.back().push_back(table.column(name)[row]);
   }
   if (columns.front().empty())
-    throw InputError("measurement", path, std::string("must have rows of a ") + axis + " but 0");
+    throw InputError("measurement", path,
+                     std::string("must have rows with ") + axis + " other than 0");
   return {path, names, columns};
 }
 
@@ -217,7 +223,7 @@ mc::Measurement measurement_of_values(const std::string& path, const Table& tabl
     if (axis != CurveAxis::tilt) check_times(path, axis, {at.begin(), at.end()});
   }
   if (table.has("depth") && medium.depth)
-    throw InputError("depth", *medium.depth, path + " has depths of its own: leave the key out");
+    throw InputError("depth", *medium.depth, path + " has a column depth: leave the key out");
   mc::Measurement found;
   found.name = path;
   found.curves = CurvesOfRows(table, observable, axis, medium).curves();
@@ -235,7 +241,7 @@ mc::Measurement measurement_of_table(const std::string& path, const mc::MovingSp
   const Table table = read_key_table("measurement", path);
   if (table.has("field_re")) return measurement_of_fields(path, table, medium);
   if (table.has("speckle_intensity")) return measurement_of_intensities(path, table, medium);
-  return measurement_of_values(path, telling(path, table), medium);
+  return measurement_of_values(path, without_trivial_rows(path, table), medium);
 }
 
 }  // namespace flatspeckle::apps

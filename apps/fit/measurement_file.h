@@ -8,35 +8,39 @@
 
 namespace flatspeckle::apps {
 
-/// A measurement that a file holds: a result of covariance, flux or sweep (HDF5), which brings its
-/// depth, wavelength, lights, views, tilts, delays and exposures, or a table (CSV) of one column
-/// that an observable names, with columns error, or covariance_1, covariance_2 ..., and
-/// light_angle, view_angle where they are not 0, tilt, delay or exposure, depth where that is not
-/// the fit's. asked: keys of the fit; medium:
-/// their values. Throws InputError.
-mc::Measurement read_measurement(const std::string& path, const Keys& asked,
+/// Reads a measurement from a file. A result of covariance, flux or sweep (HDF5) also gives depth,
+/// wavelength, lights, views, tilts, delays and exposures. A table (CSV) has one column named after
+/// an observable, and standard errors in a column `error` or a covariance matrix in the columns
+/// covariance_1, covariance_2 ... Optional columns are light_angle and view_angle (default 0),
+/// tilt, delay or exposure, and depth (default: the depth given to the fit). fit_keys: keys of the
+/// fit; medium: values of these keys. Throws InputError.
+mc::Measurement read_measurement(const std::string& path, const Keys& fit_keys,
                                  const mc::MovingSpec& medium);
 
-/// The two kinds of files.
+/// Read a measurement from a table (CSV) and from a result file (HDF5).
 mc::Measurement measurement_of_table(const std::string& path, const mc::MovingSpec& medium);
-mc::Measurement measurement_of_result(const std::string& path, const Keys& asked,
+mc::Measurement measurement_of_result(const std::string& path, const Keys& fit_keys,
                                       const mc::MovingSpec& medium);
 
-/// Tables of patterns, columns pattern, view_angle, tilt and field_re, field_im (up to a factor) or
-/// speckle_intensity: covariances of the fields under the tilts, or C_I with the errors that follow
-/// from the patterns.
+/// Make measurements from tables of many speckle patterns. The columns are pattern, view_angle,
+/// tilt, and either field_re and field_im (up to a common factor) or speckle_intensity. From
+/// fields, the measured values are the covariances between fields under different tilts; from
+/// intensities, the intensity correlations C_I. Their errors are estimated from the spread of the
+/// patterns.
 mc::Measurement measurement_of_fields(const std::string& path, const Table& table,
                                       const mc::MovingSpec& medium);
 mc::Measurement measurement_of_intensities(const std::string& path, const Table& table,
                                            const mc::MovingSpec& medium);
-/// Of fields [pattern][light][view] that `field` has drawn.
+/// Makes a measurement from random fields [pattern][light][view], as written by the subcommand
+/// `field`.
 mc::Measurement measurement_of_drawn_fields(const std::string& path, const mc::MovingSpec& scene,
                                             const std::vector<Complex>& fields);
 
-/// A column of a table, or `value` in every row where there is none.
+/// Returns a column of a table. If the table lacks this column, returns `value` for every row.
 std::vector<double> column_or(const Table& table, const std::string& name, double value);
 
-/// Of errors that must be positive: a diagonal matrix.
+/// Returns the diagonal covariance matrix that belongs to these independent standard errors. Throws
+/// InputError unless all errors are positive.
 Eigen::MatrixXd independent_errors(const std::string& path, const std::vector<double>& errors);
 
 }  // namespace flatspeckle::apps

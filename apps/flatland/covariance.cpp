@@ -23,7 +23,8 @@ void print_medium(const Scene& scene) {
   std::printf("\n");
 }
 
-/// Whether pairs of lights would have to resolve a peak that transport takes long for, or refuses.
+/// Whether the forward peak of the phase function is so narrow that transport needs long to resolve
+/// it, or cannot.
 bool has_narrow_peak(const SceneSpec& spec) {
   const double narrow = spec.dimension == 3 ? 2e-3 : 2e-4;
   return spec.scatterer == "hg" && spec.g && 1 - std::abs(*spec.g) < narrow;
@@ -34,7 +35,8 @@ StopRule stop_of(const std::string& method, const Keys& keys, const RunSettings&
   if (method == "transport") return both_batches(methods.tolerance);
   const bool own = method == "wave" && methods.wave_samples;
   const StopRule stop = own ? stop_rule(keys, run, methods.wave_samples) : stop_rule(keys, run);
-  keys.read(run.samples);  // one of both, in a scene for several methods
+  // Marked as read, because a scene for several methods may give both samples and wave_samples.
+  keys.read(run.samples);
   keys.read(methods.wave_samples);
   return stop;
 }
@@ -47,8 +49,8 @@ class CovarianceExperiment : public Experiment {
     add_q_depths_key(keys, q_depths_);
     keys.group("Methods");
     keys.add("method", method_,
-             "Monte Carlo, exactly, or of a slab by transport without chance; auto: transport "
-             "where it can be, unless samples or seconds are given")
+             "mc: Monte Carlo; wave: exact solutions; transport: deterministic, for slabs; auto: "
+             "transport if it is possible and neither samples nor seconds are given, otherwise mc")
         .one_of({"mc", "wave", "transport", "auto"});
     add_extra_keys(keys, extras_);
     add_mc_keys(keys, methods_);
@@ -88,8 +90,8 @@ class CovarianceExperiment : public Experiment {
   PlannedExperiment plan() const override {
     return {.plan = estimation_.plan,
             .batches = estimation_.job.batches,
-            .write = [this](ResultFile& file, const GroupedSums& sums, bool tells) {
-              write(file, sums, tells);
+            .write = [this](ResultFile& file, const GroupedSums& sums, bool prints) {
+              write(file, sums, prints);
             }};
   }
 
@@ -100,11 +102,11 @@ class CovarianceExperiment : public Experiment {
     return extended_transport(*scene_, reversed, extras_, methods_.tolerance);
   }
 
-  void write(ResultFile& file, const GroupedSums& sums, bool tells) const {
+  void write(ResultFile& file, const GroupedSums& sums, bool prints) const {
     const FieldJob& job = estimation_.job;
     const CovarianceRequest& request = scene_->request;
     const FieldMoments moments = field_moments(job, sums);
-    if (tells) {
+    if (prints) {
       print_medium(*scene_);
       if (request.kind != CovarianceRequest::Kind::tilt_shift)
         print_entries(request, moments.covariance);
@@ -113,7 +115,7 @@ class CovarianceExperiment : public Experiment {
     write_medium(file, *scene_);
     write_axes(file, *scene_);
     const auto moves = mc::write_moments(file, "", job, *scene_, sums, moments);
-    if (tells) print_moves(request, moves);
+    if (prints) print_moves(request, moves);
     mc::write_reflection_theory(file, *scene_);
     if (estimation_.write) estimation_.write(file, sums);
     if (method_ == "transport") mc::write_numerical(file);

@@ -17,7 +17,7 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// What the user asks.
+/// Values of the keys of the subcommand `field`.
 struct FieldKeys {
   SceneSpec spec;
   std::int64_t fields = 16;
@@ -36,21 +36,21 @@ void add_field_keys(Keys& keys, FieldKeys& values) {
   add_structure_key(keys, values.spec);
   add_view_keys(keys, values.spec);
   keys.add("tilts", values.spec.tilts,
-           "Rotations of the light: fields under each, in the same views")
+           "Rotations of the light; fields are computed under each rotation, in the same views")
       .angle();
   keys.group("Fields");
-  keys.add("fields", values.fields, "How many realizations, for errors at least 2")
+  keys.add("fields", values.fields, "Number of realizations, at least 2 for error estimates")
       .from(2, std::numeric_limits<double>::infinity());
-  keys.add(
-          "method", values.method,
-          "By light paths of each field's own, by the covariance (estimated first, then Cholesky), "
-          "or the cheaper")
+  keys.add("method", values.method,
+           "paths: separate light paths for each field; covariance: Cholesky factor of the "
+           "estimated covariance; auto: the cheaper one")
       .one_of({"auto", "paths", "covariance"});
   keys.add("paths_per_field", values.paths_per_field,
-           "Light paths of each field (default: so many that the excess kurtosis is 0.01)")
+           "Number of light paths of each field (default: the number for which the excess kurtosis "
+           "is 0.01)")
       .positive();
   keys.add("target_error", values.target_error,
-           "Relative error of the covariance that fields are drawn from")
+           "Relative error of the covariance from which fields are drawn")
       .between(0, 1);
   add_mc_keys(keys, values.estimation);
 }
@@ -69,11 +69,11 @@ mc::FieldDemand demand_of(const Keys& keys, const FieldKeys& values) {
   return demand;
 }
 
-/// The reference light, rotated by each tilt.
+/// Returns the angles of the single light in `lights` rotated by each of the tilts; without tilts,
+/// returns `lights`.
 std::vector<double> rotated(const std::vector<double>& lights, const std::vector<double>& tilts) {
   if (tilts.empty()) return lights;
-  if (lights.size() != 1)
-    throw InputError("tilts rotate one light: give one angle in light_angles");
+  if (lights.size() != 1) throw InputError("tilts: require exactly one angle in light_angles");
   std::vector<double> angles;
   for (double tilt : tilts) angles.push_back(lights.front() + tilt);
   return angles;
@@ -82,31 +82,33 @@ std::vector<double> rotated(const std::vector<double>& lights, const std::vector
 Scene field_scene(const Keys& keys, SceneSpec& spec) {
   if (spec.domain == "slab")
     throw InputError("domain", spec.domain,
-                     "fields need a box: an infinite slab's speckles are infinitely fine");
+                     "must be box: the speckles of an infinite slab are infinitely fine");
   auto lights = rotated(keys.read(spec.light_angles), keys.read(spec.tilts));
   std::swap(spec.light_angles, lights);
   Scene scene = make_scene(keys, spec);
-  std::swap(spec.light_angles, lights);  // the keys stay as they were given
+  std::swap(spec.light_angles, lights);  // restores the given angles
   scene.request = mc::field_request(scene.request.lights, scene.request.views);
   return scene;
 }
 
 void check_memory(const Scene& scene, const mc::FieldDemand& demand) {
-  constexpr double sums = 100;  // per channel, held beside the fields
+  constexpr double sums = 100;  // complex numbers per channel that are needed besides the fields
   const auto channels = static_cast<double>(scene.request.channels.size());
   const double bytes = sizeof(Complex) * channels * (static_cast<double>(demand.fields) + sums);
   const double memory = usable_memory();
   if (bytes > 0.8 * memory)
     throw InputError("fields", demand.fields,
                      std::to_string(scene.request.channels.size()) + " channels need " +
-                         std::to_string(bytes / 1e9) + " GB, there are " +
+                         std::to_string(bytes / 1e9) +
+                         " GB of memory; reduce fields, views or tilts; available in GB: " +
                          std::to_string(memory / 1e9));
   if (demand.method != mc::FieldMethod::covariance) return;
-  full_request(scene.request.lights, scene.request.views);  // throws where that does not fit
-  blas_single_thread();                                     // as this does
+  // throws InputError if the covariances do not fit into memory
+  full_request(scene.request.lights, scene.request.views);
+  blas_single_thread();  // throws InputError if memory for BLAS is missing
 }
 
-/// How the statistics of all fields compare with those of a circular Gaussian field.
+/// Prints statistics of all drawn fields, and the values expected for a circular Gaussian field.
 void print_summary(const mc::DrawnFields& drawn, const mc::FieldSummary& summary) {
   const auto& [contrast, circularity, found, grain] = summary;
   const Complex pseudo = circularity.value[0];
@@ -114,12 +116,15 @@ void print_summary(const mc::DrawnFields& drawn, const mc::FieldSummary& summary
               contrast.value[0].real(), contrast.error[0], pseudo.real(), pseudo.imag(),
               circularity.error[0]);
   if (grain)
-    std::printf("grain width %.4g +- %.2g (of its autocorrelation, at half maximum)\n",
-                grain->value[0].real(), grain->error[0]);
+    std::printf(
+        "grain width %.4g +- %.2g (full width at half maximum of the intensity autocorrelation)\n",
+        grain->value[0].real(), grain->error[0]);
   else if (!found.value.empty())
     std::puts(
         "grain width not resolved: the autocorrelation falls to half within one step of the views, "
         "or not at all");
+  else if (!grain)
+    std::puts("no grain width: it requires view_angles in equal steps of their sine");
   const Estimate& siegert = drawn.siegert;
   if (found.value.empty() || siegert.value.empty()) return;
   const bool by_paths = drawn.plan.method == mc::FieldMethod::paths;
@@ -131,7 +136,8 @@ void print_summary(const mc::DrawnFields& drawn, const mc::FieldSummary& summary
     if (beyond > 0 && error > 0) deviation = std::max(deviation, beyond / error);
   }
   std::printf(
-      "autocorrelation of the intensity: Siegert's relation within %.1f standard errors%s\n",
+      "autocorrelation of the intensity: agrees with the Siegert relation within %.1f standard "
+      "errors%s\n",
       deviation, by_paths ? " and the excess kurtosis" : "");
 }
 
@@ -139,7 +145,7 @@ class FieldExperiment : public OneShot {
  public:
   void add_keys(Keys& keys) override {
     add_field_keys(keys, values_);
-    add_seed_key(keys, run_, "Seed; field n of a seed is always the same");
+    add_seed_key(keys, run_, "Random seed; field n of a seed is always the same");
     add_thread_key(keys, run_);
     add_output_key(keys, run_);
   }
@@ -155,25 +161,27 @@ class FieldExperiment : public OneShot {
  private:
   ResultFile::Storage storage() const override { return ResultFile::Storage::disk; }
 
-  Made make(ResultFile& file, bool tells) const override {
-    const auto tell_plan = [&](const mc::DrawingPlan& chosen) {
-      if (!tells) return;
+  Made make(ResultFile& file, bool prints) const override {
+    const auto print_plan = [&](const mc::DrawingPlan& chosen) {
+      if (!prints) return;
       std::printf("%s\n", chosen.describe().c_str());
       std::fflush(stdout);
     };
-    const auto drawn = mc::draw_fields(*scene_, demand_, settings_, tell_plan);
+    const auto drawn = mc::draw_fields(*scene_, demand_, settings_, print_plan);
     write_medium(file, *scene_);
     const auto summary = mc::write_fields(file, *scene_, values_.spec.tilts, drawn);
     const double paths = drawn.plan.method == mc::FieldMethod::covariance
                              ? static_cast<double>(drawn.plan.covariance_paths)
                              : static_cast<double>(drawn.plan.paths_per_field * demand_.fields);
     check_power(file, "", *scene_, {"mc", paths, 0, seed()});
-    if (tells) print_summary(drawn, summary);
+    if (prints) print_summary(drawn, summary);
     const bool is_dark =
         scene_->medium.mu_s > 0 &&
         std::ranges::all_of(drawn.intensity.value, [](Complex value) { return value == 0.0; });
     if (is_dark)
-      std::fputs("note: no light path has reached the views: fields of 0 say nothing\n", stderr);
+      std::fputs(
+          "note: no light path has reached the views: all fields are 0; increase paths_per_field\n",
+          stderr);
     return Made{"mc: " + mc::make_plan(*scene_, settings_.reversed).describe() + "; " +
                     drawn.plan.describe(),
                 static_cast<double>(demand_.fields),

@@ -35,11 +35,13 @@ void print_table(const Scene& scene, const mc::FluxEstimates& flux) {
   }
 }
 
-/// Notes shares that are 0 although the medium scatters: no path has come out there.
+/// Prints a note for each flux fraction that is 0 only because no path contributes to it.
 void note_unreached(const Scene& scene, const mc::FluxEstimates& flux) {
   const auto note = [&](const Estimate& share, const char* name) {
     if (scene.medium.mu_s > 0 && std::ranges::find(share.value, 0.0) != share.value.end())
-      std::fprintf(stderr, "note: no path has reached the %s of a light; its 0 has no error\n",
+      std::fprintf(stderr,
+                   "note: the %s of at least one light is 0 and has no error, because no path "
+                   "contributes: increase samples\n",
                    name);
   };
   note(flux.reflectance, "reflectance");
@@ -55,14 +57,15 @@ class FluxExperiment : public Experiment {
     add_medium_keys(keys, spec_);
     add_profile_keys(keys, spec_);
     keys.group("Lights and views");
-    keys.add("light_angles", spec_.light_angles, "Directions of the plane waves, from +z").angle();
+    keys.add("light_angles", spec_.light_angles, "Directions of the plane waves, angles from +z")
+        .angle();
     keys.add("angle_bins", angle_bins_,
-             "Equal bins of the exit angle over (-pi, pi], in space over (0, pi)")
+             "Number of equal bins of the exit angle, over (-pi, pi] or in 3D over (0, pi)")
         .from(1, 100000);
     add_dimension_key(keys, spec_);
     keys.add("method", method_,
-             "Monte Carlo, or of a slab by transport without chance; auto: the latter, unless "
-             "samples or seconds are given")
+             "mc: Monte Carlo; transport: deterministic, for slabs; auto: transport for slabs "
+             "unless samples or seconds are given, else mc")
         .one_of({"mc", "transport", "auto"});
     add_transport_keys(keys, methods_);
     add_run_keys(keys, run_);
@@ -77,8 +80,8 @@ class FluxExperiment : public Experiment {
     scene_ = with_dimension(make_scene(keys, spec_), spec_);
     if (by_mc() && spec_.dimension == 3)
       throw InputError("dimension", 3,
-                       "flux in space is by transport, which takes a tolerance; leave out "
-                       "method = mc, samples and seconds");
+                       "requires method = transport with a tolerance; leave out method = mc, "
+                       "samples and seconds");
     job_ = made_job();
     inputs_ = inputs_text(*scene_) + inputs_text(keys);
   }
@@ -86,8 +89,8 @@ class FluxExperiment : public Experiment {
   PlannedExperiment plan() const override {
     return {.plan = (by_mc() ? "mc: " : "transport: ") + job_.plan,
             .batches = job_.batches,
-            .write = [this](ResultFile& file, const GroupedSums& sums, bool tells) {
-              write(file, sums, tells);
+            .write = [this](ResultFile& file, const GroupedSums& sums, bool prints) {
+              write(file, sums, prints);
             }};
   }
 
@@ -100,11 +103,11 @@ class FluxExperiment : public Experiment {
     return mc::slab_flux_job(*scene_, bins, {methods_.tolerance});
   }
 
-  void write(ResultFile& file, const GroupedSums& sums, bool tells) const {
+  void write(ResultFile& file, const GroupedSums& sums, bool prints) const {
     const auto estimates = mc::flux_estimates(job_, sums);
-    if (tells) print_table(*scene_, estimates);
-    if (tells) note_bins(estimates);
-    if (tells && by_mc()) note_unreached(*scene_, estimates);
+    if (prints) print_table(*scene_, estimates);
+    if (prints) note_bins(estimates);
+    if (prints && by_mc()) note_unreached(*scene_, estimates);
     write_medium(file, *scene_);
     mc::write_flux(file, *scene_, estimates);
     ResultGroup(file, mc::flux_table)
@@ -113,13 +116,15 @@ class FluxExperiment : public Experiment {
     if (!by_mc()) mc::write_numerical(file);
   }
 
-  /// Bins at the edge of a sharp peak converge later than the shares do.
+  /// Prints a note if bins of the radiance over exit angle have large errors; bins at the edge of a
+  /// sharp peak converge more slowly than reflectance and transmittance.
   void note_bins(const mc::FluxEstimates& flux) const {
     constexpr double much = 1e-4;
     const double width = job_.angles / static_cast<double>(job_.angle_bins);
     const double worst = width * std::ranges::max(flux.exit_radiance.error);
     if (!by_mc() && worst > much)
-      std::fprintf(stderr, "note: exit_radiance has errors of up to %.2g of the light in a bin\n",
+      std::fprintf(stderr,
+                   "note: exit_radiance has errors of up to %.2g of the incident power per bin\n",
                    worst);
   }
 

@@ -21,7 +21,7 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// What the user asks.
+/// Values of the keys of the subcommand `image`.
 struct ImageKeys {
   SceneSpec spec;
   std::vector<double> object_x, object_brightness;
@@ -46,30 +46,37 @@ struct ImageKeys {
 
 void add_object_keys(Keys& keys, ImageKeys& values) {
   keys.group("Object and camera");
-  keys.add("object_x", values.object_x, "Points of the object, incoherent with each other")
+  keys.add("object_x", values.object_x, "x of the object's points, which are mutually incoherent")
       .unit("length");
-  keys.add("object_brightness", values.object_brightness, "Of each point (default 1)").positive();
-  keys.add("object_count", values.object_count, "So many of them, the first ones (default: all)")
+  keys.add("object_brightness", values.object_brightness, "Brightness of each point (default: 1)")
       .positive();
-  keys.add("object_scale", values.object_scale, "By which object_x is multiplied").positive();
-  keys.add("object_depth", values.object_depth, "z of the object's line, outside of the box")
+  keys.add("object_count", values.object_count,
+           "Number of object points used, in the order given (default: all)")
+      .positive();
+  keys.add("object_scale", values.object_scale, "Factor by which object_x is multiplied")
+      .positive();
+  keys.add("object_depth", values.object_depth,
+           "z of the line on which the object's points lie, outside the box")
       .unit("length");
   keys.add("camera_depth", values.camera_depth,
-           "z of the camera's line, outside of the box (default: far away, beyond the box)")
+           "z of the line on which the camera's pixels lie, outside the box (default: at infinity, "
+           "behind the box)")
       .unit("length");
   keys.add("camera", values.camera,
-           "First and last pixel: x, or without camera_depth the sine of the direction")
+           "First and last pixel: x if camera_depth is given, otherwise the sine of the direction")
       .exactly(2, "first last");
-  keys.add("pixels", values.pixels, "Of the camera").from(64, 1 << 20);
+  keys.add("pixels", values.pixels, "Number of pixels of the camera").from(64, 1 << 20);
   add_camera_keys(keys, values.noise);
-  keys.add("background", values.noise.background, "Even light besides, over the mean of the light")
+  keys.add("background", values.noise.background,
+           "Uniform background light, relative to the mean light over the pixels")
       .not_negative();
 }
 
 void add_reference_keys(Keys& keys, ImageKeys& values) {
   keys.group("Reference");
   keys.add("reference_x", values.reference_x,
-           "A point on the object's line that has a frame of its own, by which others are divided")
+           "x of a reference point on the object's line; frames are divided (deconvolved) by its "
+           "frame")
       .unit("length");
   add_keys(keys, values.deconvolution);
 }
@@ -77,23 +84,29 @@ void add_reference_keys(Keys& keys, ImageKeys& values) {
 void add_blinking_keys(Keys& keys, ImageKeys& values) {
   keys.group("Blinking");
   keys.add("blinking", values.blinking,
-           "Points whose brightness differs from frame to frame of a medium: random subsets, or by "
-           "light that comes through the medium as speckle, another in each frame")
+           "How the brightness of points varies between the frames of a medium: not at all (none), "
+           "by random subsets, or by excitation with a different speckle pattern in each frame "
+           "(speckle)")
       .one_of({"none", "subsets", "speckle"});
-  keys.add("blinking_frames", values.blinking_frames, "Frames of each medium").from(2, 100000);
-  keys.add("lit", values.lit, "subsets: share of the frames in which a point shines").between(0, 1);
+  keys.add("blinking_frames", values.blinking_frames, "Number of frames of each medium")
+      .from(2, 100000);
+  keys.add("lit", values.lit, "blinking = subsets: fraction of the frames in which a point shines")
+      .between(0, 1);
   keys.add("excitation_wavelength", values.excitation_wavelength,
-           "speckle: of the light that excites (default: wavelength)")
+           "blinking = speckle: wavelength of the exciting light (default: wavelength)")
       .positive()
       .unit("length");
   keys.add("excitation_optical_depth", values.excitation_optical_depth,
-           "speckle: of the medium at that wavelength (default: optical_depth)")
+           "blinking = speckle: optical depth of the medium at excitation_wavelength (default: "
+           "optical_depth)")
       .positive();
   keys.add("excitation_paths", values.excitation_paths,
-           "speckle: light paths of the covariance at the points")
+           "blinking = speckle: number of light paths for the covariance of the exciting field "
+           "between the points")
       .positive();
   keys.add("sources", values.sources,
-           "How many sources frames are taken apart into (default: as their singular values tell)")
+           "Number of sources into which frames are separated (default: determined from the "
+           "singular values of the frames)")
       .from(1, 64);
 }
 
@@ -108,37 +121,38 @@ void add_image_keys(Keys& keys, ImageKeys& values) {
   add_blinking_keys(keys, values);
   keys.group("Pictures");
   keys.add("repeats", values.repeats,
-           "Media, with a frame of each, in which the points are looked for (0: only what is "
-           "expected)")
+           "Number of random media, with one frame each; points are searched in each frame (0: "
+           "compute only the prediction)")
       .from(0, std::numeric_limits<double>::infinity());
   mc::add_average_key(keys, values.average);
   keys.add("method", values.method,
-           "Fields by light paths, or of placements by the exact solver (wave)")
+           "paths: fields by light paths; wave: fields of placements by the exact solver")
       .one_of({"paths", "wave"});
-  keys.add(
-          "paths_per_field", values.paths_per_field,
-          "Light paths of each medium (default: so many that the excess kurtosis is 0.01, and four "
-          "for each grain that can be seen)")
+  keys.add("paths_per_field", values.paths_per_field,
+           "Number of light paths of each medium (default: enough for an excess kurtosis of 0.01, "
+           "and at least four per visible grain)")
       .positive();
   add_wave_keys(keys, values.estimation);
   keys.remove("wave_samples");
   keys.add("points", values.points,
-           "How many points the search looks for (default: as many as there are; 0: no search)")
+           "Number of points to recover (default: number of object points; 0: no search)")
       .from(0, 64);
   keys.add("object_extent", values.object_extent,
-           "Longest distance that the search looks for (default: 1.25 times the object's)")
+           "Longest distance between points in the search (default: 1.25 times the extent of the "
+           "object)")
       .positive()
       .unit("length");
   keys.add("resolution", values.resolution,
-           "Least distance of points, and what counts as found, in grains of the speckle")
+           "Smallest distance between points, and tolerance within which a point counts as "
+           "recovered, in speckle grains")
       .positive();
   keys.add("memory_range", values.memory_range,
-           "Distance of points whose speckles have the correlation C_I = 1/2, for a search that "
-           "weighs pairs by it (default: all pairs alike)")
+           "Distance between two points at which the intensity correlation C_I of their speckles "
+           "is 1/2; determines the weights of pairs in the search (default: equal weights)")
       .positive()
       .unit("length");
   keys.add("prediction_paths", values.prediction_paths,
-           "Light paths that predict the peaks of pairs")
+           "Number of light paths for the prediction of the correlation peaks of pairs of points")
       .positive();
 }
 
@@ -146,13 +160,15 @@ mc::LineObject object_of(const Keys& keys, const ImageKeys& values) {
   mc::LineObject object{keys.required(values.object_x), keys.read(values.object_brightness)};
   if (object.brightness.empty()) object.brightness.assign(object.x.size(), 1);
   if (object.brightness.size() != object.x.size())
-    throw InputError("object_brightness", object.brightness.size(),
-                     "numbers for " + std::to_string(object.x.size()) + " points");
+    throw InputError("object_brightness: has " + std::to_string(object.brightness.size()) +
+                     " values, must have one for each of the " + std::to_string(object.x.size()) +
+                     " points");
   for (double& x : object.x) x *= keys.read(values.object_scale);
   if (const auto& count = keys.read(values.object_count)) {
     if (static_cast<std::size_t>(*count) > object.x.size())
       throw InputError("object_count", *count,
-                       "of " + std::to_string(object.x.size()) + " points in object_x");
+                       "must be at most " + std::to_string(object.x.size()) +
+                           ", the number of points in object_x");
     object.x.resize(static_cast<std::size_t>(*count));
     object.brightness.resize(object.x.size());
   }
@@ -161,14 +177,16 @@ mc::LineObject object_of(const Keys& keys, const ImageKeys& values) {
 
 mc::LineCamera camera_of(const Keys& keys, const ImageKeys& values) {
   const auto& ends = keys.required(values.camera);
-  if (!(ends[0] < ends[1])) throw InputError("camera", ends[1], "must be more than the first");
+  if (!(ends[0] < ends[1]))
+    throw InputError("camera", ends[1], "must be larger than the first value");
   const auto& depth = keys.read(values.camera_depth);
   if (!depth && !(ends[0] > -1 && ends[1] < 1))
-    throw InputError("camera: sines of directions are between -1 and 1");
+    throw InputError("camera: must be sines of directions between -1 and 1");
   return {depth, ends[0], ends[1], static_cast<std::size_t>(keys.read(values.pixels))};
 }
 
-/// Pixels of the longest distance that is looked for.
+/// Returns the number of lags of the autocorrelation, in pixels, that is needed for the longest
+/// distance between points. Throws InputError if it is too large for the camera.
 std::size_t lags_of(const mc::LineScene& line, const std::optional<double>& object_extent) {
   std::vector<double> x = line.object.x;
   if (line.reference) x.push_back(*line.reference);
@@ -178,22 +196,23 @@ std::size_t lags_of(const mc::LineScene& line, const std::optional<double>& obje
                most = static_cast<double>(line.camera.pixels) / 4;
   if (!(lags <= most))
     throw InputError("object_extent", extent,
-                     "takes " + std::to_string(static_cast<long>(lags)) +
-                         " pixels of the camera, more than a quarter of them");
+                     "corresponds to " + std::to_string(static_cast<long>(lags)) +
+                         " pixels, more than a quarter of the camera's pixels; reduce it");
   return static_cast<std::size_t>(lags);
 }
 
-/// Refuses a reference whose picture, of so many lags to either side, shows no point of the object.
+/// Throws InputError if no point of the object lies in the deconvolved picture, which extends
+/// `lags` pixels to either side of the reference point.
 void require_picture(const mc::LineScene& line, std::size_t lags) {
   if (!line.reference) return;
   const auto away = shifts(line).x;
   const auto in_picture = [&](double x) { return std::abs(x) < static_cast<double>(lags); };
   if (std::ranges::none_of(away, in_picture))
     throw InputError("reference_x", *line.reference,
-                     "is further from all points of the object than object_extent reaches");
+                     "must be within object_extent of a point of the object");
 }
 
-/// All but the lags.
+/// Makes the imaging task from the keys. The number of lags is set later.
 mc::ImagingTask task_of(const Keys& keys, const ImageKeys& values, std::size_t points) {
   mc::ImagingTask task;
   task.repeats = static_cast<std::uint64_t>(keys.read(values.repeats));
@@ -201,50 +220,56 @@ mc::ImagingTask task_of(const Keys& keys, const ImageKeys& values, std::size_t p
   read_camera_keys(keys, values.noise, task.recovery.noise);
   task.recovery.noise.background = keys.read(values.noise.background);
   if (keys.read(values.reference_x) && task.average > 1)
-    throw InputError("average", task.average, "frames with a reference are not averaged");
+    throw InputError("average", task.average,
+                     "must be 1 with reference_x: frames with a reference are not averaged");
   if (keys.read(values.reference_x))
     task.deconvolution = deconvolution_task(keys, values.deconvolution);
   if (const auto& sought = keys.read(values.points)) points = static_cast<std::size_t>(*sought);
-  if (points > 1) task.recovery.points = points;  // one point has no distances
+  // not for a single point, which has no distances to recover
+  if (points > 1) task.recovery.points = points;
   if (task.recovery.points == 0) return task;
   task.recovery.resolution_grains = keys.read(values.resolution);
   task.recovery.memory_range = keys.read(values.memory_range).value_or(0);
   return task;
 }
 
-/// Frames in which points blink, but for how bright they are.
+/// Makes the task for frames with blinking points. The brightness of the points is set later by
+/// set_brightness().
 mc::BlinkingTask blinking_of(const Keys& keys, const ImageKeys& values,
                              const mc::ImagingTask& task) {
   mc::BlinkingTask blinking;
   blinking.frames = static_cast<std::size_t>(keys.read(values.blinking_frames));
   if (task.average > 1)
-    throw InputError("average", task.average, "blinking has frames of one medium");
+    throw InputError("average", task.average,
+                     "must be 1 with blinking: its frames show one medium and are not averaged");
   if (keys.read(values.reference_x))
-    throw InputError("reference_x", *values.reference_x,
-                     "frames of blinking points have no reference");
-  blinking.unmixes = task.recovery.points > 0;
-  blinking.unmixing.noise = task.recovery.noise;
-  if (!blinking.unmixes) return blinking;
-  blinking.unmixing.sources = static_cast<std::size_t>(keys.read(values.sources).value_or(0));
-  blinking.unmixing.resolution_grains = task.recovery.resolution_grains;
-  if (blinking.unmixing.sources > blinking.frames)
-    throw InputError("sources", blinking.unmixing.sources, "take at least as many blinking_frames");
+    throw InputError("reference_x", *values.reference_x, "must not be given with blinking");
+  blinking.separates = task.recovery.points > 0;
+  blinking.separation.noise = task.recovery.noise;
+  if (!blinking.separates) return blinking;
+  blinking.separation.sources = static_cast<std::size_t>(keys.read(values.sources).value_or(0));
+  blinking.separation.resolution_grains = task.recovery.resolution_grains;
+  if (blinking.separation.sources > blinking.frames)
+    throw InputError("sources", blinking.separation.sources, "must be at most blinking_frames");
   return blinking;
 }
 
-/// The medium at the wavelength that excites.
+/// Returns the keys of the scene with the wavelength and the optical depth of the excitation light
+/// of the fluorescent points.
 SceneSpec excitation_spec(const Keys& keys, const ImageKeys& values) {
   SceneSpec spec = values.spec;
   spec.wavelength = keys.read(values.excitation_wavelength).value_or(spec.wavelength);
   if (const auto& depth = keys.read(values.excitation_optical_depth)) {
     if (!spec.optical_depth)
-      throw InputError("excitation_optical_depth", *depth, "is of media with an optical_depth");
+      throw InputError("excitation_optical_depth", *depth, "requires a medium with optical_depth");
     spec.optical_depth = depth;
   }
   return spec;
 }
 
-/// lights: of points and references. keeps_fields: of all media, as those of the exact solver.
+/// Throws InputError if frames and fields do not fit into memory. lights: number of object points
+/// and reference points. keeps_fields: whether the fields of all realizations of the medium are in
+/// memory at once, as with exact solutions.
 void check_memory(std::size_t lights, const mc::LineCamera& camera, const mc::ImagingTask& task,
                   bool keeps_fields) {
   const auto pixels = static_cast<double>(camera.pixels),
@@ -258,10 +283,12 @@ void check_memory(std::size_t lights, const mc::LineCamera& camera, const mc::Im
   const double bytes = at_once + static_cast<double>(task.repeats) * of_a_repeat;
   if (bytes > 0.8 * usable_memory())
     throw InputError("repeats", task.repeats,
-                     "frames and fields need " + std::to_string(bytes / 1e9) + " GB");
+                     "frames and fields need " + std::to_string(bytes / 1e9) +
+                         " GB of memory; reduce repeats or pixels");
 }
 
-/// Takes the mean over n fields off each; what is left is scaled to the variance of all fields.
+/// Subtracts the mean over all n realizations from each field. The differences are multiplied by
+/// sqrt(n / (n - 1)), so that their variance is unbiased.
 void remove_mean(std::vector<Complex>& fields, std::size_t channels) {
   const std::size_t count = fields.size() / channels;
   const auto n = static_cast<double>(count);
@@ -275,8 +302,8 @@ void remove_mean(std::vector<Complex>& fields, std::size_t channels) {
   }
 }
 
-/// The exact solver's fields of all placements, less their mean: the speckle alone, as light paths
-/// have it.
+/// Returns the exact fields of all placements minus their mean (the coherent field), so that only
+/// the speckle is left, as in fields computed by light paths.
 mc::FieldDraw exact_fields(const mc::LineScene& line, const mc::ImagingTask& task,
                            double tolerance) {
   const BatchJob exact = wave_estimation(line.scene, tolerance, task.seed).job.batches;
@@ -306,10 +333,10 @@ struct ImagedFields {
 ImagedFields fields_of(const mc::LineScene& line, const mc::ImagingTask& task,
                        const std::string& method, double wave_tolerance,
                        const std::optional<std::int64_t>& paths_per_field) {
-  if (task.repeats == 0) return {{}, "what is expected, without frames"};
+  if (task.repeats == 0) return {{}, "prediction only, without frames"};
   if (method == "wave")
     return {exact_fields(line, task, wave_tolerance),
-            "wave: placements by the exact solver, less their mean field"};
+            "wave: placements by the exact solver, minus their mean field"};
   const auto paths = paths_per_field ? static_cast<std::uint64_t>(*paths_per_field)
                                      : mc::paths_for_fields(line, task.seed, task.threads);
   const mc::Plan plan = mc::make_plan(line.scene, mc::ReversedPaths::automatic);
@@ -348,13 +375,14 @@ void print_sources(const mc::ImagingTask& task, const std::vector<mc::ImagedMedi
   const mc::FrameContrast contrast = mc::frame_contrast(media);
   std::printf("single frames: contrast %.4f +- %.2g (Gaussian: %.4f)\n", contrast.found.value,
               contrast.found.error, contrast.expected);
-  if (!task.blinking.unmixes) return;
+  if (!task.blinking.separates) return;
   const mc::MeanOverMedia rate = mc::sources_success(media),
                           count = mc::mean_over(media, 0, [](const auto&m) {
                             return static_cast<double>(m.blinked.found.count.sources);
                           });
   std::printf(
-      "%.3g sources by singular values; as sources all points found in %.3g +- %.2g of the media\n",
+      "%.3g sources by singular values; all points recovered as sources in %.3g +- %.2g of the "
+      "media\n",
       count.value, rate.value, rate.error);
 }
 
@@ -364,22 +392,22 @@ void print_summary(const mc::LineScene& line, const mc::ImagingTask& task,
   if (!media.empty()) print_moments(line, task, media);
   const auto expected = mc::expected_peaks(line, task, prediction);
   if (const auto correlation = real_parts(prediction.correlation.value); !correlation.empty())
-    std::printf("pairs of points: C_I down to %.3f, peaks down to %.1f times the noise\n",
+    std::printf("pairs of points: smallest C_I %.3f, smallest peak %.1f times the noise\n",
                 *std::min_element(correlation.begin(), correlation.end()),
                 *std::min_element(expected.signals.begin(), expected.signals.end()));
   if (line.reference) print_pictures(line, task, media, prediction);
   if (task.blinking.draw && !media.empty()) print_sources(task, media);
   if (task.recovery.points > 0 && !media.empty()) {
     const auto [rate, error] = mc::success_rate(media);
-    std::printf("all %zu points found in %.3g +- %.2g of the media\n", line.object.x.size(), rate,
-                error);
+    std::printf("all %zu points recovered in %.3g +- %.2g of the media\n", line.object.x.size(),
+                rate, error);
   }
-  if (expected.success) std::printf("success expected: %.3g\n", *expected.success);
+  if (expected.success) std::printf("expected success rate %.3g\n", *expected.success);
   const std::size_t alike = mc::alike_pairs(line, task.recovery.resolution_grains);
   if (expected.success && alike > 0)
     std::printf(
-        "%zu pairs of points are as far apart as another within a grain: the search, which wants "
-        "distances to be distinct, may miss them\n",
+        "%zu pairs of points have distances equal within a grain: the search requires distinct "
+        "distances and may miss them\n",
         alike);
 }
 
@@ -387,7 +415,7 @@ class ImageExperiment : public OneShot {
  public:
   void add_keys(Keys& keys) override {
     add_image_keys(keys, values_);
-    add_seed_key(keys, run_, "Seed; medium n of a seed is always the same");
+    add_seed_key(keys, run_, "Random seed; medium n of a seed is always the same");
     add_thread_key(keys, run_);
     add_output_key(keys, run_);
   }
@@ -404,13 +432,15 @@ class ImageExperiment : public OneShot {
     keys.read(values_.prediction_paths);
     task_ = task_of(keys, values_, object.x.size());
     if (by_waves() && task_.repeats * task_.average < 2)
-      throw InputError("repeats", task_.repeats, "the exact solver's mean field takes two or more");
+      throw InputError("repeats", task_.repeats,
+                       "repeats times average must be at least 2 with method = wave, which "
+                       "subtracts the mean field of all media");
     task_.seed = seed();
     task_.threads = threads();
     const auto& object_extent = keys.read(values_.object_extent);
     const bool blinks = keys.read(values_.blinking) != "none";
     if (blinks && task_.repeats == 0)
-      throw InputError("blinking", values_.blinking, "is of frames: repeats must be at least 1");
+      throw InputError("blinking", values_.blinking, "requires frames: repeats must be at least 1");
     if (blinks) task_.blinking = blinking_of(keys, values_, task_);
     if (values_.blinking == "subsets") keys.read(values_.lit);
     if (by_speckle()) {
@@ -418,11 +448,10 @@ class ImageExperiment : public OneShot {
       excitation_ = excitation_spec(keys, values_);
     }
     Scene medium = make_scene(keys, values_.spec);
-    if (medium.domain.kind == Domain::Kind::slab)
-      throw InputError("domain", "slab", "pictures need a box");
+    if (medium.domain.kind == Domain::Kind::slab) throw InputError("domain", "slab", "must be box");
     check_memory(object.x.size() + (reference ? 1 : 0), camera, task_, by_waves());
     line_ = mc::line_scene(std::move(medium), std::move(object), object_depth, camera, reference);
-    task_.recovery.lags = task_.blinking.unmixing.lags = lags_of(*line_, object_extent);
+    task_.recovery.lags = task_.blinking.separation.lags = lags_of(*line_, object_extent);
     require_picture(*line_, task_.recovery.lags);
     if (blinks)
       task_.recovery.noise = mc::noise_of_mean(task_.recovery.noise, task_.blinking.frames);
@@ -435,7 +464,7 @@ class ImageExperiment : public OneShot {
   bool by_speckle() const { return values_.blinking == "speckle"; }
   ResultFile::Storage storage() const override { return ResultFile::Storage::disk; }
 
-  /// Where points blink.
+  /// Sets how the brightness of blinking points is drawn for each frame.
   void set_brightness(mc::ImagingTask& task) const {
     if (values_.blinking == "subsets")
       task.blinking.draw =
@@ -449,7 +478,7 @@ class ImageExperiment : public OneShot {
     task.blinking.correlation = std::move(excitation.correlation);
   }
 
-  Made make(ResultFile& file, bool tells) const override {
+  Made make(ResultFile& file, bool prints) const override {
     mc::ImagingTask task = task_;
     if (task.repeats > 0) set_brightness(task);
     const auto fields = fields_of(*line_, task_, values_.method, values_.estimation.wave_tolerance,
@@ -461,7 +490,7 @@ class ImageExperiment : public OneShot {
     mc::write_imaging(file, *line_, task, media, prediction);
     check_power(file, "", line_->scene,
                 {"mc", static_cast<double>(values_.prediction_paths), 0, task_.seed});
-    if (tells) print_summary(*line_, task, media, prediction);
+    if (prints) print_summary(*line_, task, media, prediction);
     return Made{fields.how, static_cast<double>(task_.repeats * task_.average)};
   }
 

@@ -20,24 +20,22 @@ namespace flatspeckle::apps {
 
 const DatasetTable own_places_table{
     .name = "own places",
-    .rows = {
-        {"intensity_ratio", Data::real, "LIGHT VIEW", "1", "|far_field|^2 over mc/intensity"},
-        {"forward", Data::count, "LIGHT VIEW", "1",
-         "1: in the forward lobe, where the coherent field is; counts in nothing below"},
-        {"mean_ratio", Data::estimate, "", "1", "mean of intensity_ratio; 1 to expect"},
-        {"ratio_contrast", Data::estimate, "", "1",
-         "standard deviation of intensity_ratio over its mean; 1 to expect"},
-        {"independent_grains", Data::real, "", "1",
-         "n^2 over the sum of |C|^2 / (I I') of n channels, by Monte Carlo: how many independent "
-         "values they are worth"}}};
+    .rows = {{"intensity_ratio", Data::real, "LIGHT VIEW", "1", "|far_field|^2 over mc/intensity"},
+             {"forward", Data::count, "LIGHT VIEW", "1",
+              "1: in the forward lobe of the coherent field; excluded from the statistics below"},
+             {"mean_ratio", Data::estimate, "", "1", "mean of intensity_ratio; expected: 1"},
+             {"ratio_contrast", Data::estimate, "", "1",
+              "standard deviation of intensity_ratio over its mean; expected: 1"},
+             {"independent_grains", Data::real, "", "1",
+              "effective number of independent intensities: n^2 over the sum of |C|^2 / (I I') of "
+              "n channels, by Monte Carlo"}}};
 
 void add_places_key(Keys& keys, SceneSpec& spec) {
   keys.remove("placement");
-  keys.add(
-      "placement", spec.placement,
-      "How each is drawn: poisson, hard_disk (default of disks) or equilibrium; or one of "
-      "your own, CSV with columns x, z (without count then): its intensities over those of Monte "
-      "Carlo");
+  keys.add("placement", spec.placement,
+           "Random placements: poisson, hard_disk (default for disks) or equilibrium; or a CSV "
+           "file with columns x, z (without count): one placement, whose intensities are compared "
+           "with Monte Carlo");
 }
 
 bool has_own_places(const SceneSpec& spec) {
@@ -47,18 +45,19 @@ bool has_own_places(const SceneSpec& spec) {
 
 namespace {
 
-/// More take Monte Carlo gigabytes, and grains are resolved by fewer.
+/// Largest number of channels (pairs of light and view). More would need gigabytes of memory for
+/// their covariances, and are not needed to resolve the speckle grains.
 constexpr std::size_t most_channels = 512;
 
 Placement read_places(const std::string& path, const Scatterer& scatterer) {
   Placement placement = read_placement(path, scatterer);
-  if (placement.empty()) throw InputError("placement", path, "holds no scatterer");
+  if (placement.empty()) throw InputError("placement", path, "must contain at least one scatterer");
   for (std::size_t row = 0; row < placement.size(); ++row)
     if (placement[row].scatterer != scatterer)
       throw InputError("placement", path,
                        "row " + std::to_string(row + 1) +
-                           " has another radius or index than the keys; Monte Carlo is of equal "
-                           "scatterers (solve takes unequal ones)");
+                           " has another radius or index than the keys; Monte Carlo requires equal "
+                           "scatterers (solve accepts unequal ones)");
   return placement;
 }
 
@@ -69,33 +68,34 @@ void require_in_box(const Placement& placement, const Domain& box, const std::st
     throw InputError("placement", path,
                      "row " + std::to_string(row + 1) + ", (" + number_text(x) + ", " +
                          number_text(z) +
-                         "), lies outside of the box |x| <= width / 2, 0 <= z <= "
-                         "depth");
+                         "), must lie inside the box |x| <= width / 2, 0 <= z <= depth");
   }
 }
 
-/// How many there are follows from the table.
+/// Throws InputError if a key gives the number or density of scatterers, because the table
+/// determines it.
 void refuse_numbers(const Keys& keys, const SceneSpec& spec) {
   if (keys.given(spec.count) || keys.given(spec.density) || keys.given(spec.mean_free_path) ||
       keys.given(spec.optical_depth))
     throw InputError("placement", *spec.placement,
-                     "says how many scatterers there are: leave out count, density, "
+                     "determines the number of scatterers: leave out count, density, "
                      "mean_free_path and optical_depth");
 }
 
 void require_simple(const Scene& scene) {
   if (scene.profile || scene.index || !scene.medium.has_scatterers ||
-      has_near_ends(scene.request) || scene.request.kind != CovarianceRequest::Kind::intensity)
+      has_near_endpoints(scene.request) || scene.request.kind != CovarianceRequest::Kind::intensity)
     throw InputError(
-        "placement: a table of places is of one box, plane waves, far views and covariance = "
-        "intensity");
+        "placement: a table of positions requires a homogeneous box, plane waves, far views and "
+        "covariance = intensity");
 }
 
-/// All covariances, which say how many of the views are independent.
+/// Returns the request of the covariances of all pairs of channels, from which the number of
+/// independent speckle grains follows.
 CovarianceRequest all_pairs(const CovarianceRequest& request) {
   if (request.channels.size() > most_channels)
-    throw InputError("view_angles", std::to_string(request.views.size()) + " of them",
-                     "with a placement of your own lights and views make at most " +
+    throw InputError("view_angles", std::to_string(request.views.size()) + " angles",
+                     "with a table of positions, lights and views must make at most " +
                          std::to_string(most_channels) + " pairs");
   return full_request(request.lights, request.views);
 }
@@ -106,7 +106,8 @@ Estimate intensities_of(const Estimate& triangle, std::size_t channels) {
   return found;
 }
 
-/// A target error is that of intensities.
+/// Returns the batches of the job, with the relative error of the intensities as the error that is
+/// compared with the target.
 BatchJob steered(FieldJob job, std::size_t channels) {
   job.batches.relative_error = relative_error_of(
       [covariance = job.covariance, channels](double samples, std::span<const Complex> sums) {
@@ -115,14 +116,18 @@ BatchJob steered(FieldJob job, std::size_t channels) {
   return job.batches;
 }
 
-/// What one pattern shows.
+/// Statistics of the speckle pattern of the given placement.
 struct Pattern {
-  std::vector<double> ratio;           ///< of each channel
-  std::vector<std::uint64_t> forward;  ///< 1: left out of what follows
+  /// For each channel, the intensity divided by the mean intensity of Monte Carlo.
+  std::vector<double> ratio;
+  /// 1 for channels in the forward lobe of the coherent field, which the statistics leave out.
+  std::vector<std::uint64_t> forward;
   double mean = 0, contrast = 0, grains = 0, mean_error = 0, contrast_error = 0;
 };
 
-/// Intensities of Gaussian fields have the covariance |C|^2 (Siegert), of which noise is taken off.
+/// Returns the number of independent speckle grains in the pattern. It follows from the covariances
+/// |C|^2 of intensities, where C is the covariance of the Gaussian fields (Siegert relation), minus
+/// the bias by noise.
 double independent_grains(const Estimate& triangle, const Pattern& pattern) {
   const std::size_t channels = pattern.ratio.size();
   double sum = 0, used = 0;
@@ -138,7 +143,8 @@ double independent_grains(const Estimate& triangle, const Pattern& pattern) {
   return std::clamp(used * used / sum, 1.0, used);
 }
 
-/// Mean and contrast; of N independent exponential values both have the variance 1/N.
+/// Computes mean and contrast of the ratios, and their errors. For N independent grains with
+/// exponentially distributed intensities, mean and contrast each have the variance 1/N.
 void add_statistics(Pattern& pattern, const Estimate& triangle) {
   double used = 0, squares = 0, mc_error = 0;
   for (std::size_t c = 0; c < pattern.ratio.size(); ++c) {
@@ -173,13 +179,12 @@ void print(const Pattern& pattern, const Scene& scene, std::size_t scatterers) {
   std::printf(
       "%zu scatterers, one speckle pattern: %zu intensities of about %.0f independent grains\n"
       "|u|^2 over the mean intensity of Monte Carlo: mean %.3f +- %.2g, contrast %.3f +- %.2g\n"
-      "both are 1 of a speckle pattern; Monte Carlo neglects %.1f %%\n",
+      "expected for a speckle pattern: 1 and 1; effects neglected by Monte Carlo: %.1f %%\n",
       scatterers, pattern.ratio.size() - static_cast<std::size_t>(left_out), pattern.grains,
       pattern.mean, pattern.mean_error, pattern.contrast, pattern.contrast_error,
       100 * mc::Allowance(scene).total());
   if (left_out > 0)
-    std::printf("%td views in the forward lobe are left out, where the coherent field is\n",
-                left_out);
+    std::printf("%td views in the forward lobe of the coherent field are excluded\n", left_out);
 }
 
 void write(ResultFile& file, const Pattern& pattern, const Scene& scene) {
@@ -192,7 +197,7 @@ void write(ResultFile& file, const Pattern& pattern, const Scene& scene) {
   ResultGroup(file, validate_table).attribute("bias_allowance", mc::Allowance(scene).total());
 }
 
-/// The table, for the identity of the run.
+/// Returns the positions of the scatterers as text, for the identity of the run.
 std::string places_text(const Placement& placement) {
   std::string text;
   for (const auto& [x, scatterer] : placement)
@@ -205,18 +210,18 @@ std::string places_text(const Placement& placement) {
 OwnPlaces::OwnPlaces(const Keys& keys, SceneSpec& spec, const MethodSettings& methods)
     : tolerance_(keys.read(methods.wave_tolerance)) {
   if (!std::filesystem::exists(*spec.placement))
-    throw InputError(
-        "placement", *spec.placement,
-        "must be one of " + joined(placement_words, " ") + ", or a table (no such file)");
+    throw InputError("placement", *spec.placement,
+                     "must be one of " + join_texts(placement_words, " ") +
+                         ", or the name of a CSV file (no such file)");
   if (spec.domain != "box")
-    throw InputError("domain", spec.domain, "a placement of your own lies in a box");
+    throw InputError("domain", spec.domain, "must be box for a table of positions (placement)");
   refuse_numbers(keys, spec);
   const std::optional<std::string> path = keys.read(spec.placement);
   placement_ = read_places(*path, make_scatterer(keys, spec));
-  spec.placement.reset();  // what is left is the scene of any such placement
+  spec.placement.reset();  // for Monte Carlo, the scene describes random placements
   spec.count = static_cast<std::int64_t>(placement_.size());
   scene_ = make_scene(keys, spec);
-  spec.placement = path;  // the keys stay as they were given
+  spec.placement = path;  // restores the given values of the keys
   spec.count.reset();
   require_simple(scene_);
   require_in_box(placement_, scene_.domain, *path);
@@ -226,12 +231,12 @@ OwnPlaces::OwnPlaces(const Keys& keys, SceneSpec& spec, const MethodSettings& me
         return mc::in_forward_lobe(scene_, channel);
       }))
     throw InputError("view_angles", number_text(spec.view_angles),
-                     "all lie in the forward lobe, where the coherent field is: give others, many "
-                     "of them, as 0.3:2.8:200");
+                     "all lie in the forward lobe of the coherent field: give many other angles, "
+                     "such as 0.3:2.8:200");
 }
 
 int OwnPlaces::compare(Session& session, mc::ReversedPaths reversed, const StopRule& stop) const {
-  blas_single_thread();  // says now what it lacks
+  blas_single_thread();  // called here so that missing memory is reported before the slow work
   const auto solution = wave::solve(placement_, scene_.k, scene_.request.lights.angles(),
                                     {.tolerance = tolerance_, .sensors = {}});
   const auto fields = solution.fields(scene_.request.views);

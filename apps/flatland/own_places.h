@@ -5,20 +5,23 @@
 
 namespace flatspeckle::apps {
 
-/// `placement` where it may also be a table of the user's places.
+/// Adds the key `placement`: a rule by which scatterers are placed at random, or the name of a
+/// table with their positions.
 void add_places_key(Keys& keys, SceneSpec& spec);
-/// Whether it is.
+/// Whether `placement` names a table of positions.
 bool has_own_places(const SceneSpec& spec);
 
-/// One placement of the user's, solved exactly, against Monte Carlo. It makes one speckle pattern:
-/// its intensities are not those of Monte Carlo, which are means over placements; but over these
-/// they have the mean 1 and the contrast 1 of a circular Gaussian field. What is known of both is
-/// told by the number of independent grains among the views.
+/// Compares the exact solution of one placement given by the user with Monte Carlo. The placement
+/// gives one speckle pattern, whereas Monte Carlo gives intensities averaged over placements. For a
+/// circular Gaussian field, the ratios of the intensities of the pattern to these averages have
+/// mean 1 and contrast 1. The errors of mean and contrast follow from the number of independent
+/// speckle grains in the views.
 class OwnPlaces {
  public:
-  /// Reads the table and makes the scene of as many scatterers. Throws InputError.
+  /// Reads the table of positions, and makes the scene for Monte Carlo with the same number of
+  /// scatterers. Throws InputError.
   OwnPlaces(const Keys& keys, SceneSpec& spec, const MethodSettings& methods);
-  /// Returns the exit status.
+  /// Computes, prints and writes the comparison. Returns the exit status.
   int compare(Session& session, mc::ReversedPaths reversed, const StopRule& stop) const;
 
  private:

@@ -26,9 +26,9 @@ namespace flatspeckle::apps {
 const DatasetTable placement_table{
     .name = "placement",
     .rows = {},
-    .attributes = {{"", "placement", "text", "rule"},
+    .attributes = {{"", "placement", "text", "placement rule"},
                    {"", "count", "uint64", "number of scatterers"},
-                   {"", "min_gap", "float64", "least distance between the rims of disks"}}};
+                   {"", "min_gap", "float64", "smallest distance between the rims of disks"}}};
 
 namespace {
 
@@ -41,47 +41,46 @@ struct PlaceKeys {
   std::optional<std::string> placement;
   std::string structure;
   std::int64_t realizations = 100;
-  RunSettings run;  ///< out and seed
+  RunSettings run;  ///< only the members out and seed are used
 };
 
 void add_keys(Keys& keys, PlaceKeys& values) {
   keys.group("Placement");
-  keys.add("width", values.width, "|x| <= width/2").positive().unit("length");
-  keys.add("depth", values.depth, "0 <= z <= depth").positive().unit("length");
-  keys.add("radii", values.radii, "Radius of each species of disks; none: points")
+  keys.add("width", values.width, "Width of the box: |x| <= width/2").positive().unit("length");
+  keys.add("depth", values.depth, "Depth of the box: 0 <= z <= depth").positive().unit("length");
+  keys.add("radii", values.radii, "Radius of each species of disks (default: points)")
       .positive()
       .unit("length");
   keys.add("fractions", values.fractions,
-           "Share of each species in the number of disks (default equal)")
+           "Number fraction of each species of disks (default: equal fractions)")
       .positive()
       .only_of("disks (radii)");
   keys.add("count", values.count, "Number of scatterers").from(1, most_scatterers);
   keys.add("packing_fraction", values.packing_fraction,
-           "Share of the box's area that the disks cover, instead of count")
+           "Fraction of the box's area covered by disks, instead of count")
       .positive()
       .only_of("disks");
   keys.add("placement", values.placement,
-           "Of points poisson; of disks hard_disk (one after the other) or equilibrium (the fluid "
-           "of "
-           "hard disks)")
+           "poisson for points; for disks hard_disk (random sequential addition) or equilibrium "
+           "(hard-disk fluid)")
       .one_of(placement_words);
   keys.add("min_gap", values.min_gap,
-           "Least distance between the rims of disks (default 1e-3 of the smallest radius)")
+           "Smallest distance between the rims of disks (default: 1e-3 of the smallest radius)")
       .not_negative()
       .unit("length")
       .only_of("disks");
-  add_seed_key(keys, values.run, "Seed");
+  add_seed_key(keys, values.run, "Random seed");
   keys.group("Structure factor");
   keys.add("structure", values.structure,
-           "Result file (HDF5) for the structure factor S(q) over realizations")
+           "Result file (HDF5) for the structure factor S(q), averaged over realizations")
       .no_file();
-  keys.add("realizations", values.realizations, "Placements that S(q) is averaged over")
+  keys.add("realizations", values.realizations, "Number of placements over which S(q) is averaged")
       .from(2, std::numeric_limits<double>::infinity())
       .only_of("--structure");
   add_output_key(keys, values.run, "Placement file (CSV)");
 }
 
-/// What is drawn: disks of these radii, one each, or points (radii empty).
+/// The placement to draw: a disk for each radius, or points if `radii` is empty.
 struct PlacementDraw {
   Domain box;
   Kind kind = Kind::poisson;
@@ -100,31 +99,33 @@ struct PlacementDraw {
   }
 };
 
-/// Summing to 1.
+/// Returns the number fractions of the species of disks, normalised to the sum 1.
 std::vector<double> shares(const Keys& keys, const PlaceKeys& values) {
   std::vector<double> shares = keys.read(values.fractions);
   if (shares.empty()) shares.assign(values.radii.size(), 1);
   if (shares.size() != values.radii.size())
-    throw InputError("fractions", shares.size(), "numbers; must be one for each of the radii");
+    throw InputError("fractions: has " + std::to_string(shares.size()) +
+                     " values, must have one for each of the radii");
   const double sum = std::accumulate(shares.begin(), shares.end(), 0.0);
   for (double& share : shares) share /= sum;
   return shares;
 }
 
-/// From count, or from packing_fraction and the mean area of a disk.
+/// Returns the number of scatterers: the key `count`, or computed from packing_fraction and the
+/// mean area of a disk.
 std::size_t number_of(const PlaceKeys& values, const Domain& box, double mean_area) {
   if (values.packing_fraction && mean_area == 0)
     throw InputError("packing_fraction", *values.packing_fraction,
-                     "points cover nothing; give count");
+                     "requires disks (radii); give count for points");
   if (values.count.has_value() == values.packing_fraction.has_value())
     throw InputError(values.count
-                         ? "count, packing_fraction: give one of them"
-                         : "no number is given: give count or (for disks) packing_fraction");
+                         ? "count, packing_fraction: give only one of them"
+                         : "count is not given: give count or, for disks, packing_fraction");
   if (values.count) return static_cast<std::size_t>(*values.count);
   const double number = *values.packing_fraction * box.area() / mean_area;
   if (!(std::llround(number) >= 1 && number <= most_scatterers))
     throw InputError("packing_fraction", *values.packing_fraction,
-                     "must give 1 to 10000000 scatterers");
+                     "must result in 1 to 10000000 scatterers");
   return static_cast<std::size_t>(std::llround(number));
 }
 
@@ -142,7 +143,8 @@ PlacementDraw make_drawing(const Keys& keys, const PlaceKeys& values) {
   drawing.count = number_of(values, drawing.box, mean_area);
   if (!disks) return drawing;
   keys.read(values.packing_fraction);
-  // Rounded running totals, so that the numbers of the species add up.
+  // Cumulative numbers are rounded, so that the numbers of disks of all species add up to the total
+  // number.
   for (std::size_t i = 0; i < share.size(); ++i) {
     total += share[i] * static_cast<double>(drawing.count);
     drawing.radii.resize(static_cast<std::size_t>(std::llround(total)), radii[i]);
@@ -186,7 +188,8 @@ std::string csv_text(const PlacementDraw& drawing, const Placement& placement,
 
 MeasuredStructureFactor measure(const PlacementDraw& drawing, std::uint64_t seed,
                                 std::uint64_t realizations) {
-  // Almost four times the peak of a dense fluid, in shells narrow against it.
+  // The largest q is almost four times the position of the peak of the structure factor of a dense
+  // fluid. The shells in q are narrow compared with this peak.
   const double q_max =
       8 * std::numbers::pi * std::sqrt(static_cast<double>(drawing.count) / drawing.box.area());
   MeasuredStructureFactor measured(drawing.box, q_max, q_max / 80);
@@ -222,26 +225,28 @@ int save_structure(const PlaceKeys& values, const PlacementDraw& drawing, const 
 }
 
 void put_placement(const std::string& path, const std::string& text, bool is_all) {
-  const EndsLater whole;
+  const DelayedTermination whole;
   replace_file(path, std::as_bytes(std::span(text)));
-  if (is_all) result_is_there();
+  if (is_all) ignore_termination_signals();
 }
 
-/// Holds a placement to its number and its smallest gap, which are told.
+/// Prints the smallest gap between disks. Checks that disks do not overlap and that all scatterers
+/// are placed. Returns the exit status.
 int status_of(const PlacementDraw& drawing, const Placement& placement) {
-  constexpr double rounding = 1e-9;  // of distances, in gaps and radii
+  constexpr double rounding = 1e-9;  // relative rounding error of distances
   if (!drawing.radii.empty() && placement.size() > 1) {
     const double largest = *std::ranges::max_element(drawing.radii),
                  within = drawing.min_gap + largest, gap = smallest_gap(placement, within);
     std::printf("smallest gap %s%.6g, min_gap %.6g\n", gap < within ? "" : "above ", gap,
                 drawing.min_gap);
     if (!(gap >= drawing.min_gap - rounding * (drawing.min_gap + largest))) {
-      std::cerr << "warning: disks are closer than min_gap: the placement is not as asked for\n";
+      std::cerr << "warning: some disks are closer than min_gap\n";
       return ExitStatus::error_not_reached;
     }
   }
   if (placement.size() == drawing.count) return ExitStatus::done;
-  std::cerr << "warning: " << drawing.count << " scatterers are asked for\n";
+  std::cerr << "warning: " << drawing.count
+            << " scatterers are requested; the placement contains another number\n";
   return ExitStatus::error_not_reached;
 }
 
@@ -272,7 +277,7 @@ int draw_one(const Subcommand& command, PlaceKeys& values) {
 
 std::unique_ptr<Call> place(const std::string&) {
   return call_with<PlaceKeys>(
-      "place", "Draws one placement of scatterers, which solve --placement reads", draw_one);
+      "place", "Draws one placement of scatterers, the input of solve --placement", draw_one);
 }
 
 }  // namespace flatspeckle::apps

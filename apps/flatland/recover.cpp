@@ -13,13 +13,13 @@
 #include "mc/imaging/recovery/phase_retrieval.h"
 #include "mc/imaging/recovery/recovery.h"
 #include "mc/imaging/recovery/recovery_datasets.h"
-#include "mc/imaging/unmixing/unmixing.h"
+#include "mc/imaging/separation/separation.h"
 
 namespace flatspeckle::apps {
 
 namespace {
 
-/// What the user asks.
+/// Values of the keys of the subcommand `recover`.
 struct RecoverKeys {
   std::string frames, reference;
   std::optional<std::int64_t> points;
@@ -34,45 +34,52 @@ struct RecoverKeys {
 };
 
 void add_keys(Keys& keys, RecoverKeys& values) {
-  keys.add("frames", values.frames,
-           "CSV file: a column for each frame, a row for each pixel along the line")
+  keys.add("frames", values.frames, "CSV file with one column per frame and one line per pixel")
       .file();
   keys.add("points", values.points,
-           "How many points are looked for (sources: default by the frames' singular values)")
+           "Number of points to recover (required, except that with recovery = sources the default "
+           "follows from the singular values of the frames)")
       .from(2, 64);
   keys.add("longest", values.longest,
-           "Longest distance of two points, pixels (default: an eighth of the frame)")
+           "Longest distance between two points, in pixels (default: 1/8 of the frame)")
       .from(8, std::numeric_limits<double>::infinity());
-  keys.add("resolution", values.resolution, "Least distance of points, in grains of the speckle")
+  keys.add("resolution", values.resolution, "Smallest distance between points, in speckle grains")
       .positive();
-  keys.add("memory_range", values.memory_range,
-           "Distance of points whose speckles have the correlation C_I = 1/2, pixels, for a search "
-           "that weighs pairs by it (default: all pairs alike)")
+  keys.add(
+          "memory_range", values.memory_range,
+          "Distance in pixels between two points at which the intensity correlation C_I of their "
+          "speckles is 1/2; determines the weights of pairs in the search (default: equal weights)")
       .positive();
   mc::add_average_key(keys, values.average);
   keys.add("recovery", values.recovery,
-           "search: points; phases: also a picture whose autocorrelation is the frame's, by hybrid "
-           "input-output and error reduction; sources: of points that blink, frames of one medium, "
-           "by non-negative factors")
+           "search: recover points; phases: also retrieve a picture that has the frame's "
+           "autocorrelation, by hybrid input-output and error reduction; sources: locate blinking "
+           "points from all frames of one medium, by non-negative factorisation")
       .one_of({"search", "phases", "sources"});
-  keys.add("starts", values.phases.starts, "phases: from random ones, the best is taken")
+  keys.add("starts", values.phases.starts,
+           "recovery = phases: number of random starts of phase retrieval; the best result is used")
       .from(1, 10000);
-  keys.add("phase_iterations", values.phases.iterations, "phases: of each start").from(4, 100000);
+  keys.add("phase_iterations", values.phases.iterations,
+           "recovery = phases: number of iterations from each random start")
+      .from(4, 100000);
   keys.add("sparsity", values.phases.sparsity,
-           "phases: what is below this share of the largest value is 0 in error reduction")
+           "recovery = phases: error reduction sets values of the picture below this fraction of "
+           "the largest value to 0")
       .from(0, 1);
   add_camera_keys(keys, values.noise);
   keys.add("reference", values.reference,
-           "CSV file of a reference point's frame: one column, or one for each frame; frames are "
-           "divided by it")
+           "CSV file with the frame of a reference point: one column for all frames, or one for "
+           "each frame; frames are divided (deconvolved) by it")
       .file();
   add_keys(keys, values.deconvolution);
   add_output_key(keys, values.run);
 }
 
-/// Of the longest distance.
+/// Returns the number of lags of the autocorrelation, in pixels, that is needed for the longest
+/// distance between points.
 std::size_t lags_of(const Keys& keys, const RecoverKeys& values, std::size_t pixels) {
-  if (pixels < 64) throw InputError("frames", pixels, "pixels: a frame has at least 64");
+  if (pixels < 64)
+    throw InputError("frames: have " + std::to_string(pixels) + " pixels, must have at least 64");
   const auto most = static_cast<double>(pixels) / 4;
   const double longest = keys.read(values.longest).value_or(std::floor(most / 2));
   if (!(longest < most))
@@ -92,18 +99,19 @@ mc::RecoveryTask task_of(const Keys& keys, const RecoverKeys& values, std::size_
   return task;
 }
 
-mc::UnmixingTask unmixing_task(const Keys& keys, const RecoverKeys& values, const Table& table) {
-  mc::UnmixingTask task;
+mc::SeparationTask separation_task(const Keys& keys, const RecoverKeys& values,
+                                   const Table& table) {
+  mc::SeparationTask task;
   task.sources = static_cast<std::size_t>(keys.read(values.points).value_or(0));
   task.resolution_grains = keys.read(values.resolution);
   read_camera_keys(keys, values.noise, task.noise);
   task.lags = lags_of(keys, values, table.rows());
   if (const std::size_t frames = table.names().size(); frames < 2)
-    throw InputError("frames", frames, "columns: sources take two or more");
+    throw InputError("frames: recovery = sources requires at least 2 columns, one for each frame");
   return task;
 }
 
-/// Nothing where only points are looked for.
+/// Returns the task of phase retrieval; nullopt unless recovery = phases.
 std::optional<mc::PhaseTask> phase_task(const Keys& keys, const RecoverKeys& values) {
   if (keys.read(values.recovery) == "search") return std::nullopt;
   mc::PhaseTask task;
@@ -113,7 +121,7 @@ std::optional<mc::PhaseTask> phase_task(const Keys& keys, const RecoverKeys& val
   return task;
 }
 
-/// Frames of each object, side by side.
+/// Returns the frames: each column of the table is one frame.
 std::vector<std::vector<double>> frames_of(const Table& table) {
   std::vector<std::vector<double>> frames;
   for (const std::string& name : table.names()) {
@@ -126,14 +134,13 @@ std::vector<std::vector<double>> frames_of(const Table& table) {
 std::size_t average_of(const Keys& keys, const RecoverKeys& values, std::size_t frames) {
   const auto average = static_cast<std::size_t>(keys.read(values.average));
   if (frames % average != 0)
-    throw InputError("average", average,
-                     "does not divide the " + std::to_string(frames) + " frames");
+    throw InputError("average", average, "must divide the " + std::to_string(frames) + " frames");
   if (average > 1 && !keys.read(values.reference).empty())
-    throw InputError("average", average, "frames with a reference are not averaged");
+    throw InputError("average", average, "must be 1 with a reference");
   return average;
 }
 
-/// Of each frame; nothing without a reference.
+/// Frames of the reference point that belong to the frames; empty if there is no reference.
 struct References {
   std::vector<std::vector<double>> of_frame;
   mc::DeconvolutionTask task;
@@ -146,12 +153,11 @@ References references_of(const Keys& keys, const RecoverKeys& values, const Tabl
   const Table table = read_key_table("reference", values.reference);
   const std::size_t columns = table.names().size(), count = frames.names().size();
   if (table.rows() != frames.rows())
-    throw InputError("reference", table.rows(),
-                     "pixels, but the frames have " + std::to_string(frames.rows()));
+    throw InputError("reference: has " + std::to_string(table.rows()) +
+                     " pixels, the frames have " + std::to_string(frames.rows()));
   if (columns != 1 && columns != count)
-    throw InputError(
-        "reference", columns,
-        "columns: must be one, or one for each of " + std::to_string(count) + " frames");
+    throw InputError("reference: has " + std::to_string(columns) + " columns, must have one, or " +
+                     std::to_string(count) + " as the frames");
   for (std::size_t i = 0; i < count; ++i) {
     const auto column = table.column(table.names()[columns == 1 ? 0 : i]);
     references.of_frame.emplace_back(column.begin(), column.end());
@@ -170,17 +176,18 @@ void print_summary(const std::vector<mc::Recovered>& all) {
   }
 }
 
-void print_sources(const mc::Unmixed& found) {
+void print_sources(const mc::SeparatedSources& found) {
   std::printf("%zu sources (singular values above %.3g), residual %.3g\n", found.count.sources,
               found.count.threshold, found.factors.residual);
-  std::printf("%-8s %-8s %s\n", "source", "group", "place (pixels)");
+  std::printf("%-8s %-8s %s\n", "source", "group", "position (pixels)");
   for (std::size_t s = 0; s < found.places.x.size(); ++s)
     std::printf("%-8zu %-8zu %.1f\n", s, found.places.group[s], found.places.x[s]);
 }
 
 using Make = std::function<Made(ResultFile&)>;
 
-/// Points of each frame, and pictures.
+/// Returns the function that recovers the points of the object from each frame, and pictures if
+/// requested, and writes the result.
 Make search_of(const Keys& keys, const RecoverKeys& values, const Table& table) {
   const mc::RecoveryTask task = task_of(keys, values, table.rows());
   const std::size_t average = average_of(keys, values, table.names().size());
@@ -209,13 +216,14 @@ Make search_of(const Keys& keys, const RecoverKeys& values, const Table& table) 
   };
 }
 
-/// Sources of all frames together.
+/// Returns the function that separates the frames into the contributions of blinking sources and
+/// writes the result.
 Make sources_of(const Keys& keys, const RecoverKeys& values, const Table& table) {
-  const mc::UnmixingTask task = unmixing_task(keys, values, table);
+  const mc::SeparationTask task = separation_task(keys, values, table);
   return [=](ResultFile& file) {
     const auto frames = frames_of(table);
-    const mc::Unmixed found = mc::unmixed(frames, task);
-    mc::write_unmixed(file, table.names(), found);
+    const mc::SeparatedSources found = mc::separated_sources(frames, task);
+    mc::write_separation(file, table.names(), found);
     print_sources(found);
     return Made{"non-negative factors of all frames, correlations of patterns",
                 static_cast<double>(frames.size())};
@@ -235,8 +243,8 @@ int recover_points(const Subcommand& command, RecoverKeys& values) {
 }  // namespace
 
 std::unique_ptr<Call> recover(const std::string&) {
-  return call_with<RecoverKeys>("recover", "Points found in the autocorrelation of measured frames",
-                                recover_points);
+  return call_with<RecoverKeys>(
+      "recover", "Recovers points from the autocorrelation of measured frames", recover_points);
 }
 
 }  // namespace flatspeckle::apps

@@ -32,10 +32,11 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// The map that solve is asked for.
+/// Values of the keys of the field map: the field on a grid of points.
 struct MapSettings {
-  std::vector<double> map;               ///< x0, x1, z0, z1; empty: none
-  std::vector<std::int64_t> map_pixels;  ///< nx, nz; empty: ten per wavelength
+  std::vector<double> map;  ///< bounds of the map: x0, x1, z0, z1; empty if there is no map
+  /// Numbers of pixels nx, nz; if empty, ten pixels per wavelength.
+  std::vector<std::int64_t> map_pixels;
 };
 
 std::size_t pixels_along(const MapSettings& settings, std::size_t side, double extent,
@@ -44,23 +45,25 @@ std::size_t pixels_along(const MapSettings& settings, std::size_t side, double e
   if (!settings.map_pixels.empty()) return static_cast<std::size_t>(settings.map_pixels[side]);
   const double wanted = std::max(1.0, std::round(per_wavelength * extent / wavelength));
   if (wanted > most)
-    throw InputError("map", extent, "is too wide for ten pixels per wavelength: give map_pixels");
+    throw InputError("map", extent,
+                     "is too wide for the default of ten pixels per wavelength: give map_pixels");
   return static_cast<std::size_t>(wanted);
 }
 
 void add_map_keys(Keys& keys, MapSettings& settings) {
   keys.group("Map");
-  keys.add("map", settings.map, "x0 x1 z0 z1: the total field on a grid over this rectangle")
+  keys.add("map", settings.map,
+           "Also write a map of the total field over the rectangle x0 x1 z0 z1")
       .exactly(4, "x0 x1 z0 z1 with x0 < x1 and z0 < z1")
       .unit("length");
   keys.add("map_pixels", settings.map_pixels,
-           "nx nz: pixels of the map (default: ten per wavelength)")
+           "Numbers of pixels of the map, nx nz (default: ten pixels per wavelength)")
       .exactly(2, "two whole numbers nx nz from 1 to 100000")
       .from(1, 100'000)
       .only_of("a map");
 }
 
-/// None where no map is asked for. Throws InputError.
+/// Returns the grid of the field map; nullopt if no map is requested. Throws InputError.
 std::optional<wave::MapGrid> map_grid(const Keys& keys, const MapSettings& settings,
                                       double wavelength) {
   const auto& map = keys.read(settings.map);
@@ -75,7 +78,7 @@ std::optional<wave::MapGrid> map_grid(const Keys& keys, const MapSettings& setti
                        pixels_along(settings, 1, map[3] - map[2], wavelength)};
 }
 
-/// What the user asks.
+/// Values of the keys of the subcommand `solve`.
 struct SolveKeys {
   SceneSpec spec;
   MapSettings map;
@@ -98,37 +101,39 @@ void add_solve_keys(Keys& keys, SolveKeys& values) {
   add_index_keys(keys, values.spec);
   keys.remove("placement");
   keys.add("placement", values.spec.placement,
-           "CSV with columns x, z [, radius [, index_re, index_im]]; or poisson, hard_disk or "
-           "equilibrium, to draw one; of a cluster: CSV with columns x, z [, angle]");
+           "CSV file with columns x, z [, radius [, index_re, index_im]]; or poisson, hard_disk or "
+           "equilibrium, to draw one; with cluster: CSV file with columns x, z [, angle]");
   add_view_keys(keys, values.spec);
   keys.add("near_sources", values.spec.near_sources,
-           "CSV with columns x, z: point sources in place of plane waves")
+           "CSV file with columns x, z: point sources instead of plane waves")
       .only_of("media with an index_field");
   add_map_keys(keys, values.map);
   add_spectrum_keys(keys, values.spectrum);
   keys.group("Solver");
   keys.add("tolerance", values.tolerance, "Relative accuracy of the fields").between(0, 1);
-  keys.add("solver", values.solver,
-           "fast (direct) is for thousands of unknowns and more, krylov (iterative) for weak "
-           "scattering")
+  keys.add(
+          "solver", values.solver,
+          "fast: direct, for thousands of unknowns or more; krylov: iterative, for weak scattering")
       .one_of({"auto", "dense", "fast", "krylov"});
   keys.group("Clusters");
   keys.add("t_matrix_gap", values.t_matrix_gap,
-           "Also write the T-matrix of the whole placement, for sources at least so far from the "
+           "Also write the T-matrix of the whole placement, for sources at least this far from the "
            "circle around it")
       .positive()
       .unit("length");
   keys.add("cluster", values.cluster,
-           "Result with a T-matrix: its cluster stands, as one object, at each of the places")
+           "Result file with a T-matrix: a copy of its cluster is placed at each position of "
+           "placement")
       .file();
 }
 
 [[noreturn]] void refuse_bulk(const SceneSpec& spec) {
   throw InputError("scatterer", spec.scatterer,
-                   "is a bulk phase function; the exact solver needs point, soft, hard, tm or te");
+                   "is a bulk phase function; must be point, soft, hard, tm or te");
 }
 
-/// A file brings its own positions: keys that would place scatterers find no use.
+/// Reads a placement from the file that `placement` names. Throws InputError if keys are given that
+/// describe random placements.
 Placement placement_of_file(const Keys& keys, const SceneSpec& spec) {
   const Scatterer scatterer = make_scatterer(keys, spec);
   if (scatterer.is_bulk()) refuse_bulk(spec);
@@ -147,7 +152,7 @@ Placement placement_of_file(const Keys& keys, const SceneSpec& spec) {
 
 Placement drawn_placement(const SceneSpec& spec, const Scene& scene, std::uint64_t seed) {
   if (scene.domain.kind == Domain::Kind::slab)
-    throw InputError("domain", spec.domain, "the exact solver needs a box");
+    throw InputError("domain", spec.domain, "must be box for the exact solver");
   if (!scene.medium.has_scatterers) refuse_bulk(spec);
   RandomStream random(seed, static_cast<std::uint64_t>(Stream::placement), 0);
   return draw_placement(scene, random);
@@ -169,7 +174,8 @@ void print_summary(const wave::WaveSolution& solution) {
   std::printf("boundary residual %.1e\n", diagnosis.boundary_residual);
 }
 
-/// Far views, near sensors, or both.
+/// Directions and positions at which the field is computed: angles of far-field views, and near
+/// sensors.
 struct Sensors {
   std::vector<double> angles;
   std::vector<Vec2> points;
@@ -185,13 +191,15 @@ Sensors sensors_of(const Keys& keys, const SceneSpec& spec) {
   return sensors;
 }
 
-/// Columns of a placement's file and the key `index` say the same thing as the table.
+/// Checks that the refractive index comes only from index_table. Throws InputError if it is also
+/// given by the placement file or the key `index`, or if no scatterer has an index.
 void require_index_from_table(const SceneSpec& spec, const Placement& placement) {
-  if (spec.index) throw InputError("index_table, index: give one of them");
+  if (spec.index) throw InputError("index_table, index: give only one of them");
   if (has_own_places(spec) && read_csv(*spec.placement).has("index_re"))
-    throw InputError("index_table: " + *spec.placement + " has indices of its own (index_re)");
+    throw InputError("index_table: " + *spec.placement +
+                     " also has indices (index_re); leave one out");
   if (std::ranges::none_of(placement, &Scatterer::is_penetrable, &PlacedScatterer::scatterer))
-    throw InputError("index_table: is of tm and te cylinders");
+    throw InputError("index_table: requires tm or te cylinders");
 }
 
 wave::WaveSolution solved(const SolveKeys& values, const Placement& placement, double wavelength,
@@ -205,23 +213,25 @@ wave::WaveSolution solved(const SolveKeys& values, const Placement& placement, d
                      options);
 }
 
-/// Says where an index may be n - 1, as tables of gases and of contrasts have it.
+/// Prints a note if a refractive index is so small that it may be meant as n - 1, which is given in
+/// tables for gases or index contrasts.
 void note_thin_index(const Placement& placement) {
-  constexpr double rare = 0.8;  // bubbles in solids are of such an index
+  // gas bubbles in solids have an index, relative to the solid, down to about this value
+  constexpr double rare = 0.8;
   const auto thin = std::ranges::find_if(placement, [](const PlacedScatterer& placed) {
     const Complex index = placed.scatterer.index;
     return placed.scatterer.is_penetrable() && index.imag() == 0 && index.real() < rare;
   });
   if (thin != placement.end())
     std::cerr << "note: index " << number_text(thin->scatterer.index.real())
-              << " is below that of the surroundings, which is 1: where it is n - 1, give n\n";
+              << " is far below the index of the surroundings, 1; if it is n - 1, give n instead\n";
 }
 
-/// One wavelength after the other.
+/// Solves for all wavelengths, one after the other, and returns the fields as a spectrum.
 wave::Spectrum spectrum(const SolveKeys& values, const Placement& placement,
-                        const WavelengthList& wavelengths, const Sensors& sensors, bool tells) {
+                        const WavelengthList& wavelengths, const Sensors& sensors, bool prints) {
   wave::Spectrum spectrum(sensors.angles, sensors.points);
-  Progress progress(tells ? "solve" : "", "wavelengths");
+  Progress progress(prints ? "solve" : "", "wavelengths");
   const Stopwatch watch;
   Progress::Figures figures;
   for (const double wavelength : wavelengths.values) {
@@ -246,13 +256,14 @@ std::string plan_of(const wave::Spectrum& spectrum, const WavelengthList& wavele
   return plan.str();
 }
 
-/// Where scatterers of a file lie: the corners of the box around them.
+/// Returns the four corners of the smallest box that contains all scatterers.
 std::vector<Vec2> corners_around(const Placement& placement) {
   const auto [low, high] = bounds_of(placement, &PlacedScatterer::position);
   return {low, {high.x, low.z}, {low.x, high.z}, high};
 }
 
-/// What solves for point scatterers where the index varies.
+/// Solver for point scatterers in a medium of varying index, with the lights and views of the
+/// scene.
 struct GradedWork {
   std::optional<wave::GradedFields> fields;
   Lights lights;
@@ -264,20 +275,21 @@ class SolveExperiment : public OneShot {
   void add_keys(Keys& keys) override {
     add_solve_keys(keys, values_);
     add_thread_key(keys, run_);
-    add_seed_key(keys, run_, "Seed of a drawn placement");
+    add_seed_key(keys, run_, "Random seed of a drawn placement");
     add_output_key(keys, run_);
   }
 
   void read(const Keys& keys) override {
     keys.read(run_.seed);
-    if (has_own_places(values_.spec)) keys.disregard(run_.seed);  // nothing is drawn
+    // the seed has no effect, because the placement is not random
+    if (has_own_places(values_.spec)) keys.disregard(run_.seed);
     if (keys.read(values_.spec.index_field) != "homogeneous") return read_graded(keys);
     keys.read(values_.tolerance);
     keys.read(values_.solver);
     if (!values_.spec.near_sources.empty())
       throw InputError(
           "near_sources", values_.spec.near_sources,
-          "are of media with an index_field here (covariance --method wave takes them)");
+          "requires an index_field (covariance --method wave accepts near_sources without one)");
     sensors_ = sensors_of(keys, values_.spec);
     if (values_.cluster.empty())
       read_placement_and_work(keys);
@@ -286,16 +298,17 @@ class SolveExperiment : public OneShot {
   }
 
  private:
-  /// Copies of a cluster in place of scatterers: what it is comes from its file.
+  /// Reads a cluster of scatterers, and the positions at which copies of the cluster are placed.
   void read_cluster(const Keys& keys) {
     if (!has_own_places(values_.spec))
       throw InputError("placement", values_.spec.placement.value_or("none"),
-                       "must be a CSV with columns x, z [, angle], of the cluster's copies");
+                       "must be a CSV file with columns x, z [, angle] of the cluster's copies");
     places_ = wave::read_places(*keys.read(values_.spec.placement));
     cluster_ = wave::read_cluster(keys.read(values_.cluster));
     if (values_.tolerance < cluster_->tolerance)
-      throw InputError("tolerance", values_.tolerance,
-                       "must be at least that of the cluster, " + number_text(cluster_->tolerance));
+      throw InputError(
+          "tolerance", values_.tolerance,
+          "must be at least the tolerance of the cluster, " + number_text(cluster_->tolerance));
   }
 
   void read_placement_and_work(const Keys& keys) {
@@ -340,7 +353,7 @@ class SolveExperiment : public OneShot {
     const double k = 2 * std::numbers::pi / keys.read(spec.wavelength);
     placement_ = placement_of_file(keys, spec);
     if (placement_.empty() || placement_.front().scatterer.is_disk())
-      throw InputError("index_field", spec.index_field, "is of points, one at the least");
+      throw InputError("index_field", spec.index_field, "requires at least one point scatterer");
     graded_->fields.emplace(*field, k, sources, sensors, corners_around(placement_));
     for (const Vec2 source : sources) graded_->lights.push_back(point_source(source));
     for (const Vec2 sensor : sensors) graded_->views.push_back(near_sensor(sensor));
@@ -349,7 +362,7 @@ class SolveExperiment : public OneShot {
   void note() const override {
     if (cluster_) return;
     if (placement_.empty())
-      std::cerr << "note: the placement holds no scatterers: all scattered fields are 0\n";
+      std::cerr << "note: the placement contains no scatterers: all scattered fields are 0\n";
     note_thin_index(placement_);
   }
 
@@ -357,26 +370,26 @@ class SolveExperiment : public OneShot {
     return grid_ ? ResultFile::Storage::disk : ResultFile::Storage::memory;
   }
 
-  Made make(ResultFile& file, bool tells) const override {
-    blas_single_thread();  // says now what it lacks
-    if (graded_) return make_graded(file, tells);
-    if (cluster_) return make_clusters(file, tells);
-    return wavelengths_->values.empty() ? make_fields(file, tells) : make_spectrum(file, tells);
+  Made make(ResultFile& file, bool prints) const override {
+    blas_single_thread();  // called here so that missing memory is reported before the slow work
+    if (graded_) return make_graded(file, prints);
+    if (cluster_) return make_clusters(file, prints);
+    return wavelengths_->values.empty() ? make_fields(file, prints) : make_spectrum(file, prints);
   }
 
-  Made make_graded(ResultFile& file, bool tells) const {
+  Made make_graded(ResultFile& file, bool prints) const {
     write_light_axis(file, graded_->lights);
     write_view_axis(file, graded_->views);
     ResultGroup(file, wave::graded_table).put("near_source_field", graded_->fields->of(placement_));
     wave::write_placement(file, placement_);
     ResultGroup(file, scene_table).attribute("wavelength", values_.spec.wavelength);
     const std::string plan = std::to_string(placement_.size()) +
-                             " points in a graded medium, coupled by its own Green function";
-    if (tells) std::printf("%s\n", plan.c_str());
+                             " points in a graded medium, coupled by its Green function";
+    if (prints) std::printf("%s\n", plan.c_str());
     return Made{plan, 1};
   }
 
-  Made make_clusters(ResultFile& file, bool tells) const {
+  Made make_clusters(ResultFile& file, bool prints) const {
     const wave::ClusterSolution solution(
         cluster_->t_matrix, places_, values_.spec.light_angles,
         {values_.tolerance, sensors_.points, true, solvers.at(values_.solver)});
@@ -386,21 +399,21 @@ class SolveExperiment : public OneShot {
     std::ostringstream plan;
     plan << places_.size() << " copies of a cluster, " << solution.equations().unknowns()
          << " unknowns: " << solution.method();
-    if (tells)
+    if (prints)
       std::printf("%s\nresidual %.1e\n", plan.str().c_str(), solution.diagnosis().residual);
     return Made{plan.str(), 1};
   }
 
-  Made make_spectrum(ResultFile& file, bool tells) const {
-    const auto found = spectrum(values_, placement_, *wavelengths_, sensors_, tells);
+  Made make_spectrum(ResultFile& file, bool prints) const {
+    const auto found = spectrum(values_, placement_, *wavelengths_, sensors_, prints);
     found.write(file);
     write_scene(file);
     const std::string plan = plan_of(found, *wavelengths_, placement_);
-    if (tells) std::printf("%sresidual at most %.1e\n", plan.c_str(), found.residual());
+    if (prints) std::printf("%sresidual at most %.1e\n", plan.c_str(), found.residual());
     return Made{plan + "one solution after the other", 1};
   }
 
-  Made make_fields(ResultFile& file, bool tells) const {
+  Made make_fields(ResultFile& file, bool prints) const {
     const double wavelength = values_.spec.wavelength;
     const auto solution = solved(values_, placement_, wavelength, grid_, sensors_.points);
     std::optional<wave::KeptCluster> cluster;
@@ -412,8 +425,8 @@ class SolveExperiment : public OneShot {
     if (grid_) map_method = wave::write_map(file, solution, *grid_, values_.tolerance);
     if (cluster) wave::write_cluster(file, *cluster);
     write_scene(file);
-    if (tells) print_summary(solution);
-    if (tells && grid_) std::printf("%s\n", map_method.c_str());
+    if (prints) print_summary(solution);
+    if (prints && grid_) std::printf("%s\n", map_method.c_str());
     return Made{plan_of(solution, map_method), 1};
   }
 

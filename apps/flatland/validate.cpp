@@ -30,16 +30,17 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// Monte Carlo held against a reference, value by value.
+/// Comparison of Monte Carlo with a reference method, value by value.
 struct Comparison {
-  std::string name;  ///< of the reference
+  std::string name;  ///< name of the reference method
   Estimate reference, mc;
-  double bias = 0;            ///< of what differs without chance
-  bool correlations = false;  ///< the bias is a share of 1, not of the value
-  /// 1 where an entry is not to agree, for a reason that is known; empty: nowhere.
+  double bias = 0;  ///< relative systematic difference that is allowed
+  /// True if `bias` is relative to 1 instead of the value, as for correlations.
+  bool correlations = false;
+  /// 1 for each value that is not expected to agree, for a known reason; empty if there are none.
   std::vector<std::uint64_t> apart = {};
 
-  /// Not below what rounding leaves.
+  /// Returns the combined standard error of both methods, but at least the rounding error.
   double error(std::size_t e) const {
     const double largest = std::max(std::abs(reference.value[e]), std::abs(mc.value[e]));
     return std::hypot(reference.error[e], mc.error[e], 1e-13 * largest);
@@ -47,7 +48,7 @@ struct Comparison {
 
   double difference(std::size_t e) const { return std::abs(mc.value[e] - reference.value[e]); }
 
-  /// In combined standard errors.
+  /// Returns the difference of the methods in units of the combined standard error.
   double deviation(std::size_t e) const {
     return difference(e) == 0 ? 0 : difference(e) / error(e);
   }
@@ -61,11 +62,12 @@ struct Comparison {
   bool is_apart(std::size_t e) const { return !apart.empty() && apart[e] != 0; }
   bool within_errors(std::size_t e) const { return deviation(e) <= 4; }
   bool within_bias(std::size_t e) const { return difference(e) <= bias * scale(e); }
-  /// What a bias is a share of.
+  /// Returns the magnitude to which `bias` is relative.
   double scale(std::size_t e) const { return correlations ? 1 : std::abs(reference.value[e]); }
 
-  /// Differences, combined errors and how many are within errors or bias, of all but those apart.
-  /// Sizes are RMS, over the RMS of the reference. Nothing where all are apart.
+  /// Summary of all values except those marked in `apart`: RMS difference and RMS combined error,
+  /// both relative to the RMS of the reference, and fraction of the values that agree within errors
+  /// or bias. whole() returns nullopt if all values are marked.
   struct Whole {
     double difference, error, share_within;
   };
@@ -86,13 +88,14 @@ struct Comparison {
   }
 };
 
-/// How the rows of a printed comparison begin.
+/// First columns of the printed table of a comparison: their heading, and their text for each row.
 struct RowNames {
   std::string head;
   std::function<std::string(std::size_t)> of;
 };
 
-/// How many values of the first so many are within errors, only within the bias, and apart.
+/// Numbers of values that agree within errors, that agree only within the bias, and that are not
+/// expected to agree.
 struct Agreement {
   std::size_t in_errors = 0, in_bias = 0, apart = 0;
 };
@@ -109,7 +112,7 @@ void print_row(const Comparison& comparison, std::size_t e, const RowNames& name
                                             : "  *");
 }
 
-/// Prints the table of as many values.
+/// Prints the comparison as a table, and counts how many of its values agree.
 Agreement print_comparison(const Comparison& comparison, std::size_t values,
                            const RowNames& names) {
   std::printf("%s  %21s %8s  %21s %8s  %8s  %s\n", names.head.c_str(), "mc", "error",
@@ -132,30 +135,31 @@ Agreement print_comparison(const Comparison& comparison, std::size_t values,
 
 const DatasetTable validate_table{
     .name = "validate",
-    .rows = {{"entry", Data::numbers, "", "1", "number of the entry"},
-             {"deviation", Data::real, "entry", "1",
-              "|mc - reference| in combined standard errors, per entry in the order of the "
-              "request"},
-             {"forward", Data::count, "entry", "1",
-              "1: both channels in the forward lobe of a fixed number of scatterers, whose exact "
-              "covariance lacks what Monte Carlo has (conventions, C12); of boxes"},
-             {"rms_difference", Data::estimate, "", "1",
-              "RMS of mc - reference over that of the reference, of all entries but forward ones, "
-              "if there are others, and what of it combined standard errors are"},
-             {"share_within", Data::real, "", "1",
-              "of these entries, those within 4 combined standard errors or bias_allowance"},
-             {"frequency_deviation", Data::real, "frequency_shift LIGHT VIEW", "1",
-              "the same of mc/frequency_correlation"},
-             {"frequency_tilt_deviation", Data::real, "frequency_shift tilt", "1",
-              "the same of mc/frequency_tilt_correlation"}},
-    .attributes = {
-        {"", "bias_allowance", "float64",
-         "relative size of a difference without chance: what Monte Carlo neglects of exact "
-         "solutions, or the tolerance of transport"}}};
+    .rows =
+        {{"entry", Data::numbers, "", "1", "number of the entry"},
+         {"deviation", Data::real, "entry", "1",
+          "|mc - reference| in combined standard errors, per entry in the order of the request"},
+         {"forward", Data::count, "entry", "1",
+          "for boxes with a fixed number of scatterers; 1: both channels lie in the forward lobe, "
+          "where the exact covariance lacks a term that Monte Carlo includes (conventions, C12)"},
+         {"rms_difference", Data::estimate, "", "1",
+          "RMS of mc - reference over the RMS of the reference, of all entries except forward "
+          "ones; absent if all are forward; its error is the part due to combined standard errors"},
+         {"share_within", Data::real, "", "1",
+          "fraction of the entries of rms_difference that agree within 4 combined standard errors "
+          "or bias_allowance"},
+         {"frequency_deviation", Data::real, "frequency_shift LIGHT VIEW", "1",
+          "|mc - reference| of frequency_correlation in combined standard errors"},
+         {"frequency_tilt_deviation", Data::real, "frequency_shift tilt", "1",
+          "|mc - reference| of frequency_tilt_correlation in combined standard errors"}},
+    .attributes = {{"", "bias_allowance", "float64",
+                    "relative systematic difference allowed: effects neglected by Monte Carlo, or "
+                    "the tolerance of transport"}}};
 
 namespace {
 
-/// What Monte Carlo is held against: placements solved exactly, or a slab's transport.
+/// Reference method with which Monte Carlo is compared: exact solutions of many placements, or
+/// transport through a slab.
 struct Reference {
   std::string name;
   ChangeEstimation estimation;
@@ -181,7 +185,7 @@ RowNames shift_names(const CovarianceRequest& request, const std::vector<double>
           }};
 }
 
-/// Only those parts that are more than 0.0 %.
+/// Returns a text with the contributions to mc::Allowance that do not round to 0.0 %.
 std::string allowance_text(const Scene& scene) {
   const mc::Allowance part(scene);
   const double packing = scene.medium.packing_fraction;
@@ -195,8 +199,7 @@ std::string allowance_text(const Scene& scene) {
   add(part.crossed_paths,
       "crossed paths: 2/(k mfp), k mfp =", scene.k * scene.medium.mean_free_path());
   add(part.k_shift, "refraction: 2 |k_shift|/k, k_shift/k =", scene.medium.k_shift / scene.k);
-  add(part.guided,
-      "a box that guides, of depth / width =", scene.domain.depth / scene.domain.width);
+  add(part.guided, "guiding by the box, depth / width =", scene.domain.depth / scene.domain.width);
   add(part.correlations, "correlated positions, packing", packing);
   return text;
 }
@@ -207,22 +210,24 @@ void print_agreement(const Scene& scene, const Comparison& comparison, const Row
   std::printf("%zu %s: %zu within 4 combined standard errors, ", values,
               comparison.correlations ? "correlations" : "entries", in_errors);
   if (comparison.name == "transport")
-    std::printf("%zu more within its tolerance, ", in_bias);
+    std::printf("%zu more within the tolerance of transport, ", in_bias);
   else if (comparison.bias > 0)
-    std::printf("%zu more within the %.1f %% that the method\nneglects (%s); ", in_bias,
-                100 * comparison.bias, allowance_text(scene).c_str());
+    std::printf(
+        "%zu more within %.1f %%, the estimated size\nof effects that Monte Carlo neglects (%s); ",
+        in_bias, 100 * comparison.bias, allowance_text(scene).c_str());
   if (apart > 0) std::printf("%zu forward, ", apart);
   std::printf("%zu beyond (*)\n", values - in_errors - in_bias - apart);
   if (apart > 0)
     std::printf(
-        "forward: within 1/width of the light's own direction, where a fixed number of scatterers "
-        "takes a\nfluctuation of the coherent field away that Monte Carlo has (conventions, "
+        "forward: within 1/width of the light's direction, where a fixed number of scatterers "
+        "removes a\nfluctuation of the coherent field that Monte Carlo includes (conventions, "
         "C12)%s\n",
-        scene.scatterer.is_disk() ? "" : "; density in place of count has it in both");
+        scene.scatterer.is_disk() ? "" : "; density instead of count includes it in both");
   if (const auto whole = comparison.whole())
     std::printf(
-        "all%s: RMS difference %.3g %% of the RMS, of which errors %.3g %%; %.4g %% within\n",
-        apart > 0 ? " but those" : "", 100 * whole->difference, 100 * whole->error,
+        "all entries%s: RMS difference %.3g %% of the RMS value, combined errors %.3g %%; %.4g %% "
+        "of the entries agree\n",
+        apart > 0 ? " except forward" : "", 100 * whole->difference, 100 * whole->error,
         100 * whole->share_within);
 }
 
@@ -245,7 +250,7 @@ void write_comparison(ResultFile& file, const Comparison& comparison) {
   root.attribute("bias_allowance", comparison.bias);
 }
 
-/// Both methods' correlations with shifted frequencies.
+/// Compares the field correlations after frequency shifts from both methods, and writes them.
 void compare_frequencies(ResultFile& file, const Scene& scene, const std::vector<double>& shifts,
                          const std::string& name, const mc::ChangeEstimates& mc,
                          const mc::ChangeEstimates& reference, double bias) {
@@ -267,8 +272,9 @@ ChangeEstimation without_change(const Estimation& estimation) {
   return {{estimation.job, {}, 0}, estimation.plan};
 }
 
-/// A budget of time is one of both methods: errors of a difference cost least where time goes as
-/// the spread of a method's samples a second, and Monte Carlo's is a tenth of placements' or less.
+/// Fraction of the time limit that Monte Carlo uses. The error of the difference is smallest if the
+/// run times of the methods are in proportion to their standard errors after one second. That of
+/// Monte Carlo is at most 1/10 of that of exact solutions.
 constexpr double mc_share = 0.1;
 
 StopRule with_share(StopRule stop, double share) {
@@ -342,7 +348,7 @@ int compare_methods(const Subcommand& command, ValidateKeys& values) {
   const Scene scene = with_dimension(rounded_scene(given, spec), spec);
   if (scene.medium.mu_s == 0)
     throw InputError("scatterer", spec.scatterer,
-                     "this scene does not scatter, there is nothing to compare");
+                     "does not scatter in this scene: a comparison requires scattering");
   refuse_absurd(methods, Neglected(scene));
   const auto chosen = refer(scene, shifts);
   const std::string& name = chosen.name;
@@ -388,8 +394,7 @@ int compare_methods(const Subcommand& command, ValidateKeys& values) {
 std::unique_ptr<Call> validate(const std::string&) {
   return call_with<ValidateKeys>(
       "validate",
-      "Monte Carlo held against exact solutions, or in a slab against transport, entry by "
-      "entry",
+      "Compares Monte Carlo with exact solutions, or in a slab with transport, entry by entry",
       compare_methods);
 }
 

@@ -25,7 +25,7 @@ std::string progress_of(const DesignState& state) {
   return text;
 }
 
-/// Where a search that is cut off is kept, and what tells it from others.
+/// File from which an interrupted search continues, and the identity of the search.
 struct Kept {
   std::filesystem::path path;
   std::string identity;
@@ -38,16 +38,17 @@ DesignState start(Designer& designer, const Kept& kept) {
   return designer.begin();
 }
 
-/// What an interrupted search has done is not thrown away without a word.
-void tell_unfinished(const Kept& kept) {
+/// Prints a note if the file of an interrupted search exists but is not continued by this call.
+void note_unfinished(const Kept& kept) {
   if (kept.resumes || !std::filesystem::exists(kept.path)) return;
   const bool is_this = grin::design::holds(kept.path, kept.identity);
-  std::fprintf(stderr, "note: %s holds a part of %s\n", kept.path.c_str(),
-               is_this ? "this search, which begins anew; --resume would go on with it"
-                       : "another search, which is given up");
+  std::fprintf(stderr, "note: %s contains a part of %s\n", kept.path.c_str(),
+               is_this ? "this search, which starts again; --resume would continue it"
+                       : "another search, which is discarded");
 }
 
-/// Whether a step was done before a signal came; what of one was, is lost.
+/// Makes one step of the search. Returns false, and leaves the state unchanged, if a signal has
+/// interrupted the step.
 bool advance(Designer& designer, DesignState& state) {
   if (interrupted()) return false;
   DesignState next = state;
@@ -60,7 +61,8 @@ bool advance(Designer& designer, DesignState& state) {
   return true;
 }
 
-/// Until it ends or a signal comes; about once a second what it goes on from is kept.
+/// Runs the search until it ends or a signal arrives, and returns its state. The state is saved
+/// about once a second.
 DesignState search(Designer& designer, const Kept& kept) {
   constexpr double pause = 1;
   Progress progress("design", "steps");
@@ -86,42 +88,42 @@ void print_summary(const DesignState& state, const DesignCheck& check) {
   const auto print = [](const char* what, const std::optional<double>& rms,
                         const std::optional<double>& half) {
     if (rms && half)
-      std::printf("%s miss by %.3g, by half the step %.3g\n", what, *rms, *half);
+      std::printf("%s miss their targets by %.3g (RMS), with half the ray step by %.3g\n", what,
+                  *rms, *half);
     else
-      std::printf("%s: some do not come to their end\n", what);
+      std::printf("%s: some do not reach their target\n", what);
   };
   std::printf("%zu coefficients, each ray traced %.0f times\n", state.search.coefficients.size(),
               state.history.traces.back());
   print("rays of the search", check.seen, check.seen_half_step);
   print("held-out rays", check.held_out, check.held_out_half_step);
   if (check.held_out_half_step)
-    std::printf("at the start they missed by %.3g: %.3g times as much\n", check.start_held_out,
-                check.start_held_out / *check.held_out_half_step);
+    std::printf("at the start, held-out rays missed by %.3g: %.3g times as much\n",
+                check.start_held_out, check.start_held_out / *check.held_out_half_step);
 }
 
-void tell_throughput(const DesignScene& scene, const DesignCheck& check) {
+void print_throughput(const DesignScene& scene, const DesignCheck& check) {
   if (scene.goal == grin::design::ThroughputValues::word)
-    std::printf("of held-out rays %.4g %% pass through the aperture\n", 100 * check.in_place);
+    std::printf("%.4g %% of the held-out rays pass through the aperture\n", 100 * check.in_place);
 }
 
-void tell_bounds(std::size_t count, const DesignScene& scene) {
+void note_bounds(std::size_t count, const DesignScene& scene) {
   if (count == 0) return;
   if (std::holds_alternative<grin::design::GuideForm>(scene.start.form))
-    std::fprintf(stderr, "note: %zu coefficients stand at the end of their range\n", count);
+    std::fprintf(stderr, "note: %zu coefficients are at the limit of their range\n", count);
   else
     std::fprintf(
         stderr,
-        "note: %zu coefficients stand at least_index or most_index: other bounds may do better\n",
+        "note: %zu coefficients are at least_index or most_index: other bounds may do better\n",
         count);
 }
 
-void tell_unseen(std::size_t count) {
+void note_unseen(std::size_t count) {
   if (count > 0)
-    std::fprintf(
-        stderr,
-        "note: %zu coefficients within the field are seen by no ray, and only smooth; more "
-        "rays or fewer nodes mend that\n",
-        count);
+    std::fprintf(stderr,
+                 "note: %zu coefficients within the field are crossed by no ray and determined "
+                 "only by smoothing; use more rays or fewer nodes\n",
+                 count);
 }
 
 bool is_reached(const DesignScene& scene, const DesignState& state, const DesignCheck& check) {
@@ -136,9 +138,9 @@ Made make(const DesignScene& scene, const Kept& kept, ResultFile& file) {
   const DesignCheck check = designer.check(state);
   write_design(file, scene, designer, state, check);
   print_summary(state, check);
-  tell_throughput(scene, check);
-  tell_bounds(designer.at_bounds(state), scene);
-  tell_unseen(check.unseen);
+  print_throughput(scene, check);
+  note_bounds(designer.at_bounds(state), scene);
+  note_unseen(check.unseen);
   const bool reached = is_reached(scene, state, check);
   if (!reached)
     std::puts(state.stalled ? "the search stalled" : "stopped before the target was reached");
@@ -155,9 +157,7 @@ struct DesignKeys {
 void add_keys(Keys& keys, DesignKeys& values) {
   add_keys(keys, values.design);
   add_thread_key(keys, values.run);
-  keys.add("resume", values.run.resume,
-           "Go on from the search that was cut off before it ended, if there is one")
-      .effort();
+  keys.add("resume", values.run.resume, "Continue an interrupted search, if there is one").effort();
   add_output_key(keys, values.run);
 }
 
@@ -170,7 +170,7 @@ int search_design(const Subcommand& command, DesignKeys& values) {
   const Kept kept{grin::design::state_path(session.out()),
                   "flatspeckle " + version() + '\n' + keys.identity() + inputs_text(keys),
                   values.run.resume};
-  tell_unfinished(kept);
+  note_unfinished(kept);
   const int status = session.once(ResultFile(session.out()),
                                   [&](ResultFile& file) { return make(scene, kept, file); });
   if (status != ExitStatus::interrupted_for_good) {
@@ -178,14 +178,14 @@ int search_design(const Subcommand& command, DesignKeys& values) {
     return status;
   }
   if (!grin::design::holds(kept.path, kept.identity)) return status;
-  std::printf("interrupted; %s holds what is done, --resume goes on\n", kept.path.c_str());
+  std::printf("interrupted; progress is saved in %s; continue with --resume\n", kept.path.c_str());
   return ExitStatus::interrupted_resumable;
 }
 
 }  // namespace
 
 std::unique_ptr<Call> design(const std::string&) {
-  return call_with<DesignKeys>("design", "An index field from what its light should do",
+  return call_with<DesignKeys>("design", "Designs an index field for given paths of light",
                                search_design);
 }
 

@@ -19,13 +19,14 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// What is missing from a picture is not passed over in silence.
+/// Prints notes about light that is missing from the images, because paths were lost or cut off.
 void note_losses(const grin::TransportCounts& counts) {
   if (counts.lost_flights > 0)
     std::fprintf(
         stderr,
-        "note: %.2g %% of the flights were longer than max_length, trapped in a body, or came to "
-        "where the index is not positive; their light is missing\n",
+        "note: %.2g %% of the flights were longer than max_length, trapped in a body, or reached "
+        "an "
+        "index that is not positive; their light is missing\n",
         100 * static_cast<double>(counts.lost_flights) / static_cast<double>(counts.flights));
   if (counts.lost_values > 0)
     std::fprintf(stderr, "note: %llu contributions were not finite and are left out\n",
@@ -36,29 +37,28 @@ void note_smoothing(const grin::LevelSurface& surface) {
   const double change = surface.volume() / surface.meant_volume() - 1;
   std::fprintf(
       stderr,
-      "note: in place of body_mesh there is a smooth surface of spacing %.3g, whose volume "
-      "differs by %+.2g %%\n",
+      "note: body_mesh is replaced by a smooth surface of spacing %.3g, whose volume differs by "
+      "%+.2g %%\n",
       surface.spacing(), 100 * change);
 }
 
-/// Runs of very long paths look as if nothing happened.
+/// Prints a warning if paths may be so long that the run shows no progress for a long time.
 void note_long_paths(const grin::Stage& stage, std::int64_t max_scatterings) {
   constexpr double many = 1e6, seconds_each = 3e-7;
   const double scatterings = std::min(
       most_scatterings(stage), max_scatterings > 0 ? static_cast<double>(max_scatterings)
                                                    : std::numeric_limits<double>::infinity());
   if (scatterings > many)
-    std::fprintf(
-        stderr,
-        "note: light scatters up to %.2g times: a path may take %.1g s (with mu_s (1 - g) in "
-        "place of mu_s and g = 0 it diffuses alike)\n",
-        scatterings, seconds_each * scatterings);
+    std::fprintf(stderr,
+                 "note: light scatters up to %.2g times: a path may take %.1g s; mu_s (1 - g) "
+                 "instead of mu_s, with g = 0, gives the same diffusion with fewer scatterings\n",
+                 scatterings, seconds_each * scatterings);
 }
 
-/// A dark picture is more often a mistake than a result.
+/// Prints a note about sensors that no light has reached, often because of a mistake in the scene.
 void note_darkness(const std::vector<std::string>& dark) {
   for (std::size_t i = 0; i < dark.size(); ++i)
-    std::fprintf(stderr, "%s%s", i == 0 ? "note: no light came to " : ", ", dark[i].c_str());
+    std::fprintf(stderr, "%s%s", i == 0 ? "note: no light reached " : ", ", dark[i].c_str());
   if (!dark.empty()) std::fputs("\n", stderr);
 }
 
@@ -68,20 +68,22 @@ void print_row(const char* name, const Estimate& estimate, std::size_t entry,
               estimate.error[entry], units.c_str());
 }
 
-/// A few strong paths, whose error may be as large as the value, are no estimate of it: what others
-/// bring may be any multiple of that.
-bool is_found(const Estimate& one) {
+/// Whether an estimate is reliable enough to be printed as a value. It is not if it is undersampled
+/// and its error is half the value or more: a few paths of high weight then dominate it, and paths
+/// that were not sampled may contribute far more.
+bool is_resolved(const Estimate& one) {
   const bool is_rare = !one.rare.empty() && one.rare[0];
   const double value = one.value[0].real();
   return !is_rare || value == 0 || one.error[0] < value / 2;
 }
 
-/// Of one entry.
-void print_found(const char* name, const Estimate& one, const std::string& units) {
-  if (is_found(one)) return print_row(name, one, 0, units);
+/// Prints an estimate of a single value if it is resolved; otherwise prints that it is not
+/// resolved.
+void print_resolved(const char* name, const Estimate& one, const std::string& units) {
+  if (is_resolved(one)) return print_row(name, one, 0, units);
   std::printf(
-      "%-16s not found: a few strong paths bring %.2g +- %.2g; take another method or more "
-      "samples\n",
+      "%-16s not resolved: a few high-weight paths dominate (%.2g +- %.2g); use another method or "
+      "more samples\n",
       name, one.value[0].real(), one.error[0]);
 }
 
@@ -93,30 +95,33 @@ std::size_t largest_of(const Estimate& estimate) {
 }
 
 void print_pixels(const Estimate& image) {
-  std::printf("pixels: relative error %.2g %% (RMS error over RMS value: dark ones may be far off)",
+  std::printf("pixels: relative error %.2g %% (RMS error over RMS value; larger for dark pixels)",
               100 * relative_error(image));
-  double all = 0, marked = 0;
+  double all = 0, undersampled = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < image.rare.size(); ++i) {
     const double light = image.value[i].real();
     all += light;
     if (!image.rare[i]) continue;
-    marked += light;
+    undersampled += light;
     ++count;
   }
   if (count > 0)
-    std::printf("; %.3g %% of them, with %.3g %% of the light, rest on few paths and have bounds",
-                100 * static_cast<double>(count) / static_cast<double>(image.rare.size()),
-                100 * marked / all);
+    std::printf(
+        "; %.3g %% of them, with %.3g %% of the light, are undersampled: their errors are upper "
+        "bounds",
+        100 * static_cast<double>(count) / static_cast<double>(image.rare.size()),
+        100 * undersampled / all);
   std::puts("");
 }
 
-/// Of the power within each radius, or else of the mean of pixels.
+/// Prints derivatives with respect to each parameter: of the power within each radius or, if no
+/// radii are given, of the mean over the pixels.
 void print_gradients(const grin::SensorResult& result, const std::vector<std::string>& parameters,
                      const std::string& units) {
   const std::size_t radii = result.within ? result.within->radii.size() : 0;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    const std::string by = " by " + parameters[i];
+    const std::string by = ", derivative by " + parameters[i];
     for (std::size_t r = 0; r < radii; ++r)
       print_row(("within " + number_text(result.within->radii[r]) + by).c_str(),
                 result.gradients->within, i * radii + r, "");
@@ -124,8 +129,8 @@ void print_gradients(const grin::SensorResult& result, const std::vector<std::st
   }
 }
 
-/// Total, mean and brightest pixel, under a name; nothing in the dark. Returns whether there is
-/// light.
+/// Prints total, mean and brightest pixel of a sensor. If no light has reached the sensor, prints
+/// nothing and returns false.
 bool print_sensor(const std::string& name, const grin::Sensor& sensor,
                   const grin::SensorResult& result, const std::vector<std::string>& parameters) {
   const std::string& units = row_of(grin::table_of(sensor), "image").unit;
@@ -133,21 +138,23 @@ bool print_sensor(const std::string& name, const grin::Sensor& sensor,
   const std::size_t brightest = largest_of(image);
   if (!(image.value[brightest].real() > 0)) return false;
   std::printf("%-16s %-13s %-10s\n", name.c_str(), "value", "error");
-  if (result.total) print_found("total power", *result.total, "");
+  if (result.total) print_resolved("total power", *result.total, "");
   if (result.within) {
     for (std::size_t i = 0; i < result.within->radii.size(); ++i)
       print_row(("within " + number_text(result.within->radii[i])).c_str(), result.within->power, i,
                 "");
-    std::puts("target_error: largest error of these, relative to the power or 1 % of the light");
+    std::puts(
+        "target_error applies to the largest of these errors, each relative to its power or, if "
+        "larger, to 1 % of the light");
   }
-  print_found("mean of pixels", result.mean, units);
+  print_resolved("mean of pixels", result.mean, units);
   print_row("brightest pixel", image, brightest, units);
   if (result.gradients) print_gradients(result, parameters, units);
   print_pixels(image);
   return true;
 }
 
-/// The brightest cell. Returns whether there is light.
+/// Prints the brightest cell of a fluence map. Returns false if no light has reached the map.
 bool print_map(const grin::LightMap& map, const grin::RenderJob& job, const GroupedSums& sums) {
   const Estimate fluence = grin::fluence(sums, job.first_of_map(), map);
   const std::size_t brightest = largest_of(fluence);
@@ -156,19 +163,20 @@ bool print_map(const grin::LightMap& map, const grin::RenderJob& job, const Grou
   return is_lit;
 }
 
-/// Light that the method has missed, or found twice.
+/// Prints a note for each check by which the method has missed light or counted it twice.
 void note_checks(const grin::RenderScene& scene, const std::vector<grin::LightCheck>& checks) {
   for (std::size_t i = 0; i < checks.size(); ++i)
     if (!checks[i].holds())
-      std::fprintf(
-          stderr,
-          "note: the mean of sensor %s, %.4g, is not that of light paths that hit it, %.4g: "
-          "they differ by %.2g times what errors allow; take another method\n",
-          sensor_name(scene, i).c_str(), checks[i].mean, checks[i].other,
-          checks[i].off / checks[i].limit);
+      std::fprintf(stderr,
+                   "note: the mean of sensor %s, %.4g, differs from the mean of the light paths "
+                   "that hit the sensor, %.4g, by %.2g times the limit that follows from their "
+                   "errors; use another method\n",
+                   sensor_name(scene, i).c_str(), checks[i].mean, checks[i].other,
+                   checks[i].off / checks[i].limit);
 }
 
-/// What each sensor and the map have found, and what the search for curves cost.
+/// Prints the results of all sensors and of the fluence map, and the cost of connections between
+/// path vertices.
 void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
                   const GroupedSums& sums, const grin::RenderResult& result,
                   const std::vector<grin::LightCheck>& checks) {
@@ -184,24 +192,26 @@ void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
   note_checks(scene, checks);
   const grin::TransportCounts counts = transport_counts(job, sums);
   note_losses(counts);
-  const auto& joins = counts.connections;
-  if (joins.pairs == 0) return;
-  std::printf("joins: %llu pairs, %.3g %% of trials converged, %.3g further trials each\n",
-              static_cast<unsigned long long>(joins.pairs), 100 * joins.success_rate(),
-              joins.mean_refind());
+  const auto& connections = counts.connections;
+  if (connections.pairs == 0) return;
+  std::printf(
+      "connections: %llu pairs, %.3g %% of trials converged, %.3g further trials per connection\n",
+      static_cast<unsigned long long>(connections.pairs), 100 * connections.success_rate(),
+      connections.mean_trials());
 }
 
-/// Where the power went, as shares of it.
+/// Prints how the light paths have terminated (absorbed, escaped ...): the power for each kind of
+/// termination, as a fraction of the emitted power.
 void print_energy(const Estimate& energy) {
   const double emitted = energy.value[0].real();
   const char* before = "power of light: ";
-  for (std::size_t fate = 1; fate < energy.value.size(); ++fate) {
-    const double share = energy.value[fate].real() / emitted;
-    if (!(share > 1e-12)) continue;  // rounding
-    const double error = energy.error[fate] / emitted;
+  for (std::size_t termination = 1; termination < energy.value.size(); ++termination) {
+    const double share = energy.value[termination].real() / emitted;
+    if (!(share > 1e-12)) continue;  // only a rounding error
+    const double error = energy.error[termination] / emitted;
     std::printf("%s%.4g", before, 100 * share);
     if (error > 1e-12) std::printf(" +- %.2g", 100 * error);
-    std::printf(" %% %s", grin::fate_words[fate]);
+    std::printf(" %% %s", grin::termination_names[termination]);
     before = ", ";
   }
   std::puts("");
@@ -226,7 +236,7 @@ class RenderExperiment : public Experiment {
 
   void note() const override {
     if (scene_->is_silent)
-      std::fputs("note: the sound turns no ray by 1e-5, and is left out\n", stderr);
+      std::fputs("note: the sound deflects no ray by 1e-5 rad or more and is left out\n", stderr);
     note_long_paths(scene_->stage, request_.max_scatterings);
     for (const grin::Body& body : scene_->stage.bodies)
       if (const auto* level = std::get_if<grin::LevelSurface>(&body.surface))
@@ -237,30 +247,31 @@ class RenderExperiment : public Experiment {
     const grin::RenderJob job = render_job(*scene_, request_, seed());
     return {.plan = "render: " + job.plan,
             .batches = job.batches,
-            .write = [this, job](ResultFile& file, const GroupedSums& sums, bool tells) {
-              write(file, job, sums, tells);
+            .write = [this, job](ResultFile& file, const GroupedSums& sums, bool prints) {
+              write(file, job, sums, prints);
             }};
   }
 
  private:
-  /// Throws InputError for a target that no error of the method can be trusted to have reached.
+  /// Throws InputError for a target error with a method of infinite variance.
   void check_target() const {
     if (stop_.target_error && request_.method && !has_finite_variance(*scene_, *request_.method))
-      throw InputError("target_error", number_text(*stop_.target_error),
-                       "needs a method of finite variance, which " + method_word(*request_.method) +
-                           " is not with these lights and sensors: take bidirectional or auto");
+      throw InputError(
+          "target_error", number_text(*stop_.target_error),
+          "requires a method of finite variance; method = " + method_word(*request_.method) +
+              " has infinite variance with these lights and sensors: use bidirectional or auto");
   }
   void write(ResultFile& file, const grin::RenderJob& job, const GroupedSums& sums,
-             bool tells) const {
+             bool prints) const {
     const grin::RenderResult result = render_result(*scene_, job, sums);
     const auto checks = light_checks(job, sums);
-    if (tells) print_render(*scene_, job, sums, result, checks);
+    if (prints) print_render(*scene_, job, sums, result, checks);
     write_render(file, *scene_, job, result, scene_->length_unit);
-    if (tells) write_counts(file, transport_counts(job, sums));
+    if (prints) write_counts(file, transport_counts(job, sums));
     if (const auto light = worst_light(checks))
       ResultGroup(file, grin::render_table).check("invariants/light", *light);
     if (const auto energy = energy_result(job, sums)) {
-      if (tells) print_energy(*energy);
+      if (prints) print_energy(*energy);
       write_energy(file, *scene_, request_, *energy);
       ResultGroup(file, grin::energy_table).check("invariants/power", power_balance(job, sums));
     }

@@ -27,14 +27,14 @@ std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
   text << "ended: " << ends[1] << " at max_length, ";
   if (ends[2] > 0) text << ends[2] << " at the edge of the grid, ";
   text << ends[0] << " on a stop surface";
-  const auto told = grin::ends_to_tell(rays);
-  if (told.size() < rays.size()) text << "; of those:";
+  const auto printed = grin::ends_to_print(rays);
+  if (printed.size() < rays.size()) text << "; only for rays that end on a stop surface:";
   const auto [least, most] =
-      std::ranges::minmax(column(told, [](const RayState& end) { return end.v.norm(); }));
+      std::ranges::minmax(column(printed, [](const RayState& end) { return end.v.norm(); }));
   text << std::setprecision(6) << "\nindex at the end " << least << " to " << most;
-  text << ", spot of radius " << grin::spot_radius(told) << " (rms)";
-  const auto path =  // clang 14 captures no structured bindings
-      std::ranges::minmax(column(told, [](const RayState& end) { return end.optical_path; }));
+  text << ", spot of radius " << grin::spot_radius(printed) << " (rms)";
+  const auto path =  // a copy, because clang 14 cannot capture structured bindings
+      std::ranges::minmax(column(printed, [](const RayState& end) { return end.optical_path; }));
   const auto range = [&](const char* what, double size, const char* unit) {
     text << '\n'
          << what << std::setprecision(12) << size * path.min << " to " << size * path.max << unit;
@@ -50,16 +50,16 @@ std::string text_of(const grin::RayImage& image) {
   text << std::setprecision(6) << "image: spot of radius " << image.spot_radius << " (rms), "
        << image.spot_extent << " (largest)";
   if (image.distance != 0) text << ", at " << image.distance << " from image_plane";
-  if (image.focus && image.distance == 0) text << "; least at " << *image.focus;
+  if (image.focus && image.distance == 0) text << "; smallest at " << *image.focus;
   using Ray = grin::RayImage::Ray;
   text << "\npath differences " << root_mean_square(image, &Ray::path_difference) << " (rms)";
   if (image.best_point)
-    text << "; least " << root_mean_square(image, &Ray::least_path_difference) << ", about "
-         << grin::listed(*image.best_point);
+    text << "; smallest " << root_mean_square(image, &Ray::least_path_difference)
+         << ", about the point " << grin::listed(*image.best_point);
   return text.str();
 }
 
-Made trace_light(const TraceScene& scene, ResultFile& file, bool tells) {
+Made trace_light(const TraceScene& scene, ResultFile& file, bool prints) {
   const auto rays = trace_rays(scene);
   write_rays(file, scene, rays);
   if (scene.path_points > 0) write_paths(file, scene, rays);
@@ -67,16 +67,17 @@ Made trace_light(const TraceScene& scene, ResultFile& file, bool tells) {
   if (scene.image) write_image(file, image.emplace(make_ray_image(*scene.image, rays)));
   std::string plan = std::to_string(rays.size()) + (rays.size() == 1 ? " ray: " : " rays: ") +
                      describe(scene.steps);
-  if (tells) std::printf("%s\n%s\n", plan.c_str(), ends_of(rays, scene.length_unit).c_str());
-  if (tells && image) std::printf("%s\n", text_of(*image).c_str());
+  if (prints) std::printf("%s\n%s\n", plan.c_str(), ends_of(rays, scene.length_unit).c_str());
+  if (prints && image) std::printf("%s\n", text_of(*image).c_str());
   return {plan, static_cast<double>(rays.size())};
 }
 
-/// How the trials ended, and what the user should know of that.
+/// Returns a text about the outcomes of the trials that search for connecting curves, with notes on
+/// curves that may be missing.
 std::string trials_of(const FoundConnections& found) {
   static constexpr const char* ends[grin::trial_outcomes] = {
-      "converged",       "came nowhere near",    "did not converge",
-      "left the region", "grew over max_length", "met a caustic"};
+      "converged",       "found no approach",   "did not converge",
+      "left the region", "exceeded max_length", "ended on a caustic"};
   const auto& statistics = found.statistics;
   if (statistics.trials() == 0) return "a straight line, no trials needed";
   std::string text;
@@ -87,7 +88,7 @@ std::string trials_of(const FoundConnections& found) {
     text += "\nnote: curves that meet in a caustic or image point at the end are not listed";
   constexpr std::uint64_t few = 5;
   if (std::ranges::any_of(found.curves, [](const auto& curve) { return curve.found < few; }))
-    text += "\nnote: some curves were found less than 5 times; more trials may find others";
+    text += "\nnote: some curves were found fewer than 5 times; more trials may find others";
   return text;
 }
 
@@ -106,14 +107,14 @@ std::string table_of(const FoundConnections& found) {
   return text.str() + trials_of(found);
 }
 
-Made trace_curves(const TraceScene& scene, ResultFile& file, std::uint64_t seed, bool tells) {
+Made trace_curves(const TraceScene& scene, ResultFile& file, std::uint64_t seed, bool prints) {
   const auto found = find_connections(scene, seed);
   write_connections(file, scene, found);
   if (scene.path_points > 0 && !found.curves.empty())
     write_paths(file, scene, rays_along(scene, found));
   const auto trials = scene.curves->trials;
   std::string plan = std::to_string(trials) + " trials: " + describe(scene.steps);
-  if (tells) std::printf("%s\n%s\n", plan.c_str(), table_of(found).c_str());
+  if (prints) std::printf("%s\n%s\n", plan.c_str(), table_of(found).c_str());
   return {plan, static_cast<double>(trials)};
 }
 
@@ -121,7 +122,7 @@ class TraceExperiment : public OneShot {
  public:
   void add_keys(Keys& keys) override {
     grin::add_keys(keys, values_);
-    add_seed_key(keys, run_, "Seed of the trials of connect");
+    add_seed_key(keys, run_, "Random seed of the trials by which connect finds curves");
     add_thread_key(keys, run_);
     add_output_key(keys, run_);
   }
@@ -133,9 +134,9 @@ class TraceExperiment : public OneShot {
   }
 
  private:
-  Made make(ResultFile& file, bool tells) const override {
-    return scene_->curves ? trace_curves(*scene_, file, seed(), tells)
-                          : trace_light(*scene_, file, tells);
+  Made make(ResultFile& file, bool prints) const override {
+    return scene_->curves ? trace_curves(*scene_, file, seed(), prints)
+                          : trace_light(*scene_, file, prints);
   }
 
   grin::TraceValues values_;

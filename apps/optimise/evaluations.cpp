@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "apps/experiments/experiment_family.h"
+#include "apps/experiments/experiment_kind.h"
 #include "apps/sweep/sweep_points.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
@@ -22,8 +22,8 @@ namespace flatspeckle::apps {
 namespace {
 
 constexpr const char* forms =
-    "must be key=low:high with low < high, key=low:high:log with bounds above 0, or values to "
-    "choose from: key=1,2,3";
+    "must be key=low:high with low < high, key=low:high:log with bounds above 0, or a list of "
+    "values key=1,2,3";
 
 [[noreturn]] void refuse(const std::string& text) {
   throw InputError("vary", text, forms);
@@ -39,7 +39,8 @@ std::vector<std::string> parts_of(const std::string& text) {
   return parts;
 }
 
-/// low:high and low:high:log; with three numbers it is a list of values.
+/// Whether a text with these parts between colons gives two bounds: low:high or low:high:log. With
+/// a number as third part it is a list of values.
 bool is_between(const std::vector<std::string>& parts) {
   return parts.size() == 2 || (parts.size() == 3 && trimmed(parts[2]) == "log");
 }
@@ -56,7 +57,9 @@ SearchAxis between(const Keys& of, const std::string& text, const std::string& n
   if (!key.is_whole()) return {name, *low, *high, is_log};
   constexpr double most = 64;
   if (*high - *low > most || is_log)
-    throw InputError("vary", text, "of whole numbers at most 64 are searched, one by one");
+    throw InputError("vary", text,
+                     "must have at most 64 whole numbers between the bounds, and no log, because "
+                     "each number is tried");
   SearchAxis choice{name};
   for (double value = std::ceil(*low); value <= *high; ++value)
     choice.values.push_back(number_text(value));
@@ -86,7 +89,8 @@ bool is_plain(const CollectedDataset& set) {
          std::holds_alternative<std::vector<double>>(set.values);
 }
 
-/// Of what could be asked for: those of one number first.
+/// Returns the names of the values in the result that can serve as the objective, scalars first,
+/// for error messages.
 std::string names_in(const CollectedResult& result) {
   constexpr std::size_t most = 12;
   std::vector<std::string> names;
@@ -95,7 +99,7 @@ std::string names_in(const CollectedResult& result) {
       if (is_plain(set) && (set.count() == 1) == is_single)
         names.push_back(set.name + (is_single ? "" : "[i]"));
   if (names.size() > most) names.resize(most);
-  return joined(names, " ");
+  return join_texts(names, " ");
 }
 
 std::size_t extent(const CollectedResult& result, const Axis& axis) {
@@ -127,12 +131,14 @@ SearchAxes::SearchAxes(const std::vector<std::string>& vary, const Keys& of) {
   for (const std::string& text : vary) {
     axes_.push_back(axis_of(of, text));
     if (!seen.insert(axes_.back().key).second)
-      throw InputError("vary", text, axes_.back().key + " is varied already");
+      throw InputError("vary", text, axes_.back().key + " is varied twice; leave one out");
     if (axes_.back().key == "seed")
-      throw InputError("vary", text, "random numbers are not searched; sweep tries several seeds");
+      throw InputError("vary", text, "seed cannot be optimised; sweep runs several seeds");
   }
   if (dimensions() == 0)
-    throw InputError("vary: give a key between bounds, key=low:high; sweep tries lists of values");
+    throw InputError(
+        "vary: must have at least one key between bounds, key=low:high; use sweep for lists of "
+        "values");
 }
 
 std::size_t SearchAxes::dimensions() const {
@@ -187,13 +193,14 @@ SearchObjective::SearchObjective(std::string key, const std::string& text)
   }
   const auto commas = static_cast<std::size_t>(std::ranges::count(inside, ','));
   if (!is_closed || index_.size() != commas + 1)
-    throw InputError(key_, text, "must be a dataset of the result, as total or image[3,4]");
+    throw InputError(key_, text, "must be a dataset of the result, such as total or image[3,4]");
 }
 
 const CollectedDataset& SearchObjective::dataset(const CollectedResult& result) const {
   const CollectedDataset* const set = result.find(path_);
   if (set == nullptr || !is_plain(*set))
-    throw InputError(key_, text_, "must be a real number of the result, as " + names_in(result));
+    throw InputError(key_, text_,
+                     "must be a real number of the result, such as " + names_in(result));
   return *set;
 }
 
@@ -211,8 +218,8 @@ std::size_t SearchObjective::place_in(const CollectedResult& result,
   }
   if (!fits)
     throw InputError(key_, text_,
-                     path_ + " has " + joined(extents, " x ") +
-                         " numbers: name one by its place, " + path_ + "[0" +
+                     path_ + " has " + join_texts(extents, " x ") +
+                         " numbers: select one by its indices, such as " + path_ + "[0" +
                          (extents.size() > 1 ? ",0]" : "]"));
   return place;
 }
@@ -222,10 +229,10 @@ double SearchObjective::of(const CollectedResult& result) const {
   return std::get<std::vector<double>>(set.values)[place_in(result, set)];
 }
 
-Evaluations::Evaluations(const ExperimentFamily& family, const SearchObjective& objective,
+Evaluations::Evaluations(const ExperimentKind& kind, const SearchObjective& objective,
                          const EvaluationSettings& settings, const std::filesystem::path& path,
                          const JournalHead& head)
-    : family_(family),
+    : kind_(kind),
       objective_(objective),
       settings_(settings),
       journal_(path, head, "search", [this](const std::string& name, std::uint64_t place) {
@@ -235,10 +242,10 @@ Evaluations::Evaluations(const ExperimentFamily& family, const SearchObjective& 
 std::vector<Measured> Evaluations::measure(const std::vector<SweepPoints>& points,
                                            const SearchEffort& effort) {
   std::vector<SweepPoints> missing;
-  std::set<std::string> asked;
+  std::set<std::string> requested;
   for (const SweepPoints& point : points) {
     const std::string name = name_of(point, effort);
-    if (!places_.contains(name) && asked.insert(name).second) missing.push_back(point);
+    if (!places_.contains(name) && requested.insert(name).second) missing.push_back(point);
   }
   if (!missing.empty()) run(missing, effort);
   std::vector<Measured> found;
@@ -261,7 +268,8 @@ CollectedResult Evaluations::result(const SweepPoints& point, double samples) co
   return result;
 }
 
-/// Batches enough for an error, whatever their size.
+/// Returns the number of samples of an evaluation: effort.samples times the number of samples of
+/// the first evaluations. These have at least 32 batches, which are needed to estimate errors.
 std::uint64_t Evaluations::samples_of(const BatchJob& job, const SearchEffort& effort) const {
   constexpr double fewest = 32;
   const double batches =
@@ -283,8 +291,8 @@ void Evaluations::run(const std::vector<SweepPoints>& points, const SearchEffort
   list.open = [&](std::size_t i) -> std::optional<OpenRun> {
     auto made = std::make_unique<Open>();
     made->experiment = at_point(points[i], 0, [&] {
-      return family_.run([&](const Keys& keys) { set_point(points[i], 0, keys); }, {},
-                         settings_.seed + effort.draw);
+      return kind_.run([&](const Keys& keys) { set_point(points[i], 0, keys); }, {},
+                       settings_.seed + effort.draw);
     });
     made->planned = plan_at(points[i], 0, *made->experiment);
     const BatchJob& job = made->planned.batches;
@@ -307,7 +315,9 @@ void Evaluations::run(const std::vector<SweepPoints>& points, const SearchEffort
   if (end.reason == StopReason::interrupted) throw Interrupted{};
 }
 
-/// The number and what it is without blocks of the batches; of the winner all else that was found.
+/// Returns the finished evaluation for the journal: the objective, and its values without each
+/// block of batches (for the jackknife). If keeps_result is true, as for the best point, it also
+/// contains the full result.
 FinishedPoint Evaluations::finished(const PlannedExperiment& planned, const RunState& state,
                                     bool keeps_result) {
   constexpr std::size_t blocks = 32;
@@ -337,7 +347,8 @@ FinishedPoint Evaluations::finished(const PlannedExperiment& planned, const RunS
   return point;
 }
 
-/// As the search takes it, which looks for what is greatest.
+/// Returns the measurement for the search, which maximises: the objective, times -1 if it is to be
+/// minimised.
 Measured Evaluations::measured(const FinishedPoint& point) const {
   const double sign = settings_.minimise ? -1 : 1;
   Measured found{sign * numbers(point.result, "found").front()};

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/experiments/experiment_family.h"
+#include "apps/experiments/experiment_kind.h"
 #include "apps/sweep/point_journal.h"
 #include "apps/sweep/sweep_points.h"
 #include "core/result/collected_result.h"
@@ -15,50 +15,57 @@
 
 namespace flatspeckle::apps {
 
-/// A key that is searched over: between two bounds, or one of some values.
+/// A key that is optimised, continuously between two bounds or over a list of values.
 struct SearchAxis {
   std::string key;
   double low = 0, high = 0;
   bool is_log = false;
-  std::vector<std::string> values = {};  ///< empty: between the bounds
+  /// List of values; empty if the key is continuous between the bounds.
+  std::vector<std::string> values = {};
 
   bool is_choice() const { return !values.empty(); }
-  /// From 0 to 2 pi or -pi to pi, as of a phase: the bounds are the same place.
+  /// Whether the range is a full turn (0 to 2 pi, or -pi to pi), so that both bounds are the same
+  /// angle.
   bool is_turn() const;
 };
 
-/// What is searched: places of the search, and the values of keys that they stand for.
+/// The search space: maps points of the search to values of keys.
 class SearchAxes {
  public:
-  /// Of "key=low:high", "key=low:high:log" and of what a sweep takes: "key=1,2,3" or words. Keys of
-  /// `of`. Throws InputError.
+  /// Parses the texts of --vary: "key=low:high", "key=low:high:log", or a list of numbers or words
+  /// as in a sweep, "key=1,2,3". of: keys of the optimised subcommand. Throws InputError.
   SearchAxes(const std::vector<std::string>& vary, const Keys& of);
 
   const std::vector<SearchAxis>& axes() const { return axes_; }
-  /// Of keys between bounds, and of combinations of the others.
+  /// dimensions(): number of keys that vary between bounds. choices(): number of combinations of
+  /// the listed values of the other keys.
   std::size_t dimensions() const;
   std::size_t choices() const;
 
-  /// The values of the keys there, one for each axis.
+  /// Returns the values of the optimised keys at a point of the search, as a list of one point.
   SweepPoints point(const SearchPlace& place) const;
-  /// Keys that are there at a bound of theirs, by no more than this share of their range; not
-  /// phases, which have none.
+  /// Returns the names of the keys whose value is at a bound, within `tolerance` times the range.
+  /// Keys whose range is a full turn have no bounds.
   std::vector<std::string> at_bounds(const SearchPlace& place, double tolerance) const;
 
  private:
   std::vector<SearchAxis> axes_;
 };
 
-/// A number of a result: "total", "sensors/through/total", "image[3,4]".
+/// The objective: a number in a result, named by its dataset and, for arrays, its indices: "total",
+/// "sensors/through/total" or "image[3,4]".
 class SearchObjective {
  public:
-  /// Throws InputError, naming the key that asks for it.
+  /// key: maximise or minimise, for error messages. text: value of this key, the objective. Throws
+  /// InputError.
   SearchObjective(std::string key, const std::string& text);
 
   const std::string& text() const { return text_; }
-  /// Throws InputError where the result has no such number.
+  /// Returns the value of the objective in a result. Throws InputError if the result does not
+  /// contain it.
   double of(const CollectedResult& result) const;
-  /// The dataset. Throws InputError.
+  /// Returns the dataset of the result that contains the objective. Throws InputError if there is
+  /// none.
   const CollectedDataset& dataset(const CollectedResult& result) const;
 
  private:
@@ -68,16 +75,17 @@ class SearchObjective {
   std::vector<std::size_t> index_;
 };
 
-/// How results are measured.
+/// Settings of the evaluations.
 struct EvaluationSettings {
   bool minimise = false;
   std::uint64_t seed = 1;
-  std::optional<std::uint64_t> samples;  ///< of the first measurements
-  std::optional<double> seconds;         ///< after which no new ones are begun
+  std::optional<std::uint64_t> samples;  ///< number of samples of each of the first evaluations
+  /// Time limit, in seconds, after which no evaluation of the search is started.
+  std::optional<double> seconds;
   int threads = 1;
 };
 
-/// One of them: where, with how much effort, and what was found.
+/// One evaluation of the objective: the point, the effort and the value with its error.
 struct Evaluation {
   SweepPoints point;
   SearchEffort effort;
@@ -85,27 +93,30 @@ struct Evaluation {
   double samples = 0, cpu_s = 0;
 };
 
-/// Numbers of results, measured once each: a journal keeps them from one call of the program to the
-/// next.
+/// Evaluates the objective, at most once for each point and effort. The values are stored in a
+/// journal, from which an interrupted search continues.
 class Evaluations {
  public:
-  /// path, head: of the journal, as PointJournal. Throws InputError, IoError.
-  Evaluations(const ExperimentFamily& family, const SearchObjective& objective,
+  /// path, head: file of the journal and its first record, see PointJournal. Throws InputError and
+  /// IoError.
+  Evaluations(const ExperimentKind& kind, const SearchObjective& objective,
               const EvaluationSettings& settings, const std::filesystem::path& path,
               const JournalHead& head);
 
-  /// Of the number at each of these points. Throws Interrupted, SearchSpent once the time is up,
-  /// and InputError where a point is no scene or its result has no such number.
+  /// Returns the value of the objective at each of these points. Throws Interrupted after a signal,
+  /// SearchSpent after the time limit, and InputError if a point is not a valid scene or its result
+  /// does not contain the objective.
   std::vector<Measured> measure(const std::vector<SweepPoints>& points, const SearchEffort& effort);
-  /// What a point's result holds, of those that were measured with draw 2. Throws InputError.
+  /// Returns the complete result at a point that was evaluated with draw 2 (see Winner) and this
+  /// effort. Throws InputError.
   CollectedResult result(const SweepPoints& point, double samples) const;
 
-  /// In the order in which they were asked for first.
+  /// Returns all evaluations, in the order in which they were first requested.
   const std::vector<Evaluation>& all() const { return all_; }
-  /// How many the journal holds, and waits until the disk has them.
+  /// kept() returns the number of evaluations in the journal; sync() waits until they are on disk.
   std::size_t kept() const { return journal_.size(); }
   void sync() { journal_.sync(); }
-  /// The dataset that the number is in.
+  /// Returns the dataset that contains the objective, without its values.
   const CollectedDataset& dataset() const { return *dataset_; }
 
  private:
@@ -116,11 +127,12 @@ class Evaluations {
   Measured measured(const FinishedPoint& point) const;
   std::uint64_t samples_of(const BatchJob& job, const SearchEffort& effort) const;
 
-  const ExperimentFamily& family_;
+  const ExperimentKind& kind_;
   const SearchObjective& objective_;
   EvaluationSettings settings_;
-  std::unordered_map<std::string, std::uint64_t> places_;  ///< in the journal, by their names
-  std::mutex mutex_;                                       ///< of places_, while a pool works
+  /// Positions of the evaluations in the journal, by their names.
+  std::unordered_map<std::string, std::uint64_t> places_;
+  std::mutex mutex_;  ///< protects places_ while a pool works
   PointJournal journal_;
   std::vector<Evaluation> all_;
   std::set<std::string> known_;

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "apps/command/subcommands.h"
-#include "apps/experiments/experiment_family.h"
+#include "apps/experiments/experiment_kind.h"
 #include "apps/optimise/evaluations.h"
 #include "apps/results/datasets.h"
 #include "apps/sweep/sweep_points.h"
@@ -26,38 +26,41 @@ namespace flatspeckle::apps {
 const DatasetTable optimum_table{
     .name = "optimise",
     .rows = {{"search/evaluation", Data::numbers, "", "1", "number of the evaluation"},
-             {"search/value", Data::estimate, "search/evaluation", "",
-              "what was made as large or small as can be"},
-             {"search/samples", Data::real, "search/evaluation", "1", "samples"},
+             {"search/value", Data::estimate, "search/evaluation", "", "the optimised number"},
+             {"search/samples", Data::real, "search/evaluation", "1", "number of samples"},
              {"search/cpu_s", Data::real, "search/evaluation", "s", "processor time, all threads"},
              {"search/draw", Data::count, "search/evaluation", "1",
-              "random numbers: 0 of the search, 1 of the choice among its ends, 2 of the value"},
+              "random numbers used: 0 search, 1 selection among its final points, 2 final value"},
              {"best/value", Data::estimate, "", "",
-              "the value at the best place, by random numbers of its own"},
-             {"best/lead", Data::estimate, "", "", "by how much it is better than the runner-up"},
-             {"best/confidence", Data::real, "", "1", "that it is better"},
+              "value at the best point, with independent random numbers"},
+             {"best/lead", Data::estimate, "", "",
+              "difference between the best value and the runner-up"},
+             {"best/confidence", Data::real, "", "1",
+              "probability that the best point is better than the runner-up"},
              {"best/gain", Data::estimate, "", "1",
-              "value at the best place over with the keys of against"},
-             {"runner_up/value", Data::estimate, "", "", "the value there"},
-             {"against/value", Data::estimate, "", "", "the value there"}},
-    .attributes = {{"", "of", "text", "the subcommand whose results these are"},
-                   {"", "objective", "text", "the number of its result that was searched for"},
-                   {"", "objective_unit", "text", "of the values here"},
-                   {"", "complete", "bool", "0: the time was up before the search had ended"},
-                   {"search", "swept", "texts", "the keys that were searched"},
-                   {"best", "at_bounds", "texts",
-                    "keys whose best value is a bound of their range, if there are any: a wider "
-                    "one may have a better"}}};
+              "value at the best point divided by the value with the keys of against"},
+             {"runner_up/value", Data::estimate, "", "", "value at the runner-up"},
+             {"against/value", Data::estimate, "", "", "value with the keys of against"}},
+    .attributes = {
+        {"", "of", "text", "the subcommand whose results were optimised"},
+        {"", "objective", "text", "the optimised number of its result"},
+        {"", "objective_unit", "text", "unit of the values"},
+        {"", "complete", "bool", "whether the search finished; 0: the time limit ended it"},
+        {"search", "swept", "texts", "the optimised keys"},
+        {"best", "at_bounds", "texts",
+         "keys whose best value is at a bound of their range, if any: a wider range may "
+         "contain a better value"}}};
 
 namespace {
 
-/// What a search has ended in.
+/// Outcome of a search.
 struct Optimum {
   Winner winner;
-  SweepPoints best, runner_up;         ///< the keys there
-  std::optional<SweepPoints> against;  ///< with some keys at other values
+  SweepPoints best, runner_up;  ///< values of the optimised keys at these points
+  /// Best point, but with the values of the key `against` for some keys, for a comparison.
+  std::optional<SweepPoints> against;
   std::optional<Measured> there = {};
-  std::vector<std::string> at_bounds = {};  ///< keys of the best that a wider range may better
+  std::vector<std::string> at_bounds = {};  ///< names of the keys whose best value is at a bound
   bool finished = true;
 };
 
@@ -69,7 +72,8 @@ void put(const ResultGroup& root, const std::string& name, double value, double 
   root.put(name, value, error);
 }
 
-/// The keys of a place under their names, as datasets without axes; those of many as columns.
+/// Writes the values of each key at these points to a dataset with the name of the key: a scalar
+/// for one point, a column for several.
 void write_keys(ResultFile& file, const std::string& group, const std::vector<SweepPoints>& points,
                 const std::vector<Axis>& axes, const Keys& keys) {
   for (std::size_t i = 0; i < points.front().axes.size(); ++i) {
@@ -118,7 +122,8 @@ std::string keys_text(const SweepPoints& point) {
   return text;
 }
 
-/// All that was evaluated, the best and what it is better than. keys: of what was searched.
+/// Writes all evaluations, the best point, the runner-up and their comparison. keys: keys of the
+/// optimised subcommand.
 void write_optimum(ResultFile& file, const Optimum& optimum, const Evaluations& evaluations,
                    const EvaluationSettings& settings, const Keys& keys) {
   const auto& [best, runner_up, lead, reached] = optimum.winner;
@@ -140,7 +145,7 @@ void write_optimum(ResultFile& file, const Optimum& optimum, const Evaluations& 
   if (optimum.there->value != 0) put(root, "best/gain", gain.value, error(gain));
 }
 
-/// On standard output.
+/// Prints the outcome of the search on standard output.
 void print_optimum(const Optimum& optimum, const EvaluationSettings& settings) {
   const auto& [best, runner_up, lead, reached] = optimum.winner;
   const double sign = sign_of(settings);
@@ -156,16 +161,16 @@ void print_optimum(const Optimum& optimum, const EvaluationSettings& settings) {
                 lead.confidence());
   }
   std::puts(
-      "the best that the scattered places led to: more of them (scattered), or a map, tell whether "
-      "there is better");
+      "best point found from the scattered start points; to search for a better one, increase "
+      "scattered or sweep a map");
   if (has_other && std::abs(lead.value) < 2 * lead.error)
     std::puts(
-        "not told apart: their values are equal within the errors, as on a plateau; either will "
-        "do (the best\nwas chosen by earlier random numbers, of which these know nothing; a "
-        "smaller target_error tells more)");
+        "not distinguishable: the values are equal within the errors, as on a plateau; either "
+        "point is suitable\n(the best point was selected with earlier, independent random numbers; "
+        "a smaller target_error resolves more)");
   if (!optimum.at_bounds.empty())
-    std::printf("at a bound of its range: %s; a wider one may have a better place\n",
-                joined(optimum.at_bounds, ", ").c_str());
+    std::printf("at a bound of its range: %s; a wider range may contain a better point\n",
+                join_texts(optimum.at_bounds, ", ").c_str());
   if (!optimum.there) return;
   print("against", *optimum.against, *optimum.there);
   if (optimum.there->value == 0) return;
@@ -175,7 +180,7 @@ void print_optimum(const Optimum& optimum, const EvaluationSettings& settings) {
 
 namespace fs = std::filesystem;
 
-/// What the user asks, besides the keys of what is searched.
+/// Values of the keys of `optimise` itself, not of the optimised subcommand.
 struct OptimiseKeys {
   std::string of, maximise, minimise;
   std::vector<std::string> vary, against;
@@ -185,16 +190,17 @@ struct OptimiseKeys {
   RunSettings run;
 };
 
-/// In place of those of a single run.
+/// Replaces the keys of a single run (samples, seconds ...) by those of a search.
 void add_run_keys_of_search(Keys& keys, RunSettings& run) {
   add_run_keys_of_many(keys, run);
   for (const char* const name : {"samples", "target_error"})
     if (keys.find(name) != nullptr) keys.remove(name);
-  keys.add("samples", run.samples, "Samples of each of the first evaluations; 32 batches at least")
+  keys.add("samples", run.samples,
+           "Number of samples of each of the first evaluations, at least 32 batches")
       .positive();
   keys.add("target_error", run.target_error,
-           "Relative error of the value at the best place, and what places may differ by that are "
-           "not told apart; 2 % if not given")
+           "Relative error of the value at the best point, and relative difference below which "
+           "points are not distinguished (default: 2 %)")
       .between(0, 1);
 }
 
@@ -204,26 +210,33 @@ void add_keys(Keys& keys, OptimiseKeys& values) {
   add_run_keys_of_search(keys, values.run);
   keys.group("Search");
   keys.add("of", values.of,
-           "The subcommand whose results are searched, all of whose keys are keys here");
+           "Subcommand whose results are optimised; all its keys can be given here");
   keys.add("vary", values.vary,
-           "Keys to search: key=low:high or key=low:high:log between bounds, or values to choose "
-           "from, key=1,2,3 or words or first:last:count; key.0 is the first value of a key of "
-           "several, key.all all; one at least between bounds");
-  keys.add(
-      "maximise", values.maximise,
-      "The number of the result to make as large as can be: a dataset as total, with the place "
-      "of one number as image[3,4]");
-  keys.add("minimise", values.minimise, "The same, as small as can be");
+           "Keys to optimise. Between bounds: key=low:high or key=low:high:log. From a list: "
+           "key=1,2,3 or "
+           "key=word,word or key=first:last:count. key.0 varies only the first value of a key with "
+           "several values, key.all all of them; at least one key must be given with bounds");
+  keys.add("maximise", values.maximise,
+           "Value of the result to maximise: a dataset with one number such as total, or one "
+           "number of a dataset such as image[3,4]");
+  keys.add("minimise", values.minimise,
+           "Value of the result to minimise, given in the same way as for maximise");
   keys.add("against", values.against,
-           "Keys at values to compare the best place with, as amplitude=0: its gain over that");
+           "Keys and values for a comparison, such as amplitude=0: the best point is also "
+           "evaluated with these values, and the gain over them is printed");
   keys.add("scattered", values.scattered,
-           "Places to begin with, spread evenly, and half as many again around the best of those: "
-           "the more, the surer that no maximum is missed (default: 128 for one key between "
-           "bounds, 256 for two, 512 for more; times the choices, at most 512 or four of each)")
+           "Number of points of the first scan, evenly spread; half as many are added around the "
+           "best. More points reduce the risk of missing the optimum (default: 128 for one key "
+           "between "
+           "bounds, 256 for two, 512 for more, times the number of combinations of listed values, "
+           "but at most 512 or, if that is more, four points per combination)")
       .from(2, most_scattered);
-  keys.add("starts", values.starts, "Of these the best, around which the search goes on")
+  keys.add("starts", values.starts,
+           "Number of the best points of the first scan around which the search continues")
       .from(1, 1000);
-  keys.add("key_tolerance", values.tolerance, "Of keys at the end, as a share of their ranges")
+  keys.add("key_tolerance", values.tolerance,
+           "Tolerance to which the best values of the keys are located, as a fraction of their "
+           "ranges")
       .between(0, 1);
 }
 
@@ -241,18 +254,18 @@ std::size_t scattered_of(const std::optional<std::int64_t>& given, const SearchA
   if (count < axes.choices())
     throw InputError("scattered", count,
                      "must be at least " + std::to_string(axes.choices()) +
-                         ", the combinations of the values to choose from");
+                         ", the number of combinations of listed values");
   return count;
 }
 
-/// A search as it was asked for.
+/// A call of the subcommand `optimise`.
 class Optimisation : public Call {
  public:
   explicit Optimisation(const std::string& of)
-      : family_(of),
-        base_(family_.unset()),
-        scene_(family_.unset()),
-        command_("optimise", purpose_of(family_)) {
+      : kind_(of),
+        base_(kind_.unset()),
+        scene_(kind_.unset()),
+        command_("optimise", purpose_of(kind_)) {
     values_.of = of;
     scene_->add_keys(scene_keys_);
     base_->add_keys(command_.keys());
@@ -271,8 +284,8 @@ class Optimisation : public Call {
   }
 
  private:
-  static std::string purpose_of(const ExperimentFamily& family) {
-    return std::string("The best values of keys of: ") + family.purpose();
+  static std::string purpose_of(const ExperimentKind& kind) {
+    return std::string("Optimises values of keys of: ") + kind.purpose();
   }
 
   void read(const Session& session) {
@@ -296,18 +309,20 @@ class Optimisation : public Call {
     const Keys& keys = command_.keys();
     const std::string &most = keys.read(values_.maximise), &least = keys.read(values_.minimise);
     if (most.empty() == least.empty())
-      throw InputError("maximise, minimise: give one, a number of the result such as total");
+      throw InputError(
+          "maximise, minimise: give exactly one of them, with a value of the result such as total");
     settings_.minimise = most.empty();
     objective_.emplace(most.empty() ? "minimise" : "maximise", most.empty() ? least : most);
   }
 
-  /// Whether the corners are scenes; what they read of the keys counts as read.
+  /// Checks that two opposite corners of the search space are valid scenes, and marks the keys that
+  /// these scenes use as read.
   void take_scene() {
     const Keys& keys = command_.keys();
     std::set<std::string> own{"of",        "vary",    "maximise",      "minimise", "against",
                               "scattered", "starts",  "key_tolerance", "out",      "seed",
                               "samples",   "seconds", "target_error",  "threads",  "resume"};
-    family_.take_given(keys, own);
+    kind_.take_given(keys, own);
     for (std::size_t choice = 0; choice < std::min<std::size_t>(axes_->choices(), 64); ++choice)
       for (const double at : {0.0, 1.0})
         inputs_ = checked(axes_->point({UnitPlace(axes_->dimensions(), at), choice}))->inputs();
@@ -317,11 +332,11 @@ class Optimisation : public Call {
 
   std::unique_ptr<Experiment> checked(const SweepPoints& point) const {
     return at_point(point, 0, [&] {
-      return family_.run([&](const Keys& keys) { set_point(point, 0, keys); }, {&command_.keys()});
+      return kind_.run([&](const Keys& keys) { set_point(point, 0, keys); }, {&command_.keys()});
     });
   }
 
-  /// The point with the keys of `against` at their values there.
+  /// Returns `point` after setting the keys given in the key `against` to the values given there.
   SweepPoints point_against(SweepPoints point) const {
     for (const std::string& text : values_.against) {
       const SweepAxis other = varied_axis(scene_keys_, text);
@@ -335,24 +350,24 @@ class Optimisation : public Call {
     return point;
   }
 
-  /// Of all evaluations.
+  /// Returns a text of all inputs on which the values of the evaluations depend.
   std::string identity_of_evaluations() const {
-    return "flatspeckle " + version() + ", optimise of " + family_.of() + ", format 1\n" +
-           family_.given() + "seed = " + std::to_string(settings_.seed) +
+    return "flatspeckle " + version() + ", optimise of " + kind_.of() + ", format 1\n" +
+           kind_.given() + "seed = " + std::to_string(settings_.seed) +
            "\nobjective = " + objective_->text() +
            "\nsamples = " + std::to_string(settings_.samples.value_or(0)) + '\n' + inputs_;
   }
   std::string identity() const { return identity_of_evaluations() + command_.keys().identity(); }
 
   fs::path journal() const { return values_.run.out + ".evaluations"; }
-  /// Removes the journal of this search, and of no other, which a process left that was killed once
-  /// its result was there.
+  /// Removes the journal of this search, which a process leaves if it is killed after writing the
+  /// result. Journals of other searches are kept.
   void remove_journal() const try {
     Journal(journal(), identity_of_evaluations(), "search",
             [](std::uint64_t, char, ByteReader&) {});
     fs::remove(journal());
   } catch (const InputError&) {
-  } catch (const IoError&) {  // no journal is there
+  } catch (const IoError&) {  // there is no journal
   }
 
   int search(const Session& session);
@@ -360,9 +375,9 @@ class Optimisation : public Call {
   int write(const Session& session, const Evaluations& evaluations, const Optimum& optimum,
             double wall_s) const;
 
-  ExperimentFamily family_;
+  ExperimentKind kind_;
   std::unique_ptr<Experiment> base_, scene_;
-  Keys scene_keys_;  ///< of a single run
+  Keys scene_keys_;  ///< keys of a single run of the optimised subcommand
   OptimiseKeys values_;
   Subcommand command_;
   std::optional<SearchAxes> axes_;
@@ -377,10 +392,10 @@ int Optimisation::search(const Session& session) {
   const fs::path journal_path = this->journal();
   if (fs::exists(journal_path) && !values_.run.resume)
     throw InputError(journal_path.string() +
-                     " holds evaluations of an earlier search: --resume goes on with them; remove "
-                     "it to begin again");
+                     " contains evaluations of an earlier search: continue with --resume, or "
+                     "remove it to start again");
   const Stopwatch clock;
-  Evaluations evaluations(family_, *objective_, settings_, journal_path,
+  Evaluations evaluations(kind_, *objective_, settings_, journal_path,
                           {identity_of_evaluations(), command_.keys().config()});
   int status = ExitStatus::interrupted_resumable;
   try {
@@ -390,9 +405,10 @@ int Optimisation::search(const Session& session) {
     if (optimum.finished) fs::remove(journal_path);
   } catch (const Interrupted&) {
     evaluations.sync();
-    std::cout << "interrupted; " << journal_path.string() << " holds " << evaluations.kept()
-              << " evaluations, --resume goes on\n";
-  } catch (const InputError&) {  // of other bounds what there is can be gone on with
+    std::cout << "interrupted; " << journal_path.string() << " contains " << evaluations.kept()
+              << " evaluations; continue with --resume\n";
+  } catch (const InputError&) {
+    // the evaluations so far are kept, because they can be used with other bounds
     if (evaluations.kept() == 0) fs::remove(journal_path);
     throw;
   }
@@ -409,7 +425,7 @@ Optimum Optimisation::found(Evaluations& evaluations) const {
     for (const SearchPlace& place : places) points.push_back(axes_->point(place));
     return evaluations.measure(points, effort);
   };
-  task.tell = [&](const std::string& text) {
+  task.report = [&](const std::string& text) {
     std::cout << text << " (" << evaluations.all().size() << " evaluations)\n" << std::flush;
   };
   const SearchEnd end = noisy_search(task, search_);
@@ -426,7 +442,8 @@ Optimum Optimisation::found(Evaluations& evaluations) const {
   return optimum;
 }
 
-/// The result of the best place's own run, and beside it the search.
+/// Writes the result file: the result of the run at the best point, and the evaluations of the
+/// search.
 int Optimisation::write(const Session& session, const Evaluations& evaluations,
                         const Optimum& optimum, double wall_s) const {
   Provenance made = session.provenance();
@@ -441,16 +458,17 @@ int Optimisation::write(const Session& session, const Evaluations& evaluations,
   made.plan = std::to_string(evaluations.all().size()) + " evaluations";
   ResultFile file(values_.run.out);
   const ResultGroup root(file, optimum_table);
-  root.attribute("of", family_.of());
+  root.attribute("of", kind_.of());
   root.attribute("objective", objective_->text());
   root.attribute("complete", optimum.finished);
   put(file, best);
   write_optimum(file, optimum, evaluations, settings_, scene_keys_);
   Session::commit(file, made);
   if (made.converged) return ExitStatus::done;
-  std::cout << (!optimum.finished          ? "the time was up; --resume goes on\n"
-                : !best.keeps_invariants() ? "the best point's result fails its invariants\n"
-                                           : "the target error was not reached\n");
+  std::cout << (!optimum.finished ? "time limit reached; continue with --resume\n"
+                : !best.keeps_invariants()
+                    ? "the result of the best point violates its invariants\n"
+                    : "the target error was not reached\n");
   return ExitStatus::error_not_reached;
 }
 

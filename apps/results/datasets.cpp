@@ -5,8 +5,8 @@
 #include "apps/command/subcommands.h"
 #include "apps/results/view_power.h"
 
-// The tables are declared here without the code beside which they stand: what is listed below must
-// not wait for all of it to be compiled.
+// The tables are declared here, instead of including the headers of the code that fills them, so
+// that this file does not depend on that code.
 namespace flatspeckle {
 
 extern const DatasetTable provenance_table, scene_table, layers_table, density_table, axes_table,
@@ -21,7 +21,7 @@ namespace mc {
 extern const DatasetTable mean_table, intensity_table, full_table, pairs_table, moves_table,
     reflection_theory_table, gradient_table, delays_table, contrast_table, frequency_table,
     numerical_table, flux_table, field_table, imaging_table, picture_table, blinking_table,
-    recovery_table, unmixing_table, fit_table, plan_table;
+    recovery_table, separation_table, fit_table, plan_table;
 }
 
 namespace grin {
@@ -39,7 +39,7 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// A cell of a table; upright lines would end it.
+/// Returns a text for a cell of a Markdown table, with | escaped.
 std::string cell(const std::string& text) {
   std::string cell;
   for (const char letter : text)
@@ -57,7 +57,7 @@ std::string axes_of(const DatasetRow& row) {
   return row.axes.empty() ? "scalar" : code(row.axes);
 }
 
-/// Marks what has standard errors, or limits, beside it.
+/// Returns the sign by which docs/format.md marks datasets with standard errors or limits.
 const char* mark(Data data) {
   return has_error(data) ? " ±" : data == Data::invariant ? " ≤" : "";
 }
@@ -126,7 +126,7 @@ std::vector<const DatasetTable*> all_tables() {
                                              &mc::picture_table,
                                              &mc::blinking_table,
                                              &mc::recovery_table,
-                                             &mc::unmixing_table,
+                                             &mc::separation_table,
                                              &mc::fit_table,
                                              &mc::plan_table,
                                              &sweep_axes_table,
@@ -166,8 +166,8 @@ int print_tables(const Subcommand&, NoKeys&) {
 }  // namespace
 
 std::unique_ptr<Call> datasets(const std::string&) {
-  return call_with<NoKeys>("datasets", "Tables of what result files hold, for docs/format.md",
-                           print_tables);
+  return call_with<NoKeys>(
+      "datasets", "Lists the datasets of result files, as tables for docs/format.md", print_tables);
 }
 
 }  // namespace flatspeckle::apps

@@ -7,13 +7,14 @@
 
 namespace flatspeckle::apps {
 
-/// Of all that result files hold, in the order of docs/format.md.
+/// Returns the tables that define all datasets of result files, in the order of docs/format.md.
 std::vector<const DatasetTable*> all_tables();
 
-// Tables of what subcommands write themselves; those of estimators stand beside these.
+// Tables of datasets that subcommands write. Tables of estimators are defined next to the
+// estimators.
 extern const DatasetTable validate_table, own_places_table, sweep_axes_table, sweep_table,
     stacked_table, placement_table, optimum_table;
-/// In a program that is built with the benchmarks.
+/// Returns the tables of the benchmarks; defined only in builds with benchmarks.
 std::span<const DatasetTable* const> bench_tables();
 
 }  // namespace flatspeckle::apps

@@ -25,31 +25,33 @@ mc::ReversedPaths reversed_paths(const Keys& keys, const MethodSettings& setting
 void add_mc_keys(Keys& keys, MethodSettings& settings) {
   keys.group("Methods");
   keys.add("reversed_paths", settings.reversed_paths,
-           "Coherent backscattering in Monte Carlo; auto: where a view may see it")
+           "Include reversed paths, which cause coherent backscattering; auto: if a view can "
+           "detect this effect")
       .one_of({"auto", "yes", "no"});
   keys.add("neglect_k_shift", settings.neglect_k_shift,
-           "Monte Carlo and transport go on where the scatterers shift the wavenumber by more than "
-           "a fifth of it, which both neglect");
+           "Run Monte Carlo or transport, which neglect the shift of the wavenumber by the "
+           "scatterers, even if the shift exceeds 1/5 of the wavenumber");
 }
 
 void add_wave_keys(Keys& keys, MethodSettings& settings) {
   keys.group("Methods");
-  keys.add("wave_tolerance", settings.wave_tolerance, "Accuracy of each exact solution, relative")
+  keys.add("wave_tolerance", settings.wave_tolerance, "Relative accuracy of each exact solution")
       .between(0, 1)
       .only_of("the exact solver");
   keys.add("wave_samples", settings.wave_samples,
-           "Placements of the exact solver, where samples counts light paths")
+           "Number of placements for the exact solver, if samples is given as the number of light "
+           "paths")
       .positive()
       .effort()
       .only_of("the exact solver");
 }
 
-constexpr double least_tolerance = 1e-13;  // some roundings
+constexpr double least_tolerance = 1e-13;  // smallest accepted tolerance
 
 void add_transport_keys(Keys& keys, MethodSettings& settings) {
   keys.group("Methods");
   keys.add("tolerance", settings.tolerance,
-           "Of transport: relative difference from a solution with fewer ordinates")
+           "Tolerance of transport: relative difference from a solution with fewer ordinates")
       .from(least_tolerance, 0.5)
       .only_of("method = transport");
 }
@@ -73,9 +75,9 @@ void disregard_unused(const Keys& keys, const SceneSpec& spec,
 void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec& spec,
                     const RunSettings& run) {
   if (spec.domain != "slab")
-    throw InputError("method", "transport", "needs domain = slab; take another method");
+    throw InputError("method", "transport", "requires domain = slab; use another method");
   if (spec.index_field != "homogeneous")
-    throw InputError("index_field", spec.index_field, "is of Monte Carlo and the exact solver");
+    throw InputError("index_field", spec.index_field, "requires method = mc or wave");
   const double asked = keys.read(run.target_error).value_or(1);
   settings.tolerance = std::min(keys.read(settings.tolerance), std::max(asked, least_tolerance));
 }
@@ -88,8 +90,8 @@ void note_rounding(const Scene& scene) {
   const double mean = scene.placement.mean_count, placed = std::round(mean);
   if (scene.placement.kind == PlacementRule::Kind::poisson || std::abs(placed - mean) < 1e-9)
     return;
-  std::cerr << "note: hard disks are placed in whole numbers: " << placed << " in each placement, "
-            << mean << " asked for\n";
+  std::cerr << "note: hard disks are placed in whole numbers: " << placed << " per placement, "
+            << mean << " requested\n";
 }
 
 void Neglected::add(const Scene& scene) {
@@ -110,8 +112,8 @@ void refuse_absurd(const MethodSettings& settings, const Neglected& neglected) {
   if (settings.neglect_k_shift || !(neglected.k_shift > absurd)) return;
   std::ostringstream text;
   text << "neglect_k_shift = false: the scatterers shift the wavenumber by " << neglected.k_shift
-       << " of it, which Monte Carlo and transport neglect; take fewer or weaker ones, in a box "
-          "method = wave, or neglect_k_shift = true";
+       << " (relative), which Monte Carlo and transport neglect; use fewer or weaker scatterers, "
+          "method = wave in a box, or neglect_k_shift = true";
   throw InputError(text.str());
 }
 
@@ -119,18 +121,17 @@ void note(const Neglected& neglected) {
   constexpr double small = 10, dense = 0.02, much_shift = 0.01;
   if (neglected.k_mean_free_path < small)
     std::cerr << "note: k x mean free path is only " << neglected.k_mean_free_path
-              << "; the Monte Carlo method neglects terms of order 1 over that\n";
+              << "; Monte Carlo neglects terms of order 1/(k x mean free path)\n";
   if (neglected.packing > dense)
-    std::cerr
-        << "note: disks fill " << neglected.packing
-        << " of the medium; the Monte Carlo method takes their positions as independent, which "
-           "neglects terms of that order (structure = hard_disks takes them in)\n";
+    std::cerr << "note: disks fill " << neglected.packing
+              << " of the medium; Monte Carlo assumes independent positions, which neglects terms "
+                 "of that order (structure = hard_disks includes them)\n";
   if (neglected.k_shift > much_shift && !neglected.refracted)
-    std::cerr << "note: the scatterers shift the wavenumber by " << neglected.k_shift << " of it, "
-              << neglected.phase
-              << " rad over the depth, which the Monte Carlo method neglects (refraction at the "
-                 "edges; a box narrower than deep guides the mean field; index_field = mean_field "
-                 "takes both in)\n";
+    std::cerr
+        << "note: the scatterers shift the wavenumber by " << neglected.k_shift << " (relative), "
+        << neglected.phase
+        << " rad over the depth, which Monte Carlo neglects (refraction at the edges; guiding of "
+           "the mean field in a box narrower than deep; index_field = mean_field includes both)\n";
 }
 
 Scene rounded_scene(const Scene& scene, const SceneSpec& spec) {
@@ -156,13 +157,13 @@ Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::ui
 
 Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance) {
   const bool with_reversed = mc::make_plan(scene, reversed).reversed;
-  blas_single_thread();  // says now what it lacks
+  blas_single_thread();  // called here so that missing memory is reported before the slow work
   std::ostringstream plan;
-  const bool space = scene.medium.dimension == 3, near = has_near_ends(scene.request);
-  if (space && near) throw InputError("dimension", 3, "is of plane waves and far views");
+  const bool space = scene.medium.dimension == 3, near = has_near_endpoints(scene.request);
+  if (space && near) throw InputError("dimension", 3, "requires plane waves and far views");
   plan << "transport: pairs at one transverse frequency" << (space ? " in space" : " in the plane")
        << (scene.profile ? " through layers" : "") << ", by doubling; "
-       << (near ? "near ends as plane waves; " : "")
+       << (near ? "near endpoints as plane waves; " : "")
        << (with_reversed ? "reversed paths" : "no reversed paths") << "; tolerance " << tolerance;
   return {mc::slab_covariance_job(scene, with_reversed, {tolerance}), plan.str()};
 }

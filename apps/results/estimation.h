@@ -15,13 +15,13 @@
 
 namespace flatspeckle::apps {
 
-/// How each method is to be run on a scene.
+/// Settings of the methods Monte Carlo, transport and exact solutions (wave).
 struct MethodSettings {
   std::string reversed_paths = "auto";
   bool neglect_k_shift = false;
   double wave_tolerance = 1e-6;
   std::optional<std::int64_t> wave_samples;
-  double tolerance = 1e-6;  ///< of transport
+  double tolerance = 1e-6;  ///< tolerance of transport
 
   double tolerance_of(const std::string& method) const {
     return method == "wave" ? wave_tolerance : tolerance;
@@ -32,44 +32,48 @@ void add_mc_keys(Keys& keys, MethodSettings& settings);
 void add_wave_keys(Keys& keys, MethodSettings& settings);
 void add_transport_keys(Keys& keys, MethodSettings& settings);
 
-/// Reads what Monte Carlo and transport heed.
+/// Returns the value of the key reversed_paths. Marks the keys reversed_paths and neglect_k_shift
+/// as read; to be called if Monte Carlo or transport is used.
 mc::ReversedPaths reversed_paths(const Keys& keys, const MethodSettings& settings);
 
-/// A method applied to a scene: what the runner needs, and in words what was planned. write: prints
-/// and writes what it tells besides the covariance; empty where that is nothing.
+/// A method applied to a scene: the job to be run, and a description of the method for the user.
+/// write: function that prints and writes results besides the covariance; empty if there are none.
 struct Estimation {
   FieldJob job;
   std::string plan;
   std::function<void(ResultFile&, const GroupedSums&)> write = {};
 };
 
-/// Puts into `method` what auto stands for: of a slab transport, unless what only Monte Carlo heeds
-/// is given.
+/// If method = auto, replaces it: by transport for a homogeneous slab if neither samples nor
+/// seconds are given, and otherwise by mc.
 void choose_method(const Keys& keys, std::string& method, const SceneSpec& spec,
                    const RunSettings& run);
 
-/// What make_scene() reads and none of the methods makes use of counts as not read.
+/// Marks keys as not read that make_scene() has read but that none of these methods uses, so that
+/// they are rejected if given.
 void disregard_unused(const Keys& keys, const SceneSpec& spec,
                       const std::vector<std::string>& methods);
 
-/// Reads what transport heeds. Throws InputError for what is no slab.
+/// Reads the keys that transport uses. Throws InputError unless the domain is a slab.
 void read_transport(const Keys& keys, MethodSettings& settings, const SceneSpec& spec,
                     const RunSettings& run);
-/// Returns the stop rule of deterministic methods, whose jobs are two batches. A run whose error is
-/// more than the tolerance has not converged.
+/// Returns the stop rule of deterministic methods: both of the two batches of their jobs are run.
+/// If the error of the result is above the tolerance, the run has not converged.
 StopRule both_batches(double tolerance);
 
-/// Disks are placed in whole numbers: says so on standard error where that changes the density
-/// (conventions, C12).
+/// Prints a note on standard error if the number of disks is rounded to an integer, which changes
+/// their density (C12).
 void note_rounding(const Scene& scene);
 
-/// What the Monte Carlo method neglects grows with these; of several scenes: the worst.
+/// Parameters that determine the size of the effects that Monte Carlo neglects. For several scenes,
+/// each parameter has its worst value.
 struct Neglected {
   double k_mean_free_path = std::numeric_limits<double>::infinity();
-  double packing = 0;      ///< of disks whose correlations are not taken in
-  double k_shift = 0;      ///< over k: shift of the wavenumber (conventions, C15)
-  double phase = 0;        ///< what that shift adds over the depth, radians
-  bool refracted = false;  ///< what it does to the mean field is taken in
+  double packing = 0;  ///< packing fraction of disks whose correlations are neglected
+  double k_shift = 0;  ///< relative shift of the wavenumber by the scatterers (C15)
+  /// Phase, in radians, that the shift of the wavenumber adds over the depth of the medium.
+  double phase = 0;
+  bool refracted = false;  ///< whether Monte Carlo includes the effect of k_shift on the mean field
 
   Neglected() = default;
   explicit Neglected(const Scene& scene) { add(scene); }
@@ -79,25 +83,27 @@ struct Neglected {
   void add(const BulkMedium& medium, double k);
 };
 
-/// Throws InputError where scatterers shift the wavenumber by so much that what neglects it is
-/// absurd, unless the key neglect_k_shift says to go on.
+/// Throws InputError if the scatterers shift the wavenumber too much for methods that neglect this
+/// shift, unless neglect_k_shift = true.
 void refuse_absurd(const MethodSettings& settings, const Neglected& neglected);
-/// Says so on standard error where that is much.
+/// Prints notes on standard error about neglected effects that are large.
 void note(const Neglected& neglected);
 
-/// The scene with the rounded number in place of its density, so that both solvers have the same.
+/// Returns the scene with the number of disks, rounded to an integer, instead of their density, so
+/// that Monte Carlo and exact solutions use the same number.
 Scene rounded_scene(const Scene& scene, const SceneSpec& spec);
 
-/// The scene of the plane, or with `dimension` = 3 the one of space that has the same keys. Throws
-/// InputError for what is no slab.
+/// Returns `scene` if dimension = 2. If dimension = 3, returns the three-dimensional scene with the
+/// same keys, which must be a slab (InputError).
 Scene with_dimension(const Scene& scene, const SceneSpec& spec);
 
 Estimation mc_estimation(const Scene& scene, mc::ReversedPaths reversed, std::uint64_t seed);
-/// Of a slab, of the plane or in space.
+/// Returns the estimation of the covariance by transport through a slab, in two or three
+/// dimensions.
 Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, double tolerance);
-/// What exact solutions are planned to be.
+/// Returns a description of the exact solutions (method wave) for this scene, for the user.
 std::string wave_plan(const Scene& scene, double tolerance);
-/// Throws InputError.
+/// Returns the estimation of the covariance by exact solutions. Throws InputError.
 Estimation wave_estimation(const Scene& scene, double tolerance, std::uint64_t seed);
 
 }  // namespace flatspeckle::apps

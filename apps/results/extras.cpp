@@ -14,13 +14,14 @@ namespace {
 
 void refuse_layers(const Scene& scene, const std::string& key) {
   if (scene.profile)
-    throw InputError("method", "transport", "of layers has no " + key + ": take mc");
+    throw InputError("method", "transport",
+                     "does not support " + key + " with layers: use method = mc");
 }
 
 void require_plane_waves(const std::string& key, const CovarianceRequest& request) {
   using Kind = CovarianceRequest::Kind;
   if (!request.lights.all(Light::Kind::plane) || request.kind == Kind::tilt_shift)
-    throw InputError(key + ": needs plane waves, and no tilt_shift");
+    throw InputError(key + ": requires plane waves and a covariance other than tilt_shift");
 }
 
 Estimation with_gradient(const Scene& scene, const mc::GradientJob& job, const std::string& plan) {
@@ -95,9 +96,9 @@ Estimation transport_delays(const Scene& scene, mc::ReversedPaths reversed, cons
   require_changing("delays", scene.request);
   const mc::Motion motion = motion_of(extras);
   if (motion.velocity != Vec2{} || motion.shear != 0)
-    throw InputError("velocity, shear: are of method = mc");
+    throw InputError("velocity, shear: require method = mc");
   if (scene.request.has_reference() && !extras.exposure.times.empty())
-    throw InputError("exposures: need covariance = intensity");
+    throw InputError("exposures: require covariance = intensity");
   mc::check_exposure(extras.exposure, extras.delays);
   std::vector<mc::FieldChange> changes;
   for (const double delay : extras.delays) changes.push_back({.delay = motion.diffusion * delay});
@@ -121,37 +122,38 @@ Estimation with_frequency_shifts(const Scene& scene, const std::vector<double>& 
 void add_frequency_key(Keys& keys, std::vector<double>& shifts) {
   keys.group("Methods");
   keys.add("frequency_shifts", shifts,
-           "Also the field's correlation with that at shifted frequencies, relative to its own");
+           "Also estimate the correlation of the field with the field at shifted frequencies; "
+           "shifts are relative to the frequency");
 }
 
 void add_extra_keys(Keys& keys, Extras& extras) {
   keys.group("Methods");
-  keys.add("gradient", extras.gradient,
-           "Also derivatives of the covariance by mu_t, g, albedo and optical depth; by transport "
-           "of cylinders and spheres by radius and index too")
+  keys.add(
+          "gradient", extras.gradient,
+          "Also estimate derivatives of the covariance with respect to mu_t, g, albedo and optical "
+          "depth; with transport, for cylinders and spheres, also with respect to radius and index")
       .only_of("method = mc or transport");
   keys.add("delays", extras.delays,
-           "Also the field's correlation after delays, as the scatterers diffuse: k^2 D tau")
+           "Also estimate the field correlation after these delays tau, during which the "
+           "scatterers diffuse; given as k^2 D tau, or in units of time if diffusion is given")
       .not_negative()
       .only_of("method = mc or transport");
-  keys.add("diffusion", extras.diffusion,
-           "k^2 D of the scatterers per unit of the delays (default 1)")
+  keys.add("diffusion", extras.diffusion, "k^2 D of the scatterers per unit of delay (default: 1)")
       .not_negative()
       .only_of("delays");
   keys.add("velocity", extras.velocity,
-           "Of the scatterers, v_x and v_z, length per unit of the delays")
+           "Velocity of the scatterers, v_x and v_z, in lengths per unit of delay")
       .exactly(2, "v_x, v_z")
       .unit("length")
       .only_of("delays by method = mc");
-  keys.add("shear", extras.shear, "Of the velocity: v_x grows so much per depth")
+  keys.add("shear", extras.shear, "Velocity gradient: increase of v_x per unit of depth")
       .only_of("delays by method = mc");
-  keys.add(
-          "exposures", extras.exposure.times,
-          "Also the squared contrast K^2 of speckle exposed so long, in units of the delays, up to "
-          "the longest of them")
+  keys.add("exposures", extras.exposure.times,
+           "Also estimate the squared speckle contrast K^2 for these exposure times, in units of "
+           "the delays, up to the longest delay")
       .positive()
       .only_of("delays");
-  keys.add("beta", extras.exposure.beta, "K^2 of still scatterers")
+  keys.add("beta", extras.exposure.beta, "Squared speckle contrast K^2 of static scatterers")
       .positive_to(1)
       .only_of("exposures");
   add_frequency_key(keys, extras.frequency_shifts);
@@ -173,9 +175,9 @@ void read_extras(const Keys& keys, const Extras& extras, const std::string& meth
   if (method == "wave") return;
   if (!keys.read(extras.delays).empty()) read_motion(keys, extras);
   const bool delays = !extras.delays.empty(), gradient = keys.read(extras.gradient);
-  if (gradient && delays) throw InputError("gradient, delays: give one of them");
+  if (gradient && delays) throw InputError("gradient, delays: give only one of them");
   if (shifts && (gradient || delays))
-    throw InputError("gradient, delays, frequency_shifts: give one of them");
+    throw InputError("gradient, delays, frequency_shifts: give only one of them");
 }
 
 ChangeEstimation mc_frequencies(const Scene& scene, mc::ReversedPaths reversed,

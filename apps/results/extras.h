@@ -9,7 +9,8 @@
 
 namespace flatspeckle::apps {
 
-/// What methods tell of a scene besides its covariance.
+/// Optional results besides the covariance: derivatives (gradient), and correlations over delays,
+/// frequency shifts and motion.
 struct Extras {
   bool gradient = false;
   std::vector<double> delays, frequency_shifts;
@@ -20,15 +21,17 @@ struct Extras {
 void add_frequency_key(Keys& keys, std::vector<double>& shifts);
 void add_extra_keys(Keys& keys, Extras& extras);
 
-/// Reads the keys that a method heeds. Throws InputError for extras that exclude each other.
+/// Marks the keys of the optional results that the method can compute as read. Throws InputError
+/// for optional results that exclude each other.
 void read_extras(const Keys& keys, const Extras& extras, const std::string& method);
 
-/// What estimates the covariance of fields, and that of changed ones (changed_fields.h).
+/// Estimation of the covariance of fields, and of their correlation with the fields after changes
+/// such as frequency shifts (changed_fields.h).
 struct ChangeEstimation {
   mc::PathJob job;
   std::string plan;
 };
-// Fields at shifted frequencies. Throw InputError.
+// Make the estimation for fields at these frequency shifts, by each method. Throw InputError.
 ChangeEstimation mc_frequencies(const Scene& scene, mc::ReversedPaths reversed,
                                 const std::vector<double>& shifts, std::uint64_t seed);
 ChangeEstimation transport_frequencies(const Scene& scene, mc::ReversedPaths reversed,
@@ -36,13 +39,14 @@ ChangeEstimation transport_frequencies(const Scene& scene, mc::ReversedPaths rev
 ChangeEstimation wave_frequencies(const Scene& scene, const std::vector<double>& shifts,
                                   double tolerance, std::uint64_t seed);
 
-/// By Monte Carlo. Throws InputError for extras that the scene cannot have.
+/// Returns the estimation of the covariance and the optional results by Monte Carlo. Throws
+/// InputError for optional results that are not possible for this scene.
 Estimation extended_estimation(const Scene& scene, mc::ReversedPaths reversed, const Extras& extras,
                                std::uint64_t seed);
-/// The same of a slab by transport.
+/// Returns the estimation of the covariance and the optional results by transport through a slab.
 Estimation extended_transport(const Scene& scene, mc::ReversedPaths reversed, const Extras& extras,
                               double tolerance);
-/// The same of a box by exact solutions.
+/// Returns the estimation of the covariance and the optional results by exact solutions for a box.
 Estimation extended_waves(const Scene& scene, const Extras& extras, double tolerance,
                           std::uint64_t seed);
 

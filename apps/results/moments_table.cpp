@@ -69,20 +69,21 @@ void print_errors(const CovarianceRequest& request, const Estimate& estimate) {
 
 namespace {
 
-/// group: of a result file, empty for the root.
+/// Prints memory-effect ranges. group: group of the result file that contains them; empty for the
+/// root.
 void print_ranges_of(const std::string& group, const std::vector<mc::WrittenRange>& ranges) {
   for (const auto& [long_name, estimate, few_steps] : ranges) {
     if (few_steps)
       std::fputs(
-          "note: a range is read off a curve with fewer than four points below it; its error bar "
-          "does not know what the curve does between them\n",
+          "note: a range is interpolated with fewer than four points below it; its error excludes "
+          "the interpolation error: add points\n",
           stderr);
     std::printf("%s%s%s: %s\n", group.c_str(), group.empty() ? "" : "/", long_name.c_str(),
                 range_text(estimate.range, estimate.error).c_str());
   }
 }
 
-/// C_E and C_I of a curve, then the ranges.
+/// Prints the correlations C_E and C_I of a curve, then its memory-effect ranges.
 void print_curve(const CovarianceRequest& request, const mc::WrittenMoves& moves) {
   const bool tilts = request.kind == CovarianceRequest::Kind::memory_effect;
   if (tilts || request.kind == CovarianceRequest::Kind::translation) {
@@ -133,7 +134,8 @@ void print_gradient(const CovarianceRequest& request, const mc::GradientJob& job
   for (std::size_t p = 0; p < names.size(); ++p)
     print_entries(request, part(gradient.entries, p * entries, entries), "d/d " + names[p]);
   const Estimate& range = gradient.effect.range;
-  if (std::ranges::all_of(range.value, [](Complex slope) { return slope == 0.0; })) return;
+  if (std::ranges::all_of(range.value, [](Complex derivative) { return derivative == 0.0; }))
+    return;
   for (std::size_t p = 0; p < names.size(); ++p)
     std::printf("d/d %-13s of the range q L at C_I = 1/2: %11.5g +- %.2g\n", names[p].c_str(),
                 range.value[p].real(), range.error[p]);

@@ -15,17 +15,18 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Of the light and all views: the most that may be added to their sines, and a little less.
+/// Returns the amount by which the sines of the angles of the light and of all views can be
+/// increased, slightly less than the largest possible one.
 double largest_sine_step(const SceneSpec& spec) {
   constexpr double horizon = 0.99;
   double largest = std::sin(spec.light_angles.at(0));
   for (const double view : spec.view_angles) largest = std::max(largest, std::sin(view));
   if (largest >= horizon)
-    throw InputError("tilt_count: a light or view is too close to the horizon: give tilts");
+    throw InputError("tilt_count: a light or view is too close to the horizon; give tilts instead");
   return horizon - largest;
 }
 
-/// The rotation that adds so much to the sine of the light.
+/// Returns the rotation of the light that increases the sine of its angle by sine_step.
 double tilt_of(double light, double sine_step) {
   const double moved = std::asin(std::sin(light) + sine_step);
   return std::remainder((std::cos(light) >= 0 ? moved : pi - moved) - light, 2 * pi);
@@ -39,7 +40,8 @@ double to_four_digits(double value) {
 
 constexpr int doublings = 20;
 
-/// The first of them.
+/// Returns the `count` smallest of a sequence of tilts. They change the sine of the light's angle
+/// by largest / 2^20, ..., largest / 2, largest.
 std::vector<double> doubling_tilts(const SceneSpec& spec, double largest, int count) {
   std::vector<double> tilts;
   for (int step = doublings; step > doublings - count; --step)
@@ -47,7 +49,8 @@ std::vector<double> doubling_tilts(const SceneSpec& spec, double largest, int co
   return tilts;
 }
 
-/// q at C_I = 1/2, or the largest or smallest that was tried.
+/// Returns q at which C_I = 1/2, from a short run. If C_I = 1/2 is not reached, returns the largest
+/// or smallest q of the scene's tilts as a bound (censored).
 mc::Range pilot_range(const Scene& scene, bool transport, int threads, std::uint64_t seed) {
   constexpr double tolerance = 1e-2;
   constexpr std::uint64_t paths = 20000;
@@ -65,7 +68,8 @@ mc::Range pilot_range(const Scene& scene, bool transport, int threads, std::uint
   return mc::memory_effect(scene.request, state.sums, pilot.job.covariance).range.range;
 }
 
-/// By transport large tilts, which cost most, are tried where smaller ones do not do.
+/// Returns q at which C_I = 1/2. With transport, large tilts take the most time; they are tried
+/// only if smaller tilts do not reach C_I = 1/2.
 double found_range(const SceneSpec& spec, double largest, bool transport, int threads,
                    std::uint64_t seed) {
   constexpr int more = 4;
@@ -83,13 +87,15 @@ double found_range(const SceneSpec& spec, double largest, bool transport, int th
 
 void add_tilt_count_key(Keys& keys, std::optional<std::int64_t>& count) {
   keys.add("tilt_count", count,
-           "In place of tilts: so many from 0 to twice that of C_I = 1/2, which a pilot finds")
+           "Number of tilts, if tilts are not given: equidistant from 0 to twice the tilt at which "
+           "C_I = 1/2, which a pilot run finds")
       .from(3, 1000)
       .only_of("covariance = memory_effect");
 }
 
 void add_q_depths_key(Keys& keys, std::vector<double>& q_depths) {
-  keys.add("q_depths", q_depths, "In place of tilts: q L of each, L the depth")
+  keys.add("q_depths", q_depths,
+           "Tilts given as q L, where L is the depth, instead of as angles (tilts)")
       .only_of("tilts of plane waves, where depth is given");
 }
 
@@ -100,7 +106,8 @@ void take_q_depths(const Keys& keys, std::vector<double>& q_depths, SceneSpec& s
   const double light = keys.required(spec.light_angles).front();
   for (const double q_depth : keys.read(q_depths)) {
     if (std::abs(std::sin(light) + q_depth / per_sine) >= 1)
-      throw InputError("q_depths", q_depth, "takes the light past the horizon");
+      throw InputError("q_depths", q_depth,
+                       "tilts the light beyond the horizon: give a smaller value");
     spec.tilts.push_back(q_depth == 0 ? 0 : tilt_of(light, q_depth / per_sine));
   }
   q_depths.clear();
@@ -110,7 +117,7 @@ void choose_tilts(const Keys& keys, std::optional<std::int64_t>& count, SceneSpe
                   const std::string& method, const RunSettings& run, std::uint64_t seed) {
   if (!keys.given(count)) return;
   if (keys.read(spec.covariance) != "memory_effect")
-    throw InputError("tilt_count", *count, "is of covariance = memory_effect");
+    throw InputError("tilt_count", *count, "requires covariance = memory_effect");
   if (!spec.tilts.empty()) throw InputError("tilts, tilt_count: exactly one must be given");
   const double light = keys.required(spec.light_angles).front(), largest = largest_sine_step(spec),
                k = 2 * pi / spec.wavelength;

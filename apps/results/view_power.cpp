@@ -25,16 +25,18 @@ namespace flatspeckle::apps {
 
 const DatasetTable power_table{
     .name = "power",
-    .rows = {{"invariants/power", Data::invariant, "", "1",
-              "difference between the power scattered into all directions and what neither passes "
-              "nor is absorbed, relative"},
-             {"invariants/path_power", Data::invariant, "", "1",
-              "difference between the power that scatterers along the paths receive and what light "
-              "loses, relative: the first, the second or the later ones, whichever is worst"}}};
+    .rows = {
+        {"invariants/power", Data::invariant, "", "1",
+         "relative difference between the power scattered into all directions and the power "
+         "neither transmitted directly nor absorbed"},
+        {"invariants/path_power", Data::invariant, "", "1",
+         "relative difference between the power received by scatterers along the paths and the "
+         "power lost by the light: largest of the first, the second and the later scatterers"}}};
 
 namespace {
 
-/// The scene with the intensities of its first light alone, seen from far away.
+/// Returns the scene with another request: intensities for its first light, as a plane wave, in
+/// far-field views at these angles.
 Scene seen_from(const Scene& scene, const std::vector<double>& angles) {
   const Light& first = scene.request.lights.front();
   Scene lit = scene;
@@ -54,7 +56,8 @@ GroupedSums sums_of(const BatchJob& job, double samples) {
   return sums;
 }
 
-/// The width across the light through which it enters; of a slab per unit length.
+/// Returns the width of the incident beam, transverse to its direction, that meets the medium. For
+/// a slab, it is divided by the illuminated length.
 double aperture(const Scene& scene) {
   const double angle = scene.request.lights.front().angle;
   const mc::LightAperture entered(scene.domain, {std::sin(angle), std::cos(angle)});
@@ -65,7 +68,8 @@ struct Share {
   double value = 0, error = 0;
 };
 
-/// The share of the light that is scattered and leaves. Without absorption its error is 0.
+/// Returns the fraction of the incident power that is scattered and leaves the medium. If the
+/// medium does not absorb, the fraction is exact and its error is 0.
 Share scattered_out(const Scene& lit, double samples, std::uint64_t seed) {
   const double scattered = 1 - mc::direct_transmittances(lit).front();
   const bool absorbs = lit.profile || lit.medium.albedo < 1;
@@ -80,7 +84,8 @@ Share scattered_out(const Scene& lit, double samples, std::uint64_t seed) {
 
 constexpr int views = 48;
 
-/// The share that far views evenly spaced from a random one see, averaged over the circle.
+/// Returns the fraction of the incident power that is scattered into all directions. The intensity
+/// is integrated over equidistant far-field views, of which the first has a random angle.
 double seen_share(const Scene& scene, double samples, std::uint64_t seed, std::uint64_t group) {
   RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), group);
   const double first = random.uniform();
@@ -97,8 +102,10 @@ double seen_share(const Scene& scene, double samples, std::uint64_t seed, std::u
   return power / aperture(lit);
 }
 
-/// By light paths, in groups with far views of their own, whose spread gives the error. samples: in
-/// all groups together; nullopt where they do not suffice for a batch in each.
+/// Checks the scattered power that Monte Carlo gives. It is computed in several groups of paths
+/// with different far-field views, whose spread gives the error. samples: number of paths in all
+/// groups together. Returns nullopt if there is less than one batch for each group, or if the check
+/// is not possible for the medium.
 std::optional<Invariant> paths_power(const Scene& scene, double samples, std::uint64_t seed) {
   constexpr std::size_t groups = 16;
   constexpr double most_samples = 1 << 22, rounding = 1e-9;
@@ -107,7 +114,7 @@ std::optional<Invariant> paths_power(const Scene& scene, double samples, std::ui
       mc::make_plan(seen_from(scene, std::vector<double>(views)), mc::ReversedPaths::no);
   if (samples < static_cast<double>(groups * plan.paths_per_batch)) return std::nullopt;
   const double used = std::min(samples, most_samples);
-  const std::uint64_t apart = ~seed;  // random numbers that the result has not used
+  const std::uint64_t apart = ~seed;  // seed of random numbers that the result does not use
   std::array<double, groups> shares{};
   parallel_for(groups, [&](std::size_t group) {
     shares[group] = seen_share(scene, used / groups, apart, group);
@@ -123,18 +130,20 @@ std::optional<Invariant> paths_power(const Scene& scene, double samples, std::ui
       outlier_errors(groups) * std::hypot(error, expected.error) / expected.value + rounding};
 }
 
-/// The worst balance of the shares of the slab's light, of which none follows from the others.
+/// Returns the power balance of the slab: reflected, transmitted and absorbed power, each computed
+/// separately, must add up to the incident power.
 Invariant flux_balance(const Scene& slab, double tolerance) {
   const Scene lit = seen_from(slab, {0});
   const auto job = mc::slab_flux_job(lit, 1, {tolerance});
   return mc::power_balance(job, sums_of(job.batches, 2), mc::direct_transmittances(lit)).front();
 }
 
-/// By transport through a slab. The limit contains the errors of both solutions and of the
-/// quadrature over views. In space and through layers it is the balance of the shares of light
-/// instead (mc::power_balance).
+/// Checks the scattered power that transport gives for a slab, against reflectance plus
+/// transmittance. The limit is the sum of the errors of both and of the quadrature over views. In
+/// three dimensions and for layers, the power balance of the fluxes is checked instead
+/// (mc::power_balance).
 std::optional<Invariant> transport_power(const Scene& slab, double tolerance) {
-  constexpr int nodes = 32;  // of a quadrant
+  constexpr int nodes = 32;  // nodes per quadrant
   constexpr int most_ordinates = 200;
   if (!(slab.medium.mu_s > 0)) return std::nullopt;
   if (slab.profile || slab.medium.dimension == 3) return flux_balance(slab, tolerance);
@@ -169,10 +178,10 @@ std::optional<Invariant> transport_power(const Scene& slab, double tolerance) {
                    (std::abs(fine.value - coarse.value) + fine.error + error) / left + rounding};
 }
 
-/// The optical theorem of two placements (C9), by views all round and the estimators of ensembles:
-/// each covariance is of the two, and gives with their mean back the mean intensity. The limit is
-/// what the tolerance of the fields explains. nullopt where scatterers absorb, where they are many
-/// in a large box, and in an index field.
+/// Checks the optical theorem (C9) for the exact fields of two placements, with views over the full
+/// circle. The mean intensity is computed from covariance and mean field, by the estimators for
+/// many placements. The limit follows from the tolerance of the fields. Returns nullopt if
+/// scatterers absorb, if there are many scatterers in a large box, or if the index varies in space.
 std::optional<Invariant> waves_power(const Scene& scene, double tolerance, std::uint64_t seed) {
   constexpr double placements = 2, rounding = 1e-10, most = 2e6;
   const bool is_graded = scene.index && scene.index->is_around();
@@ -201,16 +210,20 @@ std::optional<Invariant> waves_power(const Scene& scene, double tolerance, std::
                    tolerance * (1 + std::abs(extinction) / scattered) + rounding};
 }
 
-constexpr double part = 1.0 / 64;  // of the work, for each check
+// number of paths of each check, as a fraction of that of the run
+constexpr double part = 1.0 / 64;
 
-/// Returns how far the views' power is off.
+/// Returns the relative imbalance of the power scattered into all directions, with its limit;
+/// nullopt if it cannot be checked.
 std::optional<Invariant> view_power(const Scene& scene, const DoneWork& work) {
   if (work.method == "mc") return paths_power(scene, part * work.samples, work.seed);
   if (work.method == "transport") return transport_power(scene, work.tolerance);
   return waves_power(scene, work.tolerance, work.seed);
 }
 
-/// Returns the worst of the balances along light paths; nullopt for methods without paths.
+/// Returns the worst relative difference between the power that scatterers receive along light
+/// paths and the power that the light loses, with its limit. Returns nullopt for methods other than
+/// Monte Carlo.
 std::optional<Invariant> received_power(const Scene& scene, const DoneWork& work) {
   constexpr double least = 2000, most = 20000;
   if (work.method != "mc" || part * work.samples < least) return std::nullopt;
@@ -233,7 +246,7 @@ void check_power(ResultFile& file, const std::string& group, const Scene& scene,
     power = view_power(scene, work);
     path_power = received_power(scene, work);
   } catch (const std::bad_alloc&) {
-    std::fputs("note: the power is not checked: there is too little memory for that\n", stderr);
+    std::fputs("note: the power balance is not checked for lack of memory\n", stderr);
   }
   const ResultGroup checks(file, power_table, group);
   if (power) checks.check("invariants/power", *power);

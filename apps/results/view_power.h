@@ -9,20 +9,22 @@
 
 namespace flatspeckle::apps {
 
-/// How a result was made, as far as its check depends on it.
+/// Method and effort with which a result was computed, for the check of its power balance.
 struct DoneWork {
-  std::string method;    ///< mc, transport or wave
-  double samples = 0;    ///< light paths, of which the check takes some percent as many
-  double tolerance = 0;  ///< of transport, or of the fields of waves
+  std::string method;  ///< mc, transport or wave
+  /// Number of light paths of the result; the check uses a few percent of this number.
+  double samples = 0;
+  double tolerance = 0;  ///< tolerance of transport or of exact solutions
   std::uint64_t seed = 0;
 };
 
 extern const DatasetTable power_table;
-/// Checks the power of a result of this scene apart from the result: of its first light, as a plane
-/// wave, without reversed paths, which only redistribute power. The power scattered into all
-/// directions must be what neither passes unscattered nor is absorbed; of light paths also, what
-/// scatterers along them receive must be what light loses (mc::PathPower). Writes nothing for media
-/// to which this does not apply. group: of its method, or empty.
+/// Checks the power balance of a scene by a computation separate from its result, with the first
+/// light as a plane wave and without reversed paths, which only redistribute power. The power
+/// scattered into all directions must equal the power that is neither transmitted unscattered nor
+/// absorbed. For Monte Carlo, the power received by the scatterers must also equal the power lost
+/// by the light (mc::PathPower). Writes the result of the check to `group` of the file (the root if
+/// empty), or nothing if it is not possible for the medium.
 void check_power(ResultFile& file, const std::string& group, const Scene& scene,
                  const DoneWork& work);
 

@@ -9,11 +9,11 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// As many, in equal steps.
+/// Returns `count` equidistant values from ends[0] to ends[1], both included.
 std::vector<double> steps(const std::vector<double>& ends, std::int64_t count) {
   if (ends.size() != 2)
     throw InputError("wavelength_count", std::to_string(count),
-                     "counts wavelengths from the first to the last: give two wavelengths");
+                     "requires exactly two wavelengths, the first and the last");
   std::vector<double> values;
   for (std::int64_t i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / static_cast<double>(count - 1);
@@ -25,7 +25,7 @@ std::vector<double> steps(const std::vector<double>& ends, std::int64_t count) {
 void require_distinct(std::vector<double> values) {
   std::ranges::sort(values);
   if (const auto twice = std::ranges::adjacent_find(values); twice != values.end())
-    throw InputError("wavelengths", *twice, "is given twice");
+    throw InputError("wavelengths", *twice, "is given twice; leave one out");
 }
 
 }  // namespace
@@ -33,17 +33,17 @@ void require_distinct(std::vector<double> values) {
 void add_spectrum_keys(Keys& keys, SpectrumSettings& settings) {
   keys.group("Wavelengths");
   keys.add("wavelengths", settings.wavelengths,
-           "Solve the placement at each of these; `wavelength` then is that at which the medium's "
-           "density is meant")
+           "Wavelengths at which the placement is solved; `wavelength` then only defines the "
+           "density of the medium")
       .positive()
       .unit("length");
   keys.add("wavelength_count", settings.wavelength_count,
-           "As many in equal steps, from the first of two wavelengths to the second")
+           "Number of equidistant wavelengths from the first of two wavelengths to the second")
       .from(2, 100'000)
       .only_of("wavelengths");
   keys.add("index_table", settings.index_table,
-           "CSV with columns wavelength, index_re, index_im: the index at each wavelength, linear "
-           "between")
+           "CSV file with columns wavelength, index_re, index_im: index at each wavelength, "
+           "interpolated linearly")
       .file()
       .only_of("wavelengths of tm and te");
 }

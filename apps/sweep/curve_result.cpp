@@ -28,88 +28,96 @@ const DatasetTable sweep_axes_table{
      {"albedo", Data::scale, "", "1", "single-scattering albedo"},
      {"point", Data::numbers, "", "1", "number of the point"},
      {"swept_point", Data::numbers, "", "1",
-      "the same, of results that have points of their own (image)"}}};
+      "number of the point, for results that already contain a dataset point (image)"}}};
 
 const DatasetTable sweep_table{
     .name = "sweep",
-    .rows =
-        {{"density", Data::real, "GRID", "1/length^2", "scatterers per area"},
-         {"radius", Data::real, "GRID", "length", "radius of the disks"},
-         {"index", Data::real, "GRID", "1", "relative index, real part"},
-         {"index_imaginary", Data::real, "GRID", "1", "relative index, imaginary part"},
-         {"optical_depth", Data::real, "GRID", "1", "optical depth mu_t L"},
-         {"g", Data::real, "GRID", "1", "mean cosine of scattering"},
-         {"albedo", Data::real, "GRID", "1", "single-scattering albedo"},
-         {"k_mean_free_path", Data::real, "GRID", "1", "wavenumber times mean free path"},
-         {"diffusion_theory", Data::real, "GRID tilt", "1", "C_E in diffusion theory"},
-         {"diffusion_range", Data::real, "GRID", "1", "q L at C_I = 1/2 in diffusion theory"},
-         {"single_scattering", Data::real, "tilt", "1",
-          "C_E of single scattering in a slab without attenuation"},
-         {"single_scattering_range", Data::real, "", "1", "q L at C_I = 1/2 by single scattering"},
-         {"field_correlation", Data::estimate, "GRID tilt", "1",
-          "field correlation C_E, summed over views"},
-         {"memory_effect_range", Data::estimate, "GRID", "1",
-          "q L at C_I = 1/2 with matched views, L the depth"},
-         {"memory_effect_angle", Data::estimate, "GRID", "rad",
-          "rotation of the light at C_I = 1/2"},
-         {"range_censored", Data::count, "GRID", "1",
-          "0: range found; 1: C_I stays above 1/2, a lower bound; 2: it is below at the first "
-          "step, an upper bound"},
-         {"range_steps", Data::count, "GRID", "1",
-          "tilts between 0 and the range: fewer than 4 are too few to trust its error"},
-         {"invariants/power", Data::invariant, "GRID", "1",
-          "difference between the power scattered into all directions and what neither passes "
-          "nor is absorbed, relative; of paths that of what scatterers receive, if worse"},
-         {"relative_error", Data::real, "GRID", "1",
-          "RMS standard error of the covariances relative to their RMS magnitude; 1e300 where none "
-          "is known"},
-         {"samples", Data::real, "GRID", "1", "samples"},
-         {"cpu_s", Data::real, "GRID", "s", "processor time, all threads"},
-         {"wall_s", Data::real, "GRID", "s",
-          "time from the first batch to the last, other points' included"},
-         {"trace/of_point", Data::count, "trace/checkpoint", "1",
-          "number of the point, in the order of the grid"},
-         {"deviation", Data::real, "GRID tilt", "1", "mc less wave, in combined standard errors"}},
-    .attributes = {{"", "format", "uint64", "2; sweeps without it have an older layout"},
-                   {"", "complete", "bool", "0: points are missing"},
-                   {"", "ranks", "int64", "processes that worked on it (MPI)"},
-                   {"", "target_error", "float64", "that each point was to reach, if any"},
+    .rows = {{"density", Data::real, "GRID", "1/length^2", "scatterers per area"},
+             {"radius", Data::real, "GRID", "length", "radius of the disks"},
+             {"index", Data::real, "GRID", "1", "relative index, real part"},
+             {"index_imaginary", Data::real, "GRID", "1", "relative index, imaginary part"},
+             {"optical_depth", Data::real, "GRID", "1", "optical depth mu_t L"},
+             {"g", Data::real, "GRID", "1", "mean cosine of scattering"},
+             {"albedo", Data::real, "GRID", "1", "single-scattering albedo"},
+             {"k_mean_free_path", Data::real, "GRID", "1", "wavenumber times mean free path"},
+             {"diffusion_theory", Data::real, "GRID tilt", "1", "C_E in diffusion theory"},
+             {"diffusion_range", Data::real, "GRID", "1", "q L at C_I = 1/2 in diffusion theory"},
+             {"single_scattering", Data::real, "tilt", "1",
+              "C_E of single scattering in a slab without attenuation"},
+             {"single_scattering_range", Data::real, "", "1",
+              "q L at C_I = 1/2 by single scattering"},
+             {"field_correlation", Data::estimate, "GRID tilt", "1",
+              "field correlation C_E, summed over views"},
+             {"memory_effect_range", Data::estimate, "GRID", "1",
+              "q L at C_I = 1/2 with matched views; L is the depth"},
+             {"memory_effect_angle", Data::estimate, "GRID", "rad",
+              "rotation of the light at C_I = 1/2"},
+             {"range_censored", Data::count, "GRID", "1",
+              "0: range found; 1: C_I stays above 1/2, lower bound; 2: C_I is below 1/2 at the "
+              "first step, upper bound"},
+             {"range_steps", Data::count, "GRID", "1",
+              "number of tilts between 0 and the range; with fewer than 4, the error of the range "
+              "is unreliable"},
+             {"invariants/power", Data::invariant, "GRID", "1",
+              "relative difference between the power scattered into all directions and the power "
+              "neither transmitted directly nor absorbed; for Monte Carlo, the relative difference "
+              "of the power received by scatterers, if that is larger"},
+             {"relative_error", Data::real, "GRID", "1",
+              "RMS standard error of the covariances relative to their RMS magnitude; 1e300 if "
+              "unknown"},
+             {"samples", Data::real, "GRID", "1", "number of samples"},
+             {"cpu_s", Data::real, "GRID", "s", "processor time, all threads"},
+             {"wall_s", Data::real, "GRID", "s",
+              "time from the first batch of the point to the last, including time spent on other "
+              "points"},
+             {"trace/of_point", Data::count, "trace/checkpoint", "1",
+              "number of the point, in the order of the grid"},
+             {"deviation", Data::real, "GRID tilt", "1",
+              "mc minus wave, in combined standard errors"}},
+    .attributes = {{"", "format", "uint64",
+                    "version of the layout: 2; files without this attribute have an older layout"},
+                   {"", "complete", "bool", "whether all points are finished"},
+                   {"", "ranks", "int64", "number of processes (MPI)"},
+                   {"", "target_error", "float64", "target error of each point, if any"},
                    {"single_scattering_range", "censored", "uint64", mc::censored_meaning}},
     .roles = {{"GRID", {"density radius index optical_depth g albedo", "point"}}}};
 
 namespace {
 
-/// What one point of a sweep gives: its curve, the range read off it, and what it cost.
+/// Result of a run at one point of a sweep: its correlation curve, its memory-effect range and its
+/// costs.
 struct PointResult {
-  std::vector<double> correlation, correlation_error;  ///< C_E [tilt]
-  std::vector<std::uint64_t> correlation_rare;         ///< see Estimate
-  double range = 0, range_error = 0;                   ///< q L at C_I = 1/2
-  std::uint64_t range_rare = 0;                        ///< see Estimate
-  std::uint64_t range_censored = 0;                    ///< mc::Range::Censoring
-  Invariant power;                                     ///< 0 where it does not apply
-  Trace trace;                                         ///< where it has an error
+  /// Field correlation C_E [tilt] and its standard errors.
+  std::vector<double> correlation, correlation_error;
+  std::vector<std::uint64_t> correlation_rare;  ///< see Estimate
+  double range = 0, range_error = 0;            ///< memory-effect range: q L at which C_I = 1/2
+  std::uint64_t range_rare = 0;                 ///< see Estimate
+  std::uint64_t range_censored = 0;             ///< value of mc::Range::Censoring
+  Invariant power;  ///< invariant of the power balance; its limit is 0 if it is not checked
+  Trace trace;      ///< error as a function of run time
   double relative_error = 0, samples = 0, cpu_s = 0, wall_s = 0;
 };
 
-/// What the points gave that every method has finished.
+/// Indices and results of the points at which the runs of all methods are finished.
 struct CurveResults {
   std::vector<std::size_t> points;
   std::vector<std::vector<PointResult>> by_method;  ///< [method][point]
 };
 
-/// What has a value at each point.
+/// A quantity that has a value at each point of the sweep, computed from its scene.
 struct Quantity {
   std::string name;
   double (*value)(const Scene&);
 };
 
-/// Of the scatterers: an axis where they are swept.
+/// Properties of the scatterers. Each is written as an axis of the result if it is swept.
 const Quantity settings[] = {
     {"density", [](const Scene& scene) { return scene.medium.density; }},
     {"radius", [](const Scene& scene) { return scene.scatterer.radius; }},
     {"index", [](const Scene& scene) { return scene.scatterer.index.real(); }}};
 
-/// Of the bulk: an axis where it is swept or the same everywhere.
+/// Properties of the bulk medium. Each is written as an axis of the result if it is swept or equal
+/// at all points.
 const Quantity bulk[] = {
     {"optical_depth", [](const Scene& scene) { return scene.medium.mu_t * scene.domain.depth; }},
     {"g", [](const Scene& scene) { return scene.medium.g; }},
@@ -125,7 +133,7 @@ bool is_constant(const std::vector<double>& values) {
   return std::equal(values.begin() + 1, values.end(), values.begin());
 }
 
-/// The numbers of an axis that is swept; none of one that is not.
+/// Returns the (real parts of the) values of a swept key; empty if the key is not swept.
 std::vector<double> swept_values(const CurveSweep& sweep, const std::string& key) {
   std::vector<double> values;
   for (const SweepAxis& axis : sweep.points().axes)
@@ -135,9 +143,9 @@ std::vector<double> swept_values(const CurveSweep& sweep, const std::string& key
   return values;
 }
 
-/// Writes the axes of a sweep and what else tells its points apart, and binds GRID, the axes that a
-/// quantity per point stands on: those of the sweep, or, as a list, `point` alone. scenes: of the
-/// points that are written, all of them unless as a list.
+/// Writes the axes of a sweep, and other properties of the medium at each point. Sets GRID, which
+/// stands for the axes of all datasets with a value at each point, to the axes of the sweep or, if
+/// the points are written as a list, to `point`. scenes: scenes of the points to be written.
 void write_sweep_grid(ResultFile& file, const CurveSweep& sweep, const std::vector<Scene>& scenes,
                       bool as_list) {
   const ResultGroup axes(file, sweep_axes_table), root(file, sweep_table);
@@ -172,17 +180,22 @@ void write_sweep_grid(ResultFile& file, const CurveSweep& sweep, const std::vect
 template <typename Value>
 std::vector<Value> kept_list(const FinishedPoint& finished, const std::string& name) {
   const CollectedDataset* const set = finished.result.find(name);
-  if (set == nullptr) throw InputError("a finished point has no " + name);
+  if (set == nullptr)
+    throw InputError(
+        "remove the folder of the sweep's points and start again: a stored point lacks the "
+        "dataset " +
+        name);
   return std::get<std::vector<Value>>(set->values);
 }
 
-/// The range as its curve is stepped through: in q.
+/// Returns the memory-effect range of a point as a value of q, in which the tilts of the curve are
+/// given.
 mc::Range range_in_q(const Scene& scene, const PointResult& point) {
   return {point.range / scene.domain.depth, mc::Range::Censoring(point.range_censored)};
 }
 
-/// Difference of the curves of two methods in combined standard errors, per tilt; 0 where both are
-/// exact, as at tilt 0.
+/// Returns, for each tilt, the difference of the curves of two methods in units of the combined
+/// standard error; 0 if both values are exact, as at tilt 0.
 std::vector<double> deviation(const PointResult& mc, const PointResult& wave) {
   constexpr double rounding = 1e-12;
   std::vector<double> deviation;
@@ -196,7 +209,7 @@ std::vector<double> deviation(const PointResult& mc, const PointResult& wave) {
 
 using Points = std::vector<PointResult>;
 
-/// The curves of all points, one after the other.
+/// Returns the curves of all points, one after the other, as one list.
 template <typename Value>
 std::vector<Value> of_points(const Points& points, std::vector<Value> PointResult::*curve) {
   std::vector<Value> values;
@@ -205,14 +218,15 @@ std::vector<Value> of_points(const Points& points, std::vector<Value> PointResul
   return values;
 }
 
-/// Writes the result of a sweep, over the points that are finished.
+/// Writes the combined result of all finished points of a sweep.
 class SweepWriter {
  public:
   SweepWriter(ResultFile& file, const CurveSweep& sweep, const CurveResults& results)
       : file_(file), sweep_(sweep), results_(results.by_method) {
     for (std::size_t point : results.points) {
       scenes_.push_back(sweep.scene(point));
-      if (scenes_.size() > 1) scenes_.back().request = {};  // the same at all points, and large
+      // removed to save memory; the request is equal at all points
+      if (scenes_.size() > 1) scenes_.back().request = {};
     }
   }
 
@@ -293,7 +307,8 @@ class SweepWriter {
     if (std::ranges::any_of(power, is_checked)) out.check("invariants/power", power);
   }
 
-  /// The ranges as rotations of the light, to the side on which they were read off.
+  /// Writes the memory-effect ranges as angles by which the light is rotated, in the direction of
+  /// the tilts.
   void write_angles(const ResultGroup& out, const Points& points) const {
     const Scene& scene = scenes_.front();
     const auto& q = scene.request.tilt_q;
@@ -365,8 +380,8 @@ class SweepTable {
     }
     if (few > 0)
       std::fprintf(stderr,
-                   "note: %zu of %zu ranges (marked *) are read off curves with fewer than four "
-                   "tilts below them; their errors do not know what the curve does in between\n",
+                   "note: %zu of %zu ranges (marked *) are interpolated with fewer than four tilts "
+                   "below them; their errors exclude the interpolation error: add tilts\n",
                    few, all);
   }
 
@@ -394,7 +409,8 @@ class SweepTable {
     std::puts("");
   }
 
-  /// Over the tilts but 0, where both are 1.
+  /// Returns the RMS over all tilts of the deviation between both methods at a point. Tilt 0, at
+  /// which both curves are 1, is left out.
   double rms_deviation(std::size_t number) const {
     double sum = 0, count = 0;
     const auto& curves = results_.by_method;
@@ -428,7 +444,8 @@ PointResult curve_of(const FinishedPoint& finished) {
                     .samples = finished.samples,
                     .cpu_s = finished.cpu_s,
                     .wall_s = finished.wall_s};
-  point.correlation_rare.resize(point.correlation.size());  // none where nothing is marked
+  // the stored list is empty if no value is undersampled
+  point.correlation_rare.resize(point.correlation.size());
   for (const auto& [name, values] : trace_columns)
     point.trace.*values = numbers(std::string("trace/") + name);
   for (const std::string name : {"invariants/power", "invariants/path_power"}) {
@@ -441,7 +458,8 @@ PointResult curve_of(const FinishedPoint& finished) {
 
 }  // namespace
 
-/// Under the names that they have in the result; what belongs together in one list.
+/// The dataset names are those of the final result, except that range and error of the range are
+/// stored together in one dataset, and its marks `rare` and `censored` in another.
 void write_curve(ResultFile& file, const Scene& scene, const FieldJob& job, const RunState& state) {
   const auto effect = mc::memory_effect(scene.request, state.sums, job.covariance);
   const auto& [found, error, rare] = effect.range;

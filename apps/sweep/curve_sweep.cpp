@@ -19,7 +19,8 @@ std::string header() {
   return "flatspeckle " + version() + ", sweep, format 2\n";
 }
 
-/// Both transmission and reflection: their sum says nothing.
+/// Whether some views are in transmission and others in reflection; a correlation summed over both
+/// is meaningless.
 bool mixes_sides(const CovarianceRequest& request) {
   return std::any_of(request.views.begin(), request.views.end(), [&](const View& view) {
     return std::cos(view.angle) * std::cos(request.views.front().angle) < 0;
@@ -29,19 +30,19 @@ bool mixes_sides(const CovarianceRequest& request) {
 void check_scene(const Scene& scene) {
   if (scene.medium.mu_s == 0)
     throw InputError("albedo", scene.medium.albedo,
-                     "what does not scatter has no correlation; must be in (0, 1]");
+                     "must be in (0, 1]: a medium that does not scatter has no correlation");
   if (mixes_sides(scene.request))
     throw InputError(
-        "view_angles: C_E is of all views together: give those in transmission or those in "
-        "reflection");
+        "view_angles: C_E is summed over all views; give only views in transmission or only views "
+        "in reflection");
 }
 
 }  // namespace
 
 CurveSweep::CurveSweep()
     : Sweep(
-          "Memory-effect curves over any of g, albedo, optical depth, radius, index and "
-          "density, by Monte Carlo, exactly, or both; with --of another subcommand's results "
+          "Memory-effect curves over any of g, albedo, optical depth, radius, index and density, "
+          "by Monte Carlo, transport or exact solutions; with --of results of another subcommand "
           "over any of its keys") {
   base.scatterer = "hg";
   base.domain = "slab";
@@ -58,26 +59,27 @@ CurveSweep::CurveSweep()
   add_q_depths_key(keys, q_depths_);
   keys.group("Methods");
   keys.add("method", method_,
-           "Monte Carlo, exactly, of slabs by transport without chance; both: Monte Carlo and what "
-           "it is checked by; auto: of slabs transport, unless samples or seconds are given")
+           "mc: Monte Carlo; wave: exact solutions; transport: deterministic, for slabs; both: mc "
+           "and its reference, which is transport for slabs and wave for boxes; auto: transport "
+           "for slabs if neither samples nor seconds are given, otherwise mc")
       .one_of({"mc", "wave", "transport", "both", "auto"});
   add_mc_keys(keys, methods);
   add_wave_keys(keys, methods);
   add_transport_keys(keys, methods);
   add_dimension_key(keys, base);
   add_run_keys(keys, run_);
-  keys.remove("keep_state");  // of one run
+  keys.remove("keep_state");  // this key applies only to a single run
   keys.group("Sweep of another subcommand");
   keys.add("of", of_,
-           "Its name, as render: results of it over keys that vary or points name, in place of "
-           "memory-effect curves (then --help --of NAME has its keys)")
+           "Subcommand whose results are swept, such as render, over the keys in vary or points, "
+           "instead of memory-effect curves; --of NAME --help lists its keys")
       .only_of("sweeps of another subcommand");
   add_vary_key(keys, vary_);
   keys.group("Run");
   add_share_key();
 }
 
-/// All that can be refused: every point must make a scene that the method can take.
+/// Checks all input. Each point must give a scene that the methods can compute.
 void CurveSweep::check() {
   const Keys& keys = this->keys();
   take_q_depths(keys, q_depths_, base);
@@ -103,11 +105,12 @@ void CurveSweep::check() {
 }
 
 void CurveSweep::check_points() {
-  each_run([](std::size_t, const Keyed<SceneSpec>&) {});  // the values of all, before any scene
+  // Checks the values of the keys at all points before any scene is made.
+  each_run([](std::size_t, const Keyed<SceneSpec>&) {});
   Neglected neglected;
   each_run([&](std::size_t run, const Keyed<SceneSpec>& point) {
     const Scene scene = scene_of(point);
-    keys().join_reads(point.keys);
+    keys().merge_reads(point.keys);
     check_scene(scene);
     if (method(run) == "wave") note_rounding(scene);
     if (method(run) == "wave" || point_of(run) == 0)
@@ -120,7 +123,8 @@ void CurveSweep::check_points() {
   note(neglected);
 }
 
-/// Where points come from a table, says which row cannot be used.
+/// Calls `use` for each run, with the keys of its point. For points from a table, messages of
+/// InputError name the row.
 void CurveSweep::each_run(
     const std::function<void(std::size_t run, const Keyed<SceneSpec>&)>& use) const {
   for (std::size_t run = 0; run < runs(); ++run) {
@@ -192,7 +196,8 @@ SweepRun CurveSweep::open(std::size_t run) const {
           }};
 }
 
-/// Of the sweep's keys all but those that say which points and methods there are.
+/// Returns the keys and values of the sweep as text, except the keys that define points and methods
+/// and those that affect no result.
 std::string CurveSweep::identity_of_points() const {
   auto left_out = keys_of_the_work;
   left_out.insert(lists_.keys.begin(), lists_.keys.end());

@@ -9,15 +9,15 @@
 
 namespace flatspeckle::apps {
 
-/// A sweep of memory-effect curves over lists of values. Its runs are its points by each of its
-/// methods.
+/// A sweep of memory-effect curves (correlation over tilt) over lists of values of keys. There is
+/// one run for each point and each method.
 class CurveSweep : public Sweep {
  public:
   CurveSweep();
 
   SceneSpec base;
   MethodSettings methods;
-  std::vector<std::string> method_words;  ///< of mc, wave, transport
+  std::vector<std::string> method_words;  ///< methods of the runs: mc, wave or transport
 
   std::size_t runs() const override { return method_words.size() * points_.count(); }
   std::size_t run_of(std::size_t method, std::size_t point) const {
@@ -48,13 +48,14 @@ class CurveSweep : public Sweep {
 
   SweepLists lists_;
   std::string method_ = "auto";
-  std::vector<double> q_depths_;  ///< empty once the tilts are made of it
+  /// Values of the key q_depths; cleared when base.tilts is computed from it.
+  std::vector<double> q_depths_;
   mc::ReversedPaths reversed_ = mc::ReversedPaths::automatic;
   StopRule mc_stop_, wave_stop_;
 };
 
-/// Puts down what the journal keeps of a run that has ended: its curve and the range read off it,
-/// without the costs.
+/// Writes the data of a finished run for the journal of the sweep: its curve, its memory-effect
+/// range and the trace of its error. The costs are stored separately.
 void write_curve(ResultFile& file, const Scene& scene, const FieldJob& job, const RunState& state);
 
 }  // namespace flatspeckle::apps

@@ -47,11 +47,12 @@ void PointJournal::Shared::add(const std::string& text, std::uint64_t place) {
 
 std::string PointJournal::text(const Shared& shared, std::uint64_t number) const {
   if (number >= shared.places.size())
-    throw InputError("a point refers to what its file does not have");
+    throw InputError("the file is damaged: one of its points refers to a text that is missing");
   return text_of(journal_.read(shared.places[number]));
 }
 
-/// Written where it is new.
+/// Returns the number under which a shared text is stored in the journal. A new text is appended to
+/// the journal.
 std::uint64_t PointJournal::number_of(char kind, const std::string& text) {
   Shared& shared = kind == plan_kind ? plans_ : layouts_;
   if (const auto found = shared.known.find(text); found != shared.known.end()) return found->second;

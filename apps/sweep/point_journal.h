@@ -11,22 +11,25 @@
 
 namespace flatspeckle::apps {
 
-/// A finished point of a sweep: what it cost, and what was found.
+/// A finished point of a sweep: its cost and its result.
 struct FinishedPoint {
   std::string plan, started;
   double samples = 0, cpu_s = 0, wall_s = 0, relative_error = 0;
-  bool reached = true;  ///< the target error, if there was one, and keeps its invariants
+  /// True if the target error, if any, is reached and all invariants are within their limits.
+  bool reached = true;
   CollectedResult result;
 };
 
-/// Finished points of a sweep in a journal: a few hundred bytes and microseconds each. For any
-/// thread.
+/// Journal of the finished points of a sweep, or of the evaluations of a search. A point needs a
+/// few hundred bytes and a few microseconds. Thread-safe.
 class PointJournal {
  public:
-  /// Called with each point in the file: its name, and its place, which is not 0.
+  /// Function that is called for each point in the journal, with the name of the point and its
+  /// position in the file, which is never 0.
   using Found = std::function<void(const std::string& name, std::uint64_t place)>;
 
-  /// Both as Journal.
+  /// Open a journal for writing (with `head`) or for reading (with `identity`), as described at
+  /// Journal.
   PointJournal(const std::filesystem::path& path, const JournalHead& head, const std::string& whose,
                const Found& found);
   PointJournal(const std::filesystem::path& path, const std::string& identity, const Found& found);
@@ -34,16 +37,16 @@ class PointJournal {
   std::size_t size() const { return size_; }
   bool is_damaged() const { return journal_.is_damaged(); }
 
-  /// Its place. Throws IoError.
+  /// Appends a point and returns its position in the file. Throws IoError.
   std::uint64_t add(const std::string& name, const FinishedPoint& point);
-  /// Of the point at this place.
+  /// Reads the point at this position in the file.
   FinishedPoint read(std::uint64_t place) const;
-  /// Waits until the disk has it all.
+  /// Waits until all points are on the disk.
   void sync();
 
  private:
-  /// Texts that many points share, by number and back. A text that is forgotten gets another number
-  /// when it comes again.
+  /// Numbered texts that many points share and that are stored once. A text that was dropped from
+  /// the cache gets a new number when it is used again.
   struct Shared {
     std::vector<std::uint64_t> places;
     std::unordered_map<std::string, std::uint64_t> known;

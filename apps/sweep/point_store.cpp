@@ -17,7 +17,8 @@ namespace {
 constexpr const char* ending = ".points";
 constexpr const char* unfinished_ending = ".part";
 
-constexpr int bits_of_place = 48;  // of a byte in a journal, which is below 256 TB
+// bits for a position in a journal, whose size is therefore limited to 256 TB
+constexpr int bits_of_place = 48;
 constexpr std::uint64_t most_place = (std::uint64_t{1} << bits_of_place) - 1;
 
 fs::path own_journal(const std::string& folder, const SweepShare& share) {
@@ -25,15 +26,16 @@ fs::path own_journal(const std::string& folder, const SweepShare& share) {
          ("share-" + std::to_string(share.number) + "-of-" + std::to_string(share.count) + ending);
 }
 
-/// As the name of a file, which may not be too long.
+/// Returns the name of a run, shortened if it is too long for a file name.
 std::string file_name(const std::string& name) {
   constexpr std::size_t longest = 150;
   if (name.size() <= longest) return name;
   return name.substr(0, longest) + "-" + std::to_string(std::hash<std::string>{}(name));
 }
 
-/// Returns the name of the run at work whose file it is, also one in the making
-/// (core/result/atomic_file.h) and one of an earlier version (.part.h5); empty for others.
+/// Returns the name of the unfinished run whose state a file contains; empty for other files.
+/// Temporary files of such states (core/result/atomic_file.h) and files of earlier versions
+/// (.part.h5) are recognised too.
 std::string unfinished_name(const fs::path& path) {
   std::string text = path.filename().string();
   if (const auto making = text.rfind(".tmp-"); text.starts_with('.') && making != text.npos)
@@ -48,7 +50,7 @@ void make_folder(const fs::path& folder) {
   fs::create_directory(folder, failed);
   if (failed || !fs::is_directory(folder))
     throw IoError("cannot make the folder " + folder.string() + ": " +
-                  (failed ? failed.message() : "something else is there"));
+                  (failed ? failed.message() : "a file with this name exists"));
 }
 
 void remove_file(const fs::path& path) {
@@ -66,8 +68,9 @@ std::vector<fs::path> journals_in(const std::string& folder) {
     const fs::path& path = entry.path();
     if (path.extension() == ending) found.push_back(path);
     if (path.extension() == ".h5" && unfinished_name(path).empty())
-      throw InputError(folder + " holds points in files of their own, as earlier versions made " +
-                       "them: end or merge that sweep by its version, or remove the folder");
+      throw InputError(
+          folder + " contains one file per point, the format of earlier versions" +
+          ": finish or merge that sweep with the version that wrote it, or remove the folder");
   }
   std::ranges::sort(found);
   return found;
@@ -80,11 +83,11 @@ PointStore::PointStore(const Sweep& sweep, const std::vector<std::string>& folde
       folders_(folders),
       places_(sweep.runs()) {
   for (const std::string& folder : folders) {
-    const std::size_t before = strangers_;
+    const std::size_t before = foreign_files_;
     open_others(folder, {});
-    if (strangers_ > before)
-      warnings_ += "warning: " + folder + ": " + std::to_string(strangers_ - before) +
-                   " points of another sweep are left out\n";
+    if (foreign_files_ > before)
+      warnings_ += "warning: " + folder + ": " + std::to_string(foreign_files_ - before) +
+                   " points of another sweep are ignored\n";
   }
 }
 
@@ -99,8 +102,8 @@ PointStore::PointStore(const Sweep& sweep, const std::string& folder)
   const bool has_begun = sweep.share() ? std::ranges::count(there, own) > 0 : !there.empty();
   if (has_begun && !sweep.settings().resume)
     throw InputError(folder +
-                     " holds points of an earlier sweep: --resume goes on with them; remove the "
-                     "folder to begin again");
+                     " contains points of an earlier sweep: continue with --resume, or remove the "
+                     "folder to start again");
   make_folder(folder);
   journals_.push_back(std::make_unique<PointJournal>(own, JournalHead{identity_, sweep.config()},
                                                      "sweep", notes()));
@@ -117,24 +120,26 @@ void PointStore::open_others(const std::string& folder, const fs::path& own) {
       paths_.push_back(path);
       if (journals_.back()->is_damaged())
         warnings_ += "warning: " + path.string() + " is damaged; " +
-                     std::to_string(journals_.back()->size()) + " points of it are taken\n";
+                     std::to_string(journals_.back()->size()) + " of its points are used\n";
     } catch (const InputError& error) {
-      warnings_ += std::string("warning: ") + error.what() + "; it is left out\n";
+      warnings_ += std::string("warning: ") + error.what() + "; the file is ignored\n";
     }
   }
 }
 
-/// What the next journal tells.
+/// Returns the function that the next journal to be opened calls for each of its points, to record
+/// the point.
 PointJournal::Found PointStore::notes() {
   return [this](const std::string& name, std::uint64_t place) {
     if (const auto run = sweep_.find(name, finder_))
       note(*run, journals_.size(), place);
     else
-      ++strangers_;
+      ++foreign_files_;
   };
 }
 
-/// Of a run that several journals have, the first counts.
+/// Records in which journal and at which position a finished run is stored. If several journals
+/// contain the run, the first one is used.
 void PointStore::note(std::size_t run, std::size_t journal, std::uint64_t place) {
   const std::lock_guard lock(mutex_);
   if (places_[run] != 0) return;
@@ -170,7 +175,8 @@ fs::path PointStore::unfinished_file(const std::string& name) const {
   return fs::path(folders_.front()) / (file_name(name) + unfinished_ending);
 }
 
-/// What cannot be used is set aside, and the run done again.
+/// If the file with the state of the run is damaged, renames it and returns an empty state, so that
+/// the run starts again from the beginning.
 RunState PointStore::unfinished(std::size_t run, std::size_t size) const {
   const std::string name = sweep_.name(run);
   const fs::path path = unfinished_file(name);
@@ -178,12 +184,12 @@ RunState PointStore::unfinished(std::size_t run, std::size_t size) const {
     const auto kept = kept_record(path, identity_of(name), "sweep");
     return kept ? state_of(*kept, size) : RunState{};
   } catch (const InputError& error) {
-    const fs::path place = free_aside(path);
+    const fs::path place = free_backup(path);
     std::error_code failed;
     fs::rename(path, place, failed);
     if (failed) throw IoError("renaming " + path.string() + " failed: " + failed.message());
-    // In one piece: other threads may have something to say as well.
-    std::cerr << std::string("warning: ") + error.what() + "; set aside as " +
+    // Prints the line in one piece, because other threads may print at the same time.
+    std::cerr << std::string("warning: ") + error.what() + "; renamed to " +
                      place.filename().string() + '\n';
     return {};
   }
@@ -209,7 +215,8 @@ void PointStore::remove() {
   }
 }
 
-/// Those of this sweep's runs, as of a process that was killed.
+/// Removes the files with states of unfinished runs of this sweep that a killed process has left in
+/// the folder.
 void PointStore::remove_unfinished(const fs::path& folder) const {
   std::multimap<std::string, fs::path> there;
   for (const auto& entry : fs::directory_iterator(folder))

@@ -13,37 +13,39 @@
 
 namespace flatspeckle::apps {
 
-/// Journals of points in these folders, by any share of any sweep. Throws InputError for a folder
-/// in which points have files of their own, as sweeps of curves once had them.
+/// Returns the paths of all journals in a folder, of any sweep and shard. Throws InputError if the
+/// folder contains one file per point, the format of earlier versions.
 std::vector<std::filesystem::path> journals_in(const std::string& folder);
 
-/// What folders hold of a sweep: finished runs of all its shares, and of this share those at work.
-/// For any thread.
+/// Stored runs of a sweep: the finished runs of all its shards, and the unfinished runs of the
+/// shard that this process computes. Thread-safe.
 class PointStore {
  public:
-  /// What is there, to read. Journals of other sweeps are left out.
+  /// Opens the stored runs in these folders for reading. Journals of other sweeps are ignored.
   PointStore(const Sweep& sweep, const std::vector<std::string>& folders);
-  /// The same, and to go on with as this share. Throws InputError where its own journal is of
-  /// another sweep, or of an earlier one that is not to be resumed.
+  /// Opens the stored runs in the folder, to add runs of the shard that sweep.share() gives. Throws
+  /// InputError if the journal of this shard belongs to another sweep, or if it exists and --resume
+  /// is not given.
   PointStore(const Sweep& sweep, const std::string& folder);
 
   bool has(std::size_t run) const;
-  /// Of the sweep's runs.
+  /// Returns the number of finished runs of the sweep.
   std::size_t finished() const { return finished_; }
-  /// Each that is finished, in their order.
+  /// Calls `use` for each finished run, in the order of the runs.
   void for_each(const std::function<void(std::size_t run, const FinishedPoint&)>& use) const;
-  /// What was left out, a line each.
+  /// Returns warnings about stored data that is ignored, one per line.
   const std::string& warnings() const { return warnings_; }
 
   void add(std::size_t run, const FinishedPoint& finished);
-  /// Of a run at work; `size` sums. Empty where there is none.
+  /// Returns the saved state of an unfinished run; an empty state if none is saved. size: number of
+  /// sums of a batch of the run.
   RunState unfinished(std::size_t run, std::size_t size) const;
   void save_unfinished(std::size_t run, const RunState& state) const;
   void sync() { journals_.front()->sync(); }
-  /// Throws IoError where the journals are gone from the folders.
+  /// Throws IoError if one of the journals has been removed from its folder.
   void require_in_place() const;
 
-  /// All of this sweep, and each folder if nothing else is in it.
+  /// Removes all files of this sweep from its folders, and each folder that is then empty.
   void remove();
 
  private:
@@ -58,10 +60,12 @@ class PointStore {
   PointFinder finder_;
   std::string identity_, warnings_;
   std::vector<std::string> folders_;
-  std::vector<std::unique_ptr<PointJournal>> journals_;  ///< this share's first
+  std::vector<std::unique_ptr<PointJournal>> journals_;  ///< the first one is that of this shard
   std::vector<std::filesystem::path> paths_;
-  std::vector<std::uint64_t> places_;  ///< of the runs, with the number of the journal; 0: none
-  std::size_t finished_ = 0, strangers_ = 0;
+  /// For each run, its position in a journal in the lower bits, and the index of that journal in
+  /// the upper bits; 0 if the run is not finished.
+  std::vector<std::uint64_t> places_;
+  std::size_t finished_ = 0, foreign_files_ = 0;
   mutable std::mutex mutex_;
   Stopwatch clock_;
   std::atomic<double> synced_ = 0;

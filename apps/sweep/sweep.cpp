@@ -24,11 +24,12 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// Runs of a sweep as a pool takes them: each goes on from where it was cut off, if it was, and
-/// ends in the store's journal. Those that are finished need no work.
+/// The runs of a sweep as a RunList for a pool. Each run continues from its saved state, if any;
+/// its result is added to the PointStore. Runs that are already finished are skipped.
 class SweepWork {
  public:
-  /// The runs of this share. store: nullptr of ranks that only compute.
+  /// Takes the runs of the shard that sweep.share() gives. store: nullptr for MPI processes that
+  /// only compute batches.
   SweepWork(const Sweep& sweep, PointStore* store)
       : sweep_(sweep), store_(store), runs_(sweep.runs(), sweep.share().value_or(SweepShare{})) {}
 
@@ -39,7 +40,7 @@ class SweepWork {
             .checkpoint = [this](std::size_t number) { save(runs_[number]); },
             .job =
                 [this](std::size_t number) {
-                  // what is planned may look at what it is planned of
+                  // the job owns the run, to which its functions may refer
                   const auto run = std::make_shared<const SweepRun>(sweep_.open(runs_[number]));
                   BatchJob job = run->batches;
                   job.run = [run](std::uint64_t batch, std::span<Complex> sums) {
@@ -49,7 +50,7 @@ class SweepWork {
                 }};
   }
 
-  /// After the pool has stopped.
+  /// Saves the unfinished runs after the pool has stopped.
   void save_unfinished() {
     for (const auto& [number, open] : open_) save(number);
   }
@@ -73,7 +74,8 @@ class SweepWork {
   }
 
   void ended(std::size_t number) {
-    constexpr double unknown = 1e300;  // files hold no infinity
+    // stored for an unknown error, because result files cannot contain infinity
+    constexpr double unknown = 1e300;
     const auto& [run, state, started] = find(number);
     FinishedPoint point{.plan = run.plan,
                         .started = started,
@@ -121,13 +123,14 @@ std::string count_text(const Sweep& sweep, const PointStore& store) {
          std::to_string(sweep.points().count()) + " points";
 }
 
-/// How the whole was made. Converged: all runs that are there.
+/// Returns the provenance of the result of a sweep. Its member `converged` is true if all finished
+/// runs have converged.
 Provenance made_of(const Sweep& sweep, const PointStore& store, double wall_s) {
   Provenance made = sweep.session().provenance();
   made.identity = sweep.identity();
   made.wall_s = wall_s;
   made.converged = true;
-  std::set<std::string> plans;  // each once, if there are not too many
+  std::set<std::string> plans;  // the different plans of the runs, at most 16 of them
   bool more = false;
   store.for_each([&](std::size_t, const FinishedPoint& point) {
     made.converged = made.converged && point.reached;
@@ -139,7 +142,7 @@ Provenance made_of(const Sweep& sweep, const PointStore& store, double wall_s) {
     plans.erase(std::prev(plans.end()));
     more = true;
   });
-  made.plan = joined({plans.begin(), plans.end()}, "\n") + (more ? "\nand others" : "");
+  made.plan = join_texts({plans.begin(), plans.end()}, "\n") + (more ? "\nand others" : "");
   return made;
 }
 
@@ -154,22 +157,24 @@ int write_result(const Sweep& sweep, const PointStore& store, double wall_s) {
   std::cout << count_text(sweep, store) << '\n';
   Session::commit(file, made);
   if (!all_reached)
-    std::cout << "not every point has reached its target error and keeps its invariants\n";
+    std::cout << "some points have not reached their target error or violate invariants\n";
   return made.converged ? ExitStatus::done : ExitStatus::error_not_reached;
 }
 
-/// Writes the result and removes what it was made of, or says how to go on.
+/// Ends a sweep: writes the result of the finished points, unless this is one shard or the sweep
+/// was interrupted. Removes the stored points if all are finished; otherwise prints how to
+/// continue. Returns the exit status.
 int end_sweep(const Sweep& sweep, PointStore& store, const PoolEnd& end) {
   const std::string place = shards_of(sweep.settings().out);
   const bool whole = is_whole(sweep, store);
   const bool interrupted = end.reason == StopReason::interrupted;
   if (interrupted) store.require_in_place();
   if (sweep.share() || interrupted) {
-    std::cout << (interrupted ? "interrupted; " : "") << place << " holds "
+    std::cout << (interrupted ? "interrupted; " : "") << place << " contains "
               << count_text(sweep, store)
               << (whole                               ? "; `flatspeckle merge` makes the result\n"
-                  : end.reason == StopReason::samples ? "; this share is done\n"
-                                                      : "; --resume goes on\n");
+                  : end.reason == StopReason::samples ? "; this shard is finished\n"
+                                                      : "; continue with --resume\n");
     if (interrupted) return ExitStatus::interrupted_resumable;
     return end.reason == StopReason::samples ? ExitStatus::done : ExitStatus::error_not_reached;
   }
@@ -178,11 +183,12 @@ int end_sweep(const Sweep& sweep, PointStore& store, const PoolEnd& end) {
   if (whole)
     store.remove();
   else
-    std::cout << place << " holds " << count_text(sweep, store) << "; --resume goes on\n";
+    std::cout << place << " contains " << count_text(sweep, store) << "; continue with --resume\n";
   return status;
 }
 
-/// Of this process alone, or of rank 0.
+/// Runs the sweep in a single process, or as rank 0 of several MPI processes. Returns the exit
+/// status.
 int lead(const Sweep& sweep, RankServer* server) {
   const std::string& out = sweep.settings().out;
   const OutputLock lock(sweep.share() ? out + ".shard-" + std::to_string(sweep.share()->number)
@@ -200,7 +206,7 @@ int lead(const Sweep& sweep, RankServer* server) {
     work.save_unfinished();
     store.sync();
     return end_sweep(sweep, store, end);
-  } catch (const InputError&) {  // by a point that cannot be
+  } catch (const InputError&) {  // thrown for an invalid point
     if (store.finished() == 0) store.remove();
     throw;
   }
@@ -219,19 +225,20 @@ int lead_others(const Sweep& sweep) {
   }
 }
 
-/// With rank 0, and for it.
+/// Computes batches that rank 0 sends, as one of several MPI processes.
 void follow(const Sweep& sweep) {
   SweepWork work(sweep, nullptr);
   work_for_rank_0(work.list(), sweep.session().threads());
 }
 
-/// A sweep and what folders hold of it.
+/// A sweep and the points of it that are stored in the folders.
 struct Found {
   std::unique_ptr<Sweep> sweep;
   std::unique_ptr<PointStore> store;
 };
 
-/// Every configuration that points in the folders were made with.
+/// Returns the different scene files (as texts) of the sweeps whose points are stored in these
+/// folders.
 std::set<std::string> configs_in(const std::vector<std::string>& folders) {
   std::set<std::string> configs;
   for (const std::string& folder : folders) {
@@ -241,7 +248,7 @@ std::set<std::string> configs_in(const std::vector<std::string>& folders) {
       for (const std::string& config : Journal::configs_in(path)) configs.insert(config);
   }
   if (configs.empty())
-    throw InputError("shards", folders.front(), "holds no finished points of a sweep");
+    throw InputError("shards", folders.front(), "must contain finished points of a sweep");
   return configs;
 }
 
@@ -250,8 +257,8 @@ void require_all(const Sweep& sweep, const PointStore& store) {
   std::size_t first = 0;
   while (store.has(first)) ++first;
   throw InputError(std::to_string(sweep.runs() - store.finished()) + " of " +
-                   std::to_string(sweep.runs()) + " points are missing, " + sweep.name(first) +
-                   " among them; --partial takes what there is");
+                   std::to_string(sweep.runs()) + " points are missing, such as " +
+                   sweep.name(first) + "; --partial accepts missing points");
 }
 
 }  // namespace
@@ -262,7 +269,7 @@ std::string shards_of(const std::string& out) {
 
 int Sweep::run() {
   if (!read()) return ExitStatus::done;
-  if (!share_) join_ranks();
+  if (!share_) initialize_ranks();
   catch_interrupts();
   if (ranks().size == 1) return lead(*this, nullptr);
   int status = ExitStatus::done;
@@ -278,7 +285,8 @@ int merge_sweep(const std::function<std::unique_ptr<Sweep>(const std::string& co
                 const std::vector<std::string>& folders, const std::string& out, bool partial,
                 const std::string& command_line) {
   const Stopwatch clock;
-  // of several the one that most points are of: a smaller grid may have grown
+  // If the folders contain several scene files, for example because a grid was extended, the one
+  // with the most finished points is used.
   Found most;
   for (const std::string& config : configs_in(folders)) {
     Found found{make(config), nullptr};
@@ -289,10 +297,11 @@ int merge_sweep(const std::function<std::unique_ptr<Sweep>(const std::string& co
   }
   std::cerr << most.store->warnings();
   if (most.store->finished() == 0)
-    throw InputError("shards", folders.front(), "holds no finished points of a sweep");
+    throw InputError("shards", folders.front(), "must contain finished points of a sweep");
   if (!partial) require_all(*most.sweep, *most.store);
   if (most.sweep->finished_points(*most.store) == 0)
-    throw InputError("shards", folders.front(), "no point is finished by every method");
+    throw InputError("shards", folders.front(),
+                     "must have a point finished by every method: resume the sweep");
   return write_result(*most.sweep, *most.store, clock.seconds());
 }
 
@@ -314,7 +323,8 @@ std::optional<std::size_t> PointFinder::find(const std::string& name) const {
   return found == rows_.end() ? std::nullopt : std::optional(found->second);
 }
 
-/// What stands between the names of an axis and the next is its value.
+/// Returns the index of the point with this name on a grid. In the name, the value of each axis is
+/// followed by the name of the next axis.
 std::optional<std::size_t> PointFinder::on_grid(const std::string& name) const {
   std::size_t point = 0, begin = 0;
   for (std::size_t i = 0; i < points_.axes.size(); ++i) {
@@ -364,7 +374,7 @@ std::size_t ScatteredRuns::operator[](std::size_t number) const {
   return (share_.number + number * share_.count) * stride_ % runs_;
 }
 
-/// False if there is nothing to run (--print-config).
+/// Reads the keys of the sweep. Returns false if nothing is to be run (--print-config).
 bool Sweep::read() {
   session_.emplace(command_.text(), keys(), run_, command_.only_prints(), Session::Out::shared);
   take_points();
@@ -385,7 +395,8 @@ void Sweep::take_points() {
 void Sweep::add_share_key() {
   keys()
       .add("shard", share_text_,
-           "i/n: work on every nth point only, from number i = 0 .. n - 1 on; then merge")
+           "i/n, with i from 0 to n - 1: compute only every nth point, starting with point i; "
+           "`flatspeckle merge` combines the shards")
       .no_file();
 }
 

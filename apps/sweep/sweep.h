@@ -16,13 +16,14 @@
 
 namespace flatspeckle::apps {
 
-/// The numbers of points by their names. Of ranges it holds nothing.
+/// Finds the index of a point of a sweep from its name. The values of axes that are ranges are not
+/// stored in memory.
 class PointFinder {
  public:
-  /// The points must live as long.
+  /// The points must outlive this object.
   explicit PointFinder(const SweepPoints& points);
 
-  /// Nothing of a name that is no point's.
+  /// Returns the index of the point with this name; nullopt if there is none.
   std::optional<std::size_t> find(const std::string& name) const;
 
  private:
@@ -32,22 +33,25 @@ class PointFinder {
   std::optional<std::size_t> on_axis(std::size_t axis, const std::string& value) const;
 
   const SweepPoints& points_;
-  Numbers rows_;                 ///< of a list, by their names
-  std::vector<Numbers> values_;  ///< of each axis of a grid; none of a range
+  /// For points that are the rows of a list: index of each row, by its name.
+  Numbers rows_;
+  /// For points on a grid: index of each value of each axis, by its text; empty for an axis that is
+  /// a range.
+  std::vector<Numbers> values_;
 };
 
 class PointStore;
 
-/// Part `number` of `count` parts of a sweep that run apart.
+/// Part of a sweep: shard `number` of `count` shards, which are run separately.
 struct SweepShare {
   std::size_t number = 0, count = 1;
 };
 
-/// Of i/n. Throws InputError.
+/// Parses a shard written as i/n. Throws InputError.
 SweepShare share_of(const std::string& text);
 
-/// The share's runs of so many, scattered over all, so that what has been done at any time says
-/// something about what is left.
+/// The runs of a shard in scattered order. The runs finished at any time are then typical, and the
+/// remaining time can be predicted from their times.
 class ScatteredRuns {
  public:
   explicit ScatteredRuns(std::size_t runs, const SweepShare& share = {});
@@ -60,58 +64,64 @@ class ScatteredRuns {
   SweepShare share_;
 };
 
-/// Keys that change no number of any run of a sweep.
+/// Names of the keys that do not affect the results of the runs of a sweep.
 inline const std::set<std::string> keys_of_the_work{"threads", "resume", "seconds"};
 
-/// One run of a sweep, which a pool works on.
+/// One run of a sweep, for the pool (run_pool()) that computes it.
 struct SweepRun {
-  std::string plan;  ///< how the numbers are found
+  std::string plan;  ///< description of the method, for the result file
   BatchJob batches;
   StopRule stop;
-  /// The datasets of its result, all but what it cost.
+  /// Writes the result of the run, except its costs.
   std::function<void(ResultFile&, const RunState&)> write;
 };
 
-/// A sweep as it was asked for: runs that depend on the values of their points alone, and the one
-/// result that they make. Kinds of sweeps say what a run is and how results stand together.
+/// A sweep: runs that differ in the values of some keys (points of the sweep), and one combined
+/// result. Derived classes define the runs and how their results are combined.
 class Sweep : public Call {
  public:
   Subcommand& command() override { return command_; }
-  /// Runs what is not yet there, by all processes that a launcher has started together, and ends in
-  /// the result, or says how to go on. Throws InputError for whatever is wrong with the keys.
+  /// Computes the unfinished runs, on all processes that an MPI launcher has started. Then writes
+  /// the result or, if runs are missing, prints how to continue. Throws InputError for invalid
+  /// keys.
   int run() override;
-  /// From a resolved configuration, for a result that is made otherwise: by this command line.
+  /// Reads the keys from a scene file, given as text, instead of the command line. command_line:
+  /// the command that makes the result, for its provenance (merge).
   void parse_config(const std::string& config, const std::string& command_line = "");
 
   const Session& session() const { return *session_; }
   const RunSettings& settings() const { return run_; }
   const SweepPoints& points() const { return points_; }
   const std::optional<SweepShare>& share() const { return share_; }
-  /// Where the result goes, if not where the scene says.
+  /// Sets the path of the result file; replaces the path given in the scene.
   void set_out(const std::string& out) { run_.out = out; }
-  /// A scene file that makes the same sweep.
+  /// Returns a scene file that makes the same sweep.
   std::string config() const { return command_.keys().config(keys_of_the_work); }
 
-  /// One for each point, or several.
+  /// Returns the number of runs: one or several for each point.
   virtual std::size_t runs() const { return points_.count(); }
-  /// The name of a run, which with identity_of_points() is all that its numbers depend on.
+  /// Returns the name of a run. The results of the run depend only on this name and
+  /// identity_of_points().
   virtual std::string name(std::size_t run) const { return points_.name(run); }
-  /// The run of this name. finder: of the sweep's points.
+  /// Returns the index of the run with this name; nullopt if there is none. finder: PointFinder for
+  /// the points of this sweep.
   virtual std::optional<std::size_t> find(const std::string& name,
                                           const PointFinder& finder) const {
     return finder.find(name);
   }
-  /// Throws InputError.
+  /// Returns the run of this index, ready to be computed. Throws InputError.
   virtual SweepRun open(std::size_t run) const = 0;
 
-  /// What the numbers of all runs depend on but for their names: equal texts, equal numbers.
+  /// Returns a text of all inputs of the runs except the values that their names contain. Runs with
+  /// equal texts and equal names have equal results.
   virtual std::string identity_of_points() const = 0;
-  /// Of the sweep as a whole.
+  /// Returns a text of all inputs of the sweep, including its points. Sweeps with equal texts have
+  /// equal results.
   virtual std::string identity() const = 0;
 
-  /// How many points have all their runs.
+  /// Returns the number of points whose runs are all finished.
   virtual std::size_t finished_points(const PointStore& store) const;
-  /// The result of the finished points, of which there is one at least.
+  /// Writes the combined result of all finished points; at least one must be finished.
   virtual void write(ResultFile& file, const PointStore& store) const = 0;
 
  protected:
@@ -119,7 +129,7 @@ class Sweep : public Call {
   Keys& keys() { return command_.keys(); }
   const Keys& keys() const { return command_.keys(); }
   void add_share_key();
-  /// Makes the points of the keys, and refuses all that can be refused. Throws InputError.
+  /// Makes the points of the sweep from the keys, and checks all input. Throws InputError.
   virtual void check() = 0;
 
   std::string of_;
@@ -137,13 +147,15 @@ class Sweep : public Call {
   std::optional<Session> session_;
 };
 
-/// Puts together what folders hold of a sweep. make: the kind of sweep that a configuration is of.
-/// partial: also where points are missing. Returns the exit status. Throws InputError.
+/// Combines the points of a sweep that are stored in these folders into one result, and returns the
+/// exit status. make: function that makes the sweep of a scene file, given as text. partial:
+/// whether a result without all points is accepted. Throws InputError.
 int merge_sweep(const std::function<std::unique_ptr<Sweep>(const std::string& config)>& make,
                 const std::vector<std::string>& folders, const std::string& out, bool partial,
                 const std::string& command_line);
 
-/// The folder beside a sweep's result in which its points gather until all are there.
+/// Returns the folder next to the result file `out` in which the points of a sweep are stored until
+/// all are finished.
 std::string shards_of(const std::string& out);
 
 }  // namespace flatspeckle::apps

@@ -21,7 +21,7 @@ constexpr std::size_t most_points = 1'000'000;
   throw InputError("vary", text, accepted);
 }
 
-/// One text for one number: points are known by their texts.
+/// Returns the numbers as texts, by which points are identified; equal numbers have equal texts.
 std::vector<std::string> texts_of(std::span<const double> values) {
   std::vector<std::string> texts;
   for (double value : values) texts.push_back(number_text(value));
@@ -38,13 +38,13 @@ AxisValues values_of(const Key& key, const std::string& values) {
   std::vector<std::string> texts;
   std::istringstream words(values);
   for (std::string word; std::getline(words, word, ',');) texts.push_back(word);
-  if (texts.empty()) refuse(key.name() + "=", "must have a value or more");
+  if (texts.empty()) refuse(key.name() + "=", "must have at least one value");
   return texts;
 }
 
-/// Throws InputError where there are more.
+/// Throws InputError if there are more than `most` points.
 void require_at_most(std::size_t most, const SweepPoints& points) {
-  double count = 1;  // which may be beyond what a whole number holds
+  double count = 1;  // floating point, because the product may exceed the range of integers
   for (const SweepAxis& axis : points.axes)
     count = points.is_list ? static_cast<double>(axis.values.size())
                            : count * static_cast<double>(axis.values.size());
@@ -52,7 +52,7 @@ void require_at_most(std::size_t most, const SweepPoints& points) {
     throw InputError("points of the sweep", count, "must be at most " + std::to_string(most));
 }
 
-/// Throws InputError for a point that comes twice.
+/// Throws InputError if two points are equal.
 void refuse_twins(const SweepPoints& points) {
   std::set<std::string> seen;
   for (std::size_t point = 0; point < points.count(); ++point)
@@ -60,7 +60,8 @@ void refuse_twins(const SweepPoints& points) {
       throw InputError("the point " + points.name(point) + " is given twice");
 }
 
-/// The same for a value of an axis: in a range only neighbours can be equal.
+/// Throws InputError if two values of an axis are equal. In a range, only successive values can be
+/// equal.
 void refuse_twins(const SweepAxis& axis) {
   const NumberRange* const range = axis.values.range();
   std::set<std::string> seen;
@@ -77,7 +78,8 @@ SweepPoints grid_of(const VaryValues& values, const Keys& of) {
     points.axes.push_back(varied_axis(of, text));
     const SweepAxis& axis = points.axes.back();
     for (std::size_t i = 0; i + 1 < points.axes.size(); ++i)
-      if (points.axes[i].key == axis.key) refuse(text, axis.key + " is varied already");
+      if (points.axes[i].key == axis.key)
+        refuse(text, axis.key + " is varied twice; leave one out");
   }
   require_at_most(most_points, points);
   return points;
@@ -92,9 +94,11 @@ SweepPoints list_of(const std::string& own_key, const std::string& path, const K
   points.is_list = true;
   for (const std::string& name : table.names()) {
     if (of.find(key_of({name, {}})) == nullptr)
-      throw InputError(own_key, path,
-                       "column " + name + ": no key of that subcommand" + did_you_mean(of, name));
-    if (!varied_key(of, name, name).is_number()) refuse(name, "has no numbers, as a table has");
+      throw InputError(
+          own_key, path,
+          "column " + name + ": not a key of that subcommand" + did_you_mean(of, name));
+    if (!varied_key(of, name, name).is_number())
+      refuse(name, "must be a key with numbers; vary other keys with --vary");
     points.axes.push_back({name, texts_of(table.column(name))});
   }
   require_at_most(most_points, points);
@@ -102,33 +106,35 @@ SweepPoints list_of(const std::string& own_key, const std::string& path, const K
   return points;
 }
 
-/// What follows the key's name: a number from 0 on, "all", or nothing.
+/// Returns the part of an axis's key after the dot: the number of a component (from 0), "all", or
+/// empty if there is no dot.
 std::string component_of(const SweepAxis& axis) {
   const auto dot = axis.key.find('.');
   return dot == std::string::npos ? "" : axis.key.substr(dot + 1);
 }
 
-/// All the numbers of a key, of which the axis sets one or all.
+/// Returns the list of numbers of the key of an axis, with one or all of them set to `value`.
 std::vector<std::string> with_component(const Keys& keys, const SweepAxis& axis,
                                         const std::string& value) {
   std::vector<std::string> texts = keys.find(key_of(axis))->value();
   const std::string component = component_of(axis);
   if (component.empty()) {
     if (texts.size() > 1)
-      refuse(axis.key, "has " + std::to_string(texts.size()) + " values: vary " + axis.key +
-                           ".0, the first, another, or " + axis.key + ".all");
+      refuse(axis.key, "has " + std::to_string(texts.size()) +
+                           " values: vary one, such as the first by " + axis.key +
+                           ".0, or all by " + axis.key + ".all");
     return {value};
   }
   if (component == "all") return std::vector(texts.size(), value);
   const auto number = read_whole_number(component);
   if (!number || *number < 0 || static_cast<std::size_t>(*number) >= texts.size())
-    refuse(axis.key, "must be .all or a number below the " + std::to_string(texts.size()) +
-                         " values that the key is given");
+    refuse(axis.key, "must be .all or a number below " + std::to_string(texts.size()) +
+                         ", the number of given values");
   texts[static_cast<std::size_t>(*number)] = value;
   return texts;
 }
 
-/// Axes that were given.
+/// Returns the axes of the sweep: one for each key that has a list of values.
 std::vector<SweepAxis> given_axes(const Keys& keys, const SweepLists& lists) {
   std::vector<SweepAxis> axes;
   for (const std::string& key : lists.keys) {
@@ -143,7 +149,7 @@ std::vector<SweepAxis> given_axes(const Keys& keys, const SweepLists& lists) {
   return axes;
 }
 
-/// A column of the table as an axis: one value for each point.
+/// Returns a column of the table as an axis, with one value per point.
 SweepAxis column_axis(const Table& table, const std::string& key) {
   if (key != "index" || !table.has("index_imaginary")) return {key, texts_of(table.column(key))};
   const auto real = table.column("index"), imaginary = table.column("index_imaginary");
@@ -159,7 +165,7 @@ void check_columns(const Table& table, const SweepLists& lists) {
     if (std::find(lists.keys.begin(), lists.keys.end(), name) == lists.keys.end())
       throw InputError(
           "points", lists.points,
-          "column " + name + ": must be one of index_imaginary " + joined(lists.keys, " "));
+          "column " + name + ": must be one of index_imaginary " + join_texts(lists.keys, " "));
   }
 }
 
@@ -188,10 +194,11 @@ SweepPoints listed(const Keys& keys, const SweepLists& lists) {
 
 const Key& varied_key(const Keys& of, const std::string& name, const std::string& text) {
   const Key* const key = of.find(key_of({name, {}}));
-  if (key == nullptr) refuse(text, name + " is no key of that subcommand" + did_you_mean(of, name));
+  if (key == nullptr)
+    refuse(text, name + " is not a key of that subcommand" + did_you_mean(of, name));
   if (key->is_effort() || !key->is_in_files())
-    refuse(text, name + " says how to run, not what, and cannot be swept");
-  if (key->is_file()) refuse(text, name + " names a file, and cannot be swept");
+    refuse(text, name + " does not change the result and cannot be swept");
+  if (key->is_file()) refuse(text, name + " names a file and cannot be swept");
   return *key;
 }
 
@@ -207,24 +214,26 @@ SweepAxis varied_axis(const Keys& of, const std::string& text) {
 
 void add_vary_key(Keys& keys, VaryValues& values) {
   keys.add("vary", values.vary,
-           "What to sweep, all combinations: key=1,2,3 or key=first:last:count or "
-           "key=first:last:count:log; key.0 is the first value of a key of several, key.all all")
+           "Keys to sweep, in all combinations: key=1,2,3 or key=first:last:count or "
+           "key=first:last:count:log; key.0 varies only the first value of a key with several "
+           "values, key.all all of them")
       .only_of("sweeps of another subcommand, and of plan in fit");
 }
 
 void add_keys(Keys& keys, VaryValues& values) {
   add_vary_key(keys, values);
-  const bool is_taken = keys.find("points") != nullptr;  // by the subcommand that is swept
+  // true if the swept subcommand has a key `points`
+  const bool is_taken = keys.find("points") != nullptr;
   keys.add(is_taken ? "points_table" : "points", values.points,
-           "CSV with columns named by keys: a list of points instead");
+           "CSV file with columns named by keys: each row is a point, instead of all combinations");
 }
 
 SweepPoints varied_points(const Keys& keys, const VaryValues& values, const Keys& of) {
   const bool is_list = !keys.read(values.points).empty(), is_grid = !keys.read(values.vary).empty();
   if (is_list == is_grid)
-    throw InputError(is_list ? "vary, " + keys.name(values.points) + ": give one"
-                             : "vary is not given: key=values to sweep, or " +
-                                   keys.name(values.points) + ", a table");
+    throw InputError(is_list ? "vary, " + keys.name(values.points) + ": give only one of them"
+                             : "vary is not given: give key=values, or " +
+                                   keys.name(values.points) + ", a table of points");
   return is_list ? list_of(keys.name(values.points), values.points, of) : grid_of(values, of);
 }
 
@@ -278,11 +287,11 @@ std::string SweepPoints::name(std::size_t point) const {
   std::vector<std::string> parts;
   for (std::size_t i = 0; i < axes.size(); ++i)
     parts.push_back(axes[i].key + '=' + value(i, point));
-  return joined(parts, "_");
+  return join_texts(parts, "_");
 }
 
 void add_sweep_keys(Keys& keys, SweepLists& lists) {
-  keys.group("Swept: lists of values");
+  keys.group("Swept keys: lists of values");
   const auto rows = keys.rows();
   for (const Key& row : rows) {
     const bool is_there = std::count(lists.keys.begin(), lists.keys.end(), row.name()) > 0;
@@ -295,8 +304,8 @@ void add_sweep_keys(Keys& keys, SweepLists& lists) {
       keys.add(row.name(), lists.texts[row.name()], row.help());
   }
   keys.add("points", lists.points,
-           "CSV with columns among these keys (and index_imaginary): a list of points in place of "
-           "all combinations");
+           "CSV file with columns among these keys (and index_imaginary): a list of points instead "
+           "of all combinations");
 }
 
 SweepPoints sweep_points(const Keys& keys, const SweepLists& lists) {

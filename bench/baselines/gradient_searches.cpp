@@ -7,8 +7,8 @@
 
 namespace flatspeckle::bench {
 
-Searched by_adam(const GradientObjective& objective, const SearchLimits& limits,
-                 std::vector<double> coefficients, double rate) {
+SearchResult by_adam(const GradientObjective& objective, const SearchLimits& limits,
+                     std::vector<double> coefficients, double rate) {
   constexpr double first = 0.9, second = 0.999, least = 1e-12;
   const std::size_t count = coefficients.size();
   std::vector<double> mean(count), square(count);
@@ -33,15 +33,15 @@ Searched by_adam(const GradientObjective& objective, const SearchLimits& limits,
 
 namespace {
 
-struct Called {
+struct CountedObjective {
   const GradientObjective& objective;
   long traces = 0;
 };
 
-/// Lost rays miss by far, but by a number.
+/// Returns the loss to minimise; a large finite number if a ray is lost.
 double loss_of(unsigned count, const double* at, double* gradient, void* data) {
   constexpr double lost = 1e6;
-  Called& called = *static_cast<Called*>(data);
+  CountedObjective& called = *static_cast<CountedObjective*>(data);
   const auto residuals = called.objective.residuals({at, count});
   ++called.traces;
   if (gradient) {
@@ -54,9 +54,9 @@ double loss_of(unsigned count, const double* at, double* gradient, void* data) {
 
 }  // namespace
 
-Searched by_lbfgs(const GradientObjective& objective, const SearchLimits& limits,
-                  std::vector<double> coefficients) {
-  Called called{objective};
+SearchResult by_lbfgs(const GradientObjective& objective, const SearchLimits& limits,
+                      std::vector<double> coefficients) {
+  CountedObjective called{objective};
   const auto count = static_cast<unsigned>(coefficients.size());
   const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> search(
       nlopt_create(NLOPT_LD_LBFGS, count), nlopt_destroy);
@@ -66,7 +66,8 @@ Searched by_lbfgs(const GradientObjective& objective, const SearchLimits& limits
   nlopt_set_stopval(search.get(), limits.enough);
   nlopt_set_maxeval(search.get(), static_cast<int>(limits.most_traces / 2));
   double loss = HUGE_VAL;
-  nlopt_optimize(search.get(), coefficients.data(), &loss);  // whatever ends it, the best is known
+  nlopt_optimize(search.get(), coefficients.data(),
+                 &loss);  // the best point so far is kept, whatever the reason for stopping
   return {std::move(coefficients), loss, called.traces};
 }
 

@@ -6,28 +6,28 @@ namespace flatspeckle::bench {
 
 using GradientObjective = grin::design::Objective;
 
-/// Where a search ended, and how often each ray was traced for it, forward or backward.
-struct Searched {
+/// Result of a search. `traces` counts how often each ray was traced, forward or backward.
+struct SearchResult {
   std::vector<double> coefficients;
   double loss;
   long traces;
 };
 
-/// When a search ends, and the bounds that it keeps to.
+/// Stopping criteria of a search, and the bounds of the coefficients.
 struct SearchLimits {
   grin::design::Bounds bounds;
-  double enough;  ///< loss
+  double enough;  ///< loss at which the search stops
   long most_traces;
 };
 
-// Searches by the gradient of the loss alone, to compare least squares with.
+// Baselines for the least-squares design: searches that use only the gradient of the loss.
 
-/// Steps of Adam (Kingma and Ba 2015), by which a coefficient changes by about `rate`.
-Searched by_adam(const GradientObjective& objective, const SearchLimits& limits,
-                 std::vector<double> coefficients, double rate);
+/// Minimises by Adam (Kingma and Ba 2015). Each step changes a coefficient by about `rate`.
+SearchResult by_adam(const GradientObjective& objective, const SearchLimits& limits,
+                     std::vector<double> coefficients, double rate);
 
-/// L-BFGS (Nocedal 1980), by NLopt.
-Searched by_lbfgs(const GradientObjective& objective, const SearchLimits& limits,
-                  std::vector<double> coefficients);
+/// Minimises by L-BFGS (Nocedal 1980), as implemented in NLopt.
+SearchResult by_lbfgs(const GradientObjective& objective, const SearchLimits& limits,
+                      std::vector<double> coefficients);
 
 }  // namespace flatspeckle::bench

@@ -36,34 +36,36 @@ std::uint32_t GatherGrid::bucket(double i, double j, double k) const {
 
 std::span<const std::uint32_t> GatherGrid::buckets_around(
     const Vec3& x, std::array<std::uint32_t, 8>& buckets) const {
-  const Vec3 low = (x / (2 * radius_)).array() - 0.5;  // cells are as wide as the sphere
+  const Vec3 low = (x / (2 * radius_)).array() - 0.5;  // cells are as wide as the gather sphere
   const Vec3 cell = low.array().floor();
   int count = 0;
   for (int corner = 0; corner < 8; ++corner)
     buckets[count++] =
         bucket(cell.x() + (corner & 1), cell.y() + (corner >> 1 & 1), cell.z() + (corner >> 2));
   std::sort(buckets.begin(), buckets.end());
-  return {buckets.begin(), std::unique(buckets.begin(), buckets.end())};  // cells may share one
+  return {buckets.begin(),
+          std::unique(buckets.begin(), buckets.end())};  // cells may share a bucket
 }
 
 namespace {
 
-/// One map: sensor rays and as many light paths.
+/// Estimates the picture from one photon map, with equal numbers of sensor rays and light paths.
 class PhotonMap {
  public:
   PhotonMap(const Transport& transport, const Space& space, double radius, RandomStream& random,
             Film& film)
       : transport_(transport), space_(space), radius_(radius), random_(random), film_(film) {}
 
-  /// Sums over paths: their mean is the picture.
+  /// Adds the sums over `paths` sensor rays and light paths. Divided by `paths`, they give the
+  /// picture.
   void add(int paths) {
     std::vector<GatherPoint> points;
     const double per_pair = 1 / (paths * 4.0 / 3.0 * std::numbers::pi * std::pow(radius_, 3));
     for (const SensorEnd& sensor : transport_.sensors)
       for (int path = 0; path < paths; ++path)
-        look(sensor, (path + random_.uniform()) / paths, per_pair, points);
+        trace_sensor_ray(sensor, (path + random_.uniform()) / paths, per_pair, points);
     const GatherGrid grid(std::move(points), radius_);
-    for (int path = 0; path < paths; ++path) light(grid);
+    for (int path = 0; path < paths; ++path) trace_light_path(grid);
   }
 
  private:
@@ -78,8 +80,8 @@ class PhotonMap {
     return medium.mu_t() * (medium.density ? (*medium.density)(p.x) : 1);
   }
 
-  void look(const SensorEnd& sensor, double stratum, double per_pair,
-            std::vector<GatherPoint>& points) {
+  void trace_sensor_ray(const SensorEnd& sensor, double stratum, double per_pair,
+                        std::vector<GatherPoint>& points) {
     const EndPosition end = sensor.sample_position(space_, random_, stratum);
     const EndDirection first = sensor.sample_direction(end, random_, stratum);
     if (!(first.strength > 0)) return;
@@ -97,7 +99,7 @@ class PhotonMap {
                       flight.optical_path, first.pixel, flight.point.part});
   }
 
-  void light(const GatherGrid& grid) {
+  void trace_light_path(const GatherGrid& grid) {
     const EndPosition end = transport_.lights.sample_position(space_, random_);
     const EndDirection first = transport_.lights.sample_direction(end, random_);
     if (!(first.strength > 0)) return;
@@ -109,31 +111,31 @@ class PhotonMap {
       power *= flight.weight;
       optical_path += flight.optical_path;
       if (flight.end != Flight::End::collision) {
-        // Sensor rays find the faces' light for themselves.
+        // Light from emitting faces is scored by the sensor rays.
         if (flight.end == Flight::End::boundary && collisions == 0 && (end.is_point || end.is_beam))
-          arrive(flight, power);
+          score_unscattered(flight, power);
         return;
       }
       if (collisions == transport_.max_scatterings) return;
       const ScatteringMedium& medium = transport_.medium(flight.point.part);
-      leave(grid, flight, medium.phase, power, optical_path);
+      deposit_photon(grid, flight, medium.phase, power, optical_path);
       if (medium.mu_a > 0 && random_.uniform() >= medium.albedo()) return;
       at = flight.point;
       direction = medium.phase.sample(flight.direction, random_);
     }
   }
 
-  void leave(const GatherGrid& grid, const Flight& photon, const SpacePhaseFunction& phase,
-             double power, double optical_path) {
+  void deposit_photon(const GatherGrid& grid, const Flight& photon, const SpacePhaseFunction& phase,
+                      double power, double optical_path) {
     const double n = space_.index(photon.point);
     grid.near(photon.point.x, [&](const GatherPoint& z) {
       if (z.part == photon.point.part)
-        add(z.pixel, z.value * power * phase.density(photon.direction.dot(z.onwards)),
+        add(z.pixel, z.value * power * phase.density(photon.direction.dot(z.to_sensor)),
             z.optical_path + optical_path + n * photon.direction.dot(z.x - photon.point.x));
     });
   }
 
-  void arrive(const Flight& flight, double power) {
+  void score_unscattered(const Flight& flight, double power) {
     for (const SensorEnd& sensor : transport_.sensors)
       sensor.hit(space_, flight.point.x, flight.direction, [&](const EndHit& hit) {
         add(hit.direction.pixel, power * hit.value, flight.optical_path);
@@ -152,7 +154,7 @@ class PhotonMap {
   TransportCounts counts_;
 };
 
-/// As many paths meet the same phase of the sound as make a map.
+/// Number of paths in one photon map; they share one phase of the sound.
 constexpr int paths_per_phase = 256;
 
 }  // namespace

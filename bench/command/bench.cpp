@@ -24,11 +24,11 @@ struct BenchKeys {
   RunSettings run;
 };
 
-/// A line on standard output for each part of a benchmark that is finished, and on a terminal one
-/// on standard error that tells how many are not. For any thread.
+/// Prints a line on standard output for each finished part of a benchmark, and on a terminal a
+/// progress line on standard error. Thread-safe.
 class BenchLog {
  public:
-  /// parts: what they are called.
+  /// parts: name of the parts in the plural, such as "curves".
   BenchLog(std::size_t count, std::string parts) : count_(count), parts_(std::move(parts)) {}
   ~BenchLog() { clear(); }
 
@@ -55,7 +55,7 @@ class BenchLog {
   std::mutex mutex_;
 };
 
-/// What a kind of benchmark came to.
+/// Outcome of one kind of benchmark.
 struct Outcome {
   std::string plan, parts;
   std::size_t count, failed;
@@ -68,7 +68,7 @@ std::string text(const char* format, Values... values) {
   return line;
 }
 
-/// Returns every so manyth row, from the first.
+/// Returns every n-th row, beginning with the first.
 template <typename Row>
 std::vector<Row> thinned(std::vector<Row> rows, long every) {
   std::vector<Row> kept;
@@ -77,7 +77,7 @@ std::vector<Row> thinned(std::vector<Row> rows, long every) {
   return kept;
 }
 
-/// run(i) for all i in this order, side by side.
+/// Calls run(i) in parallel for all i, starting them in this order.
 template <typename Run>
 void run_all(const std::vector<std::size_t>& order, const Run& run) {
   parallel_for(order.size(), [&](std::size_t i) { run(order[i]); });
@@ -106,8 +106,8 @@ std::string line_of(const bench::CostCurve& cost) {
 
 std::string line_of(const ExaminedCase& row, bool good) {
   const auto& [extreme, finding, cpu_s] = row;
-  const std::string head = text("%-12s %-52s %-44s ", extreme.room.c_str(), extreme.name.c_str(),
-                                extreme.invariant.c_str());
+  const std::string head = text("%-12s %-52s %-44s ", extreme.module_name.c_str(),
+                                extreme.name.c_str(), extreme.invariant.c_str());
   if (finding.refusal.empty())
     return head +
            text("%10.1e %10.1e %s", finding.figure, finding.limit, good ? "passed" : "FAILED");
@@ -117,13 +117,13 @@ std::string line_of(const ExaminedCase& row, bool good) {
 std::string line_of(const bench::PlanRow& row) {
   return text(
       "%-12s %-30s %-34s %10.3g %10.3g s per %-10s ratio %6.2f +- %4.2f, difference %.1e %s%s",
-      row.room.c_str(), row.left_out.c_str(), row.scene.c_str(), row.general_s, row.special_s,
-      row.per.c_str(), row.ratio, row.ratio_spread, row.difference, row.difference_in.c_str(),
-      passes(row) ? "" : "  FAILED");
+      row.module_name.c_str(), row.left_out.c_str(), row.scene.c_str(), row.general_s,
+      row.special_s, row.per.c_str(), row.ratio, row.ratio_spread, row.difference,
+      row.difference_in.c_str(), passes(row) ? "" : "  FAILED");
 }
 
-/// Of a Monte Carlo curve; from times too short for that, none is judged.
-bool has_slope_of_sampling(const bench::ErrorCurve& curve) {
+/// Whether the error of a Monte Carlo curve falls as time^(-1/2). True for all other curves.
+bool has_monte_carlo_slope(const bench::ErrorCurve& curve) {
   constexpr double tolerance = 0.05;
   return !curve.is_monte_carlo || std::abs(curve.slope + 0.5) <= tolerance;
 }
@@ -140,7 +140,7 @@ Outcome error_against_time(ResultFile& file, bool quick, long every) {
   run_all(in_order(runs.size() + costs.size()), [&](std::size_t i) {
     if (i < runs.size()) {
       curves[i] = runs[i].run(cpu_seconds);
-      log.finished(line_of(curves[i], quick || has_slope_of_sampling(curves[i])));
+      log.finished(line_of(curves[i], quick || has_monte_carlo_slope(curves[i])));
     } else {
       auto& cost = growth[i - runs.size()];
       cost = costs[i - runs.size()].run(cpu_seconds);
@@ -150,10 +150,10 @@ Outcome error_against_time(ResultFile& file, bool quick, long every) {
   write_error_curves(file, curves);
   write_cost_curves(file, growth);
   const auto failed = std::count_if(curves.begin(), curves.end(), [&](const auto& curve) {
-    return !quick && !has_slope_of_sampling(curve);
+    return !quick && !has_monte_carlo_slope(curve);
   });
   return {
-      text("%g CPU seconds for each curve%s", cpu_seconds, quick ? ", none of the slow ones" : ""),
+      text("%g CPU seconds for each curve%s", cpu_seconds, quick ? ", without the slow ones" : ""),
       "curves", runs.size() + costs.size(), static_cast<std::size_t>(failed)};
 }
 
@@ -180,8 +180,8 @@ Outcome stability(ResultFile& file, bool quick, long every) {
           static_cast<std::size_t>(failed)};
 }
 
-/// One at a time, for kernels that compete for the memory would wait for each other.
-Outcome what_plans_leave_out(ResultFile& file, bool quick, long every) {
+/// Times the kernels one at a time, because concurrent ones would compete for memory bandwidth.
+Outcome savings_of_plans(ResultFile& file, bool quick, long every) {
   const double cpu_seconds = quick ? 0.02 : 4;
   omp_set_num_threads(1);
   std::vector<bench::PlanRow> rows;
@@ -203,14 +203,14 @@ using Report = Outcome (*)(ResultFile&, bool quick, long every);
 Report report_named(const std::string& word) {
   if (word == "error") return error_against_time;
   if (word == "stability") return stability;
-  if (word == "plan") return what_plans_leave_out;
+  if (word == "plan") return savings_of_plans;
   throw InputError("bench", word, "must be one of error stability plan");
 }
 
 void add_keys(Keys& keys, BenchKeys& values) {
   keys.group("Benchmark");
-  keys.add("quick", values.quick, "Only a look: a minute in place of many");
-  keys.add("every", values.every, "Only every so manyth row, from the first").positive();
+  keys.add("quick", values.quick, "Short run: about a minute instead of many");
+  keys.add("every", values.every, "Run only every n-th row, beginning with the first").positive();
   add_thread_key(keys, values.run);
   add_output_key(keys, values.run);
 }
@@ -239,8 +239,8 @@ int run_benchmark(const Subcommand& command, BenchKeys& values) {
 std::unique_ptr<Call> bench(const std::string&) {
   return call_with<BenchKeys>(
       "bench",
-      "What accuracy costs (bench error), where it breaks (bench stability), and what "
-      "leaving things out saves (bench plan)",
+      "Error against processor time (bench error), extreme cases (bench stability), and "
+      "savings of specialised kernels (bench plan)",
       run_benchmark);
 }
 

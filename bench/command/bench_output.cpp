@@ -14,68 +14,68 @@ const DatasetTable error_table{
     "error",
     {{"curve", Data::numbers, "", "1", "number of the curve"},
      {"scene", Data::text, "curve", "", "standard scene"},
-     {"method", Data::text, "curve", "", "what estimates"},
-     {"reference", Data::text, "curve", "", "how the true value is known"},
+     {"method", Data::text, "curve", "", "estimator or solver"},
+     {"reference", Data::text, "curve", "", "origin of the reference values"},
      {"reference_uncertainty", Data::real, "curve", "1", "relative error of the reference"},
-     {"slope", Data::estimate, "curve", "1", "exponent of the error over processor time"},
+     {"slope", Data::estimate, "curve", "1", "slope of log error against log processor time"},
      {"efficiency", Data::real, "curve", "1/s", "1/(error^2 processor time)"},
-     {"is_monte_carlo", Data::count, "curve", "1",
-      "whether the error falls with the square root of the samples"},
+     {"is_monte_carlo", Data::count, "curve", "1", "1: the error should fall as 1 / sqrt(samples)"},
      {"curve_point", Data::numbers, "", "1", "points of all curves, one curve after the other"},
-     {"of_curve", Data::count, "curve_point", "1", "number of the point's curve"},
+     {"of_curve", Data::count, "curve_point", "1", "number of the curve that contains the point"},
      {"cpu_s", Data::real, "curve_point", "s", "processor time"},
-     {"samples", Data::real, "curve_point", "1", "samples by then"},
+     {"samples", Data::real, "curve_point", "1", "samples up to this point"},
      {"relative_error", Data::estimate, "curve_point", "1",
       "RMS deviation from the reference over the RMS of its values"}}};
 
 const DatasetTable cost_table{
     "cost",
     {{"cost", Data::numbers, "", "1", "number of the cost curve"},
-     {"task", Data::text, "cost", "", "whose cost it is"},
-     {"cost_name", Data::text, "cost", "", "what its cost is"},
-     {"size_name", Data::text, "cost", "", "what its size is"},
-     {"exponent", Data::estimate, "cost", "1", "fitted exponent of cost over size"},
-     {"expected_exponent", Data::real, "cost", "1", "exponent by theory"},
+     {"task", Data::text, "cost", "", "task whose cost is measured"},
+     {"cost_name", Data::text, "cost", "", "quantity taken as cost"},
+     {"size_name", Data::text, "cost", "", "quantity taken as size"},
+     {"exponent", Data::estimate, "cost", "1", "fitted exponent: cost grows as size^exponent"},
+     {"expected_exponent", Data::real, "cost", "1", "exponent expected from theory"},
      {"cost_point", Data::numbers, "", "1", "points of all cost curves, one curve after the other"},
-     {"of_cost", Data::count, "cost_point", "1", "number of the point's cost curve"},
+     {"of_cost", Data::count, "cost_point", "1",
+      "number of the cost curve that contains the point"},
      {"size", Data::real, "cost_point", "1", "size of the problem"},
-     {"cost_value", Data::real, "cost_point", "1", "cost, in what cost_name says"}}};
+     {"cost_value", Data::real, "cost_point", "1", "cost, in the unit given by cost_name"}}};
 
 const DatasetTable stability_table{
     "stability",
     {{"case", Data::numbers, "", "1", "number of the case"},
      {"room", Data::text, "case", "", "part of the program"},
-     {"name", Data::text, "case", "", "what is extreme"},
-     {"invariant", Data::text, "case", "", "what was checked"},
+     {"name", Data::text, "case", "", "extreme condition"},
+     {"invariant", Data::text, "case", "", "invariant that was checked"},
      {"must_say", Data::text, "case", "",
-      "what a refusal has to say; empty where the case must be solved"},
-     {"refusal", Data::text, "case", "",
-      "the message of a refusal; empty where the case was solved"},
-     {"figure", Data::real, "case", "1", "how far the invariant was off"},
-     {"limit", Data::real, "case", "1", "what it was held to"},
-     {"passed", Data::count, "case", "1", "1: right within the limit, or refused as it must"},
+      "text required in the error message; empty if the case must be solved"},
+     {"refusal", Data::text, "case", "", "error message; empty if the case was solved"},
+     {"figure", Data::real, "case", "1", "deviation from the invariant"},
+     {"limit", Data::real, "case", "1", "largest deviation that passes"},
+     {"passed", Data::count, "case", "1",
+      "1: within the limit, or rejected with the required message"},
      {"cpu_s", Data::real, "case", "s", "processor time"}}};
 
 const DatasetTable plan_table{
     "plan",
     {{"comparison", Data::numbers, "", "1", "number of the comparison"},
      {"room", Data::text, "comparison", "", "part of the program"},
-     {"left_out", Data::text, "comparison", "", "what the specialised kernel leaves out"},
-     {"scene", Data::text, "comparison", "", "that has no need of it"},
-     {"per", Data::text, "comparison", "", "what the times are for"},
+     {"left_out", Data::text, "comparison", "", "feature that the specialised kernel omits"},
+     {"scene", Data::text, "comparison", "", "scene that does not need the feature"},
+     {"per", Data::text, "comparison", "", "unit of work that the times refer to"},
      {"general_s", Data::real, "comparison", "s", "processor time of the general kernel, median"},
      {"special_s", Data::real, "comparison", "s",
       "processor time of the specialised kernel, median"},
      {"ratio", Data::real, "comparison", "1",
-      "general over specialised, median over slices taken in turn"},
-     {"ratio_spread", Data::real, "comparison", "1", "half the distance of its quartiles"},
+      "general_s / special_s, median over rounds in which both kernels run in turn"},
+     {"ratio_spread", Data::real, "comparison", "1", "half the interquartile range of the ratio"},
      {"difference", Data::real, "comparison", "1", "largest difference of the results"},
      {"difference_in", Data::text, "comparison", "",
-      "relative, or in standard errors where random numbers differ"},
-     {"limit", Data::real, "comparison", "1", "what the difference was held to"},
-     {"passed", Data::count, "comparison", "1", "whether the difference is within the limit"}}};
+      "unit of the difference: relative, or standard errors if random numbers differ"},
+     {"limit", Data::real, "comparison", "1", "largest difference that passes"},
+     {"passed", Data::count, "comparison", "1", "1: the difference is within the limit"}}};
 
-/// What is not finite becomes the largest number that is.
+/// Returns a column in which values that are not finite are replaced by the largest finite number.
 template <class Things, class Value>
 std::vector<double> finite(const Things& things, const Value& value) {
   auto values = column(things, value);
@@ -145,7 +145,7 @@ void write_cases(ResultFile& file, const std::vector<ExaminedCase>& cases) {
   const auto extremes = column(cases, &ExaminedCase::extreme);
   const auto findings = column(cases, &ExaminedCase::finding);
   root.number("case", cases.size());
-  root.put("room", column(extremes, &bench::ExtremeCase::room));
+  root.put("room", column(extremes, &bench::ExtremeCase::module_name));
   root.put("name", column(extremes, &bench::ExtremeCase::name));
   root.put("invariant", column(extremes, &bench::ExtremeCase::invariant));
   root.put("must_say", column(extremes, &bench::ExtremeCase::must_say));
@@ -161,7 +161,7 @@ void write_plan_rows(ResultFile& file, const std::vector<bench::PlanRow>& rows) 
   using bench::PlanRow;
   const ResultGroup root(file, plan_table);
   root.number("comparison", rows.size());
-  root.put("room", column(rows, &PlanRow::room));
+  root.put("room", column(rows, &PlanRow::module_name));
   root.put("left_out", column(rows, &PlanRow::left_out));
   root.put("scene", column(rows, &PlanRow::scene));
   root.put("per", column(rows, &PlanRow::per));

@@ -16,7 +16,7 @@ struct ExaminedCase {
   double cpu_s = 0;
 };
 
-// What `bench` finds, into a result file (docs/format.md).
+// The functions below write results of `bench` into a result file (docs/format.md).
 void write_error_curves(ResultFile& file, const std::vector<bench::ErrorCurve>& curves);
 void write_cost_curves(ResultFile& file, const std::vector<bench::CostCurve>& costs);
 void write_cases(ResultFile& file, const std::vector<ExaminedCase>& cases);

@@ -13,7 +13,7 @@ namespace flatspeckle::bench {
 
 namespace {
 
-/// Of one call, as the mean of so many that the clock can tell.
+/// Returns the CPU seconds of one call, averaged over enough calls for the resolution of the clock.
 double seconds_of(const std::function<void()>& work) {
   constexpr double least = 2e-3;
   const double start = thread_cpu_seconds();

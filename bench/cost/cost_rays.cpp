@@ -12,7 +12,7 @@ using namespace grin;
 
 namespace {
 
-/// Distance from the focus of a Luneburg lens of a ray that came in at its rim, at height 0.6.
+/// Returns the distance by which a ray that enters a Luneburg lens at height 0.6 misses the focus.
 template <class Integrator>
 double error_at_focus(int steps) {
   const Luneburg lens{LuneburgProfile{}};
@@ -34,7 +34,8 @@ CostRun seconds_of_steps(const std::string& name, ErrorAtFocus trace) {
           }};
 }
 
-/// Coarse steps are not yet, and fine ones no more (rounding), on the power law.
+/// Fits the order of an integrator where the power law holds: with coarser steps the error is not
+/// yet asymptotic, with finer ones it is limited by rounding.
 CostRun order(const std::string& name, int order, ErrorAtFocus trace) {
   const std::string what = "accuracy of a ray, " + name;
   return {what, [=](double) {

@@ -16,7 +16,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// The next batches at every call, of so many samples together: long paths have small batches.
+/// Returns a function that runs the next batches, about `count` samples in each call. Batches of
+/// long paths are small.
 std::function<void()> samples(double count, const BatchJob& job) {
   return [=, number = std::make_shared<std::uint64_t>(),
           sums = std::make_shared<std::vector<Complex>>(job.size)] {
@@ -42,13 +43,14 @@ SceneSpec slab(double optical_depth) {
   return spec;
 }
 
-/// Paths are, whatever the optical depth, as long as a mean chord on average in even light.
+/// Cost of a path against optical depth. In isotropic illumination the mean path length equals the
+/// mean chord, independent of the optical depth.
 CostRun path_against_depth() {
   return cost_run({"100 paths, Monte Carlo", "optical depth", 2, 256, 1,
                    [](double depth) { return samples(100, covariance_job(slab(depth)).batches); }});
 }
 
-/// CPU seconds to an error of 1 % of the memory effect in transmission.
+/// Returns the CPU seconds to an error of 1 % of the memory effect in transmission.
 double seconds_to_one_percent(const FieldJob& job, double cpu_seconds) {
   GroupedSums sums(job.batches.size);
   std::vector<Complex> batch(job.batches.size);
@@ -62,7 +64,8 @@ double seconds_to_one_percent(const FieldJob& job, double cpu_seconds) {
   return spent * std::pow(job.batches.relative_error(sums) / 0.01, 2);
 }
 
-/// One in `depth` paths comes through, and each costs `depth`.
+/// Cost of an error of 1 % against optical depth. About 1 / depth of the paths are transmitted, and
+/// each path costs about `depth`.
 CostRun error_against_depth() {
   const std::string what = "an error of 1 %, Monte Carlo";
   return {what, [what](double cpu_seconds) {
@@ -80,7 +83,8 @@ CostRun error_against_depth() {
           }};
 }
 
-/// A doubling more, whenever the depth doubles.
+/// Cost of deterministic transport against optical depth. The doubling method needs one more step
+/// when the depth doubles.
 CostRun solution_against_depth() {
   return cost_run({"memory effect to 1e-6, transport", "optical depth", 2, 4096, 0,
                    [](double depth) -> std::function<void()> {
@@ -90,7 +94,7 @@ CostRun solution_against_depth() {
                    }});
 }
 
-/// box_points with 4 lights and so many views.
+/// The scene box_points with 4 illuminations and `channels` / 4 detection directions.
 SceneSpec box(double channels, const std::string& covariance) {
   constexpr int lights = 4;
   SceneSpec spec;

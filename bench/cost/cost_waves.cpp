@@ -37,7 +37,8 @@ CostRun solver(const std::string& what, wave::Method method, double smallest, do
 
 std::vector<CostRun> wave_cost_runs() {
   return {solver("exact, dense", wave::Method::dense, 250, 8000, 3),
-          // at fixed density the last boxes have as many unknowns as their perimeter: its cube
+          // the last factorisation has as many unknowns as scatterers along the perimeter, ~
+          // N^(1/2), and costs their cube
           solver("exact, fast", wave::Method::fast, 1024, 131072, 1.5)};
 }
 

@@ -3,9 +3,9 @@
 #include <omp.h>
 
 #include "bench/baselines/gradient_searches.h"
-#include "bench/error/error_rooms.h"
+#include "bench/error/error_modules.h"
 #include "core/run/stopwatch.h"
-#include "grin/design/goals/even_points.h"
+#include "grin/design/objectives/even_points.h"
 #include "grin/design/problem/designer.h"
 
 namespace flatspeckle::bench {
@@ -15,7 +15,8 @@ namespace {
 using namespace grin;
 using namespace grin::design;
 
-/// Over places that fill the ball evenly, relative to the root mean square of n.
+/// Returns the RMS error of the index over points distributed uniformly in the ball, divided by the
+/// RMS of n.
 template <class Form>
 double index_error(const Form& form, const std::vector<double>& coefficients) {
   constexpr int places = 500;
@@ -45,21 +46,22 @@ ErrorPoint sought(const DesignValues& values) {
   return {seconds, 0, index_error(designer.form(state), state.search.coefficients), 0};
 }
 
-/// By the gradient alone, until rays miss by no more than they do at the end of least squares.
+/// Searches with the gradient alone, until the rays miss the focus by as little as in the
+/// least-squares design.
 template <class Search>
 ErrorPoint by_gradient(const DesignValues& values, const Search& search) {
-  constexpr double enough = 1e-8;  // root 1e-4
+  constexpr double enough = 1e-8;  // square of an RMS miss distance of 1e-4
   constexpr long most_traces = 2000;
   const double start = thread_cpu_seconds();
   const DesignScene scene = make_design_scene(values);
-  const DesignTask task = scene.aim->task(scene.walk, false);
+  const DesignTask task = scene.design_target->task(scene.walk, false);
   FinerField field{scene.start.form, scene.start.coefficients};
   for (int level = 1; level < scene.start.levels; ++level)
     field = finer(field.form, field.coefficients);
   const SearchLimits limits{bounds_of(field.form, scene.start.least_index, scene.start.most_index),
                             enough, most_traces};
-  const Searched found =
-      search(GradientObjective(*task.rays, *task.goal, field.form), limits, field.coefficients);
+  const SearchResult found = search(GradientObjective(*task.rays, *task.objective, field.form),
+                                    limits, field.coefficients);
   return {thread_cpu_seconds() - start, 0, index_error(field.form, found.coefficients), 0};
 }
 
@@ -67,13 +69,13 @@ DesignValues profile(int coefficients) {
   DesignValues values;
   values.form.design = "radial";
   values.form.coefficients = coefficients;
-  std::get<FocusValues>(values.aim.kinds) = {.directions = 1, .rays_per_direction = 200};
+  std::get<FocusValues>(values.design_target.kinds) = {.directions = 1, .rays_per_direction = 200};
   return values;
 }
 DesignValues ball(const std::vector<std::int64_t>& nodes) {
   DesignValues values;
   values.form.nodes = nodes;
-  std::get<FocusValues>(values.aim.kinds) = {
+  std::get<FocusValues>(values.design_target.kinds) = {
       .aperture = 0.995, .directions = 25, .rays_per_direction = 60};
   return values;
 }

@@ -3,7 +3,7 @@
 
 #include <omp.h>
 
-#include "bench/error/error_rooms.h"
+#include "bench/error/error_modules.h"
 #include "bench/scenes/synthetic_slab.h"
 
 namespace flatspeckle::bench {
@@ -12,7 +12,8 @@ namespace {
 
 constexpr double g = 0.8, albedo = 0.98, optical_depth = 4;
 
-/// A view in transmission, one in reflection, and the transmittance, with errors of this share.
+/// Returns the task of fitting g to curves for one detection direction in transmission and one in
+/// reflection and to the transmittance, all with relative errors `share`.
 mc::FitTask task(double share) {
   SyntheticSlab slab(2000, g, albedo, optical_depth);
   for (const double view : {0.3, std::numbers::pi - 0.44}) slab.add_curve(view, {1.25, 2.5, 5, 10});
@@ -28,7 +29,7 @@ double relative_square(const mc::MediumFit& fit) {
 }
 
 ErrorCurve empty_curve(const std::string& method) {
-  return {"fit of a slab", method, "the slab that curves are made of", 1e-6, {}};
+  return {"fit of a slab", method, "the slab from which the curves are computed", 1e-6, {}};
 }
 
 ErrorCurve by_transport(double) {
@@ -43,7 +44,7 @@ ErrorCurve by_transport(double) {
   return curve;
 }
 
-/// Some fits by other random numbers each.
+/// Returns the RMS error of 12 fits with different seeds.
 ErrorPoint by_paths(double share) {
   auto wanted = task(share);
   return rms_point(12, [&](unsigned seed) {
@@ -59,8 +60,9 @@ ErrorPoint by_paths(double share) {
   });
 }
 
-/// Errors of half the share each. The search costs paths too, and takes other steps by chance: the
-/// slope is not that of one sum.
+/// Measures the error of fits by Monte Carlo; from point to point the assumed errors of the data
+/// are halved. The search itself uses random paths and steps, so the slope differs from that of one
+/// Monte Carlo sum.
 ErrorCurve by_paths_against_time(double cpu_seconds) {
   ErrorCurve curve = empty_curve("paths");
   measure_points(curve, cpu_seconds, [share = 0.08]() mutable { return by_paths(share /= 2); });

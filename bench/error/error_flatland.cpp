@@ -6,7 +6,7 @@
 
 #include <omp.h>
 
-#include "bench/error/error_rooms.h"
+#include "bench/error/error_modules.h"
 #include "bench/oracles/discrete_ordinates.h"
 #include "bench/oracles/textbook.h"
 #include "core/run/stopwatch.h"
@@ -23,7 +23,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// A scene as error curves name it.
+/// A scene and its name in the error curves.
 struct FlatScene {
   std::string name;
   std::shared_ptr<const Scene> scene;
@@ -48,7 +48,8 @@ ErrorTrial ours(const Scene& scene, std::uint64_t seed) {
   return trial_of(mc::covariance_job(scene, plan, seed));
 }
 
-/// Products of drawn fields: E[u_a u_b*] = C_ab for any number of paths in a field.
+/// Estimates covariances from products of sampled fields: E[u_a u_b*] = C_ab for any number of
+/// paths per field.
 ErrorTrial fields(const Scene& scene, std::uint64_t seed) {
   constexpr std::uint64_t paths = 100;
   ErrorTrial trial{{}, sample_mean};
@@ -69,7 +70,7 @@ std::function<ErrorTrial(std::uint64_t seed)> by(const std::shared_ptr<const Sce
   return [scene, trial](std::uint64_t seed) { return trial(*scene, seed); };
 }
 
-/// 0 and six more, their sines equally spaced.
+/// Returns 0 and six more angles, their sines equally spaced.
 std::vector<double> seven_tilts(double largest_sine) {
   constexpr int count = 7;
   std::vector<double> angles;
@@ -81,7 +82,7 @@ std::function<ErrorTrial(std::uint64_t seed)> our_paths(const std::shared_ptr<co
   return by(scene, ours);
 }
 
-/// The published Monte Carlo estimator, ours, and covariances taken from drawn speckle fields.
+/// Returns the published Monte Carlo estimator, ours, and covariances from sampled speckle fields.
 std::vector<ErrorMethod> path_methods(const FlatScene& flat) {
   return {{flat.name, "textbook Monte Carlo", by(flat.scene, textbook)},
           {flat.name, "ours", our_paths(flat.scene)},
@@ -107,7 +108,7 @@ SceneSpec absorbing_box() {
 
 SceneSpec cylinders() {
   SceneSpec spec = box(67);
-  // many speckles, for exact realizations are dear
+  // many directions, so that each of the expensive exact realizations contributes many speckles
   spec.view_angles = {-1.2, -1,  -0.8, -0.6,     -0.4,      -0.2,     0.1,      0.3,
                       0.5,  0.7, 0.9,  pi - 0.9, pi - 0.65, pi - 0.4, pi - 0.2, pi};
   spec.scatterer = "tm";
@@ -125,7 +126,7 @@ std::vector<FlatScene> scenes() {
           {"box_cylinders", shared(cylinders())}};
 }
 
-/// Fields are then off by 3e-4, far below any ensemble here.
+/// The tolerance 1e-2 gives field errors of 3e-4, far below the error of any ensemble here.
 ErrorTrial exact(const Scene& scene, wave::Method solver, std::uint64_t seed) {
   return trial_of(wave::wave_job(scene, seed, 1e-2, solver));
 }
@@ -134,17 +135,18 @@ std::string exact_reference(const FlatScene& flat) {
   return flat.name + ", exact";
 }
 
-/// Their first point has enough placements that 1/(n - 1) is nearly 1/n.
+/// Returns exact ensembles by both solvers. The first point has so many placements n that 1/(n - 1)
+/// is nearly 1/n.
 std::vector<ErrorMethod> exact_methods(const FlatScene& flat) {
-  const bool is_dear = flat.scene->scatterer.is_disk();
+  const bool is_expensive = flat.scene->scatterer.is_disk();
   const auto by = [&](const std::string& name, wave::Method solver) {
     return ErrorMethod{.scene = flat.name,
                        .name = name,
                        .trial = [scene = flat.scene, solver](
                                     std::uint64_t seed) { return exact(*scene, solver, seed); },
-                       .first_point = is_dear ? 16U : 64U,
-                       .share = is_dear ? 3.0 : 1.0,
-                       .slow = is_dear};
+                       .first_point = is_expensive ? 16U : 64U,
+                       .share = is_expensive ? 3.0 : 1.0,
+                       .slow = is_expensive};
   };
   return {by("exact dense", wave::Method::dense), by("exact fast", wave::Method::fast)};
 }
@@ -172,7 +174,8 @@ double two_terms(double angle) {
          0.1 * oracles::henyey_greenstein(-0.4)(angle);
 }
 
-/// Of a phase function without a form of its own; intensities, which discrete ordinates know too.
+/// A slab with a two-term phase function. Only intensities are requested, because discrete
+/// ordinates provide a reference for them.
 SceneSpec two_term_slab() {
   SceneSpec spec = slab();
   spec.scatterer = "two_term_hg";
@@ -183,7 +186,7 @@ SceneSpec two_term_slab() {
   return spec;
 }
 
-/// The covariance to a tolerance.
+/// Returns the covariance to a tolerance.
 using ToTolerance = std::function<std::vector<Complex>(double tolerance)>;
 
 ToTolerance by_transport(const std::shared_ptr<const Scene>& scene) {
@@ -191,7 +194,8 @@ ToTolerance by_transport(const std::shared_ptr<const Scene>& scene) {
   return [=](double tolerance) { return mc::slab_covariance(*scene, reversed, {tolerance}).value; };
 }
 
-/// A slab, and tolerances of transport: of the reference, and the finest of the curve.
+/// A slab with two tolerances of deterministic transport: that of the reference and the finest one
+/// of the curve.
 struct Slab {
   FlatScene flat;
   ToTolerance transport;
@@ -214,7 +218,7 @@ double cpu_seconds_of(const std::function<void()>& work) {
   return spent / times;
 }
 
-/// No chance and no samples: a point per tolerance.
+/// Measures deterministic transport: one point per tolerance, no samples.
 ErrorCurve transport_curve(const Slab& slab) {
   omp_set_num_threads(1);
   const ErrorReference reference = slab.reference();
@@ -252,9 +256,9 @@ std::vector<ErrorRun> space_runs() {
 
 ErrorReference discrete_ordinates(const SceneSpec& spec) {
   auto angles = spec.view_angles;
-  angles.push_back(0);  // the light
+  angles.push_back(0);  // direction of the illumination
   const oracles::SlabTransport theory({*spec.optical_depth, 1, two_terms}, angles, 100);
-  ErrorReference reference{{}, 1e-5, "discrete ordinates, 100 a quadrant"};
+  ErrorReference reference{{}, 1e-5, "discrete ordinates, 100 per quadrant"};
   for (const double view : spec.view_angles)
     reference.value.emplace_back(theory.covariance_without_reversed(0, view));
   return reference;
@@ -268,8 +272,8 @@ ErrorRun two_term_run() {
   return run_of(method, [=] { return discrete_ordinates(spec); });
 }
 
-/// Scatterers that flow beside diffusing: a uniform velocity turns the phase of what diffusion
-/// leaves.
+/// Scatterers that flow and diffuse. A uniform velocity only rotates the phase of the solution for
+/// diffusion alone, which therefore serves as the reference.
 struct Flow {
   Scene scene;
   std::vector<double> delays = {0.02, 0.05, 0.1};

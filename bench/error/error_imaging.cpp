@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "bench/error/error_rooms.h"
+#include "bench/error/error_modules.h"
 #include "bench/scenes/blinking_frames.h"
 #include "bench/scenes/imaged_points.h"
 
@@ -34,14 +34,15 @@ ErrorCurve pairs_by_paths(double cpu_seconds) {
   return curve;
 }
 
-/// Patterns of sources by frames.
+/// Error of the separated source patterns for a number of frames.
 ErrorPoint patterns_point(std::size_t frames) {
   BlinkingScene scene{.frames = frames};
   scene.noise.photons = 20;
   return rms_point(8, [&](unsigned seed) {
     const BlinkingFrames made = blinking_frames(scene, seed);
     return timed_run(static_cast<double>(frames), [&] {
-      const auto found = mc::unmixed(made.frames, {scene.noise, 40, scene.brightness.size()});
+      const auto found =
+          mc::separated_sources(made.frames, {scene.noise, 40, scene.brightness.size()});
       return std::pow(pattern_error(made, found.factors.pattern), 2);
     });
   });
@@ -49,7 +50,11 @@ ErrorPoint patterns_point(std::size_t frames) {
 
 ErrorCurve by_frames(double cpu_seconds) {
   constexpr std::size_t most = 1024;
-  ErrorCurve curve{"image, patterns of sources", "frames", "the patterns that were mixed", 0, {}};
+  ErrorCurve curve{"image, patterns of sources",
+                   "frames",
+                   "the patterns of which the frames are mixtures",
+                   0,
+                   {}};
   measure_points(curve, cpu_seconds, [frames = std::size_t{8}]() mutable {
     frames *= 2;
     return frames <= most ? std::optional(patterns_point(frames)) : std::nullopt;

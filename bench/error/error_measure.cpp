@@ -5,7 +5,7 @@
 
 #include <omp.h>
 
-#include "bench/error/error_rooms.h"
+#include "bench/error/error_modules.h"
 #include "bench/measure/power_fit.h"
 #include "core/run/stopwatch.h"
 
@@ -15,11 +15,12 @@ namespace {
 
 struct Schedule {
   std::size_t runs;
-  std::uint64_t first;  ///< batches of the first point
+  std::uint64_t first;  ///< number of batches at the first point
   std::size_t points;
 };
 
-/// One run: at each point the mean square of what it is off by, relative to the reference's.
+/// Errors of one run: at each point the mean squared error, divided by the mean square of the
+/// reference; and the CPU time of the run.
 struct RunErrors {
   std::vector<double> square;
   double seconds = 0;
@@ -57,8 +58,9 @@ RunErrors run_once(const ErrorMethod& method, const ErrorReference& reference, s
   return errors;
 }
 
-/// Doublings of the first point's batches, and runs, that the time is enough for: many of both, or
-/// fewer runs where a slope could not be told else. Of many doublings the first are left out.
+/// Chooses how many runs to make in the given time, and how often the number of batches is doubled.
+/// Both are large if the time permits; otherwise there are fewer runs, so that enough points remain
+/// to fit a slope. If more than `most` doublings fit, the first points are omitted.
 Schedule schedule(const ErrorMethod& method, const ErrorReference& reference, double cpu_seconds) {
   constexpr double many_runs = 64, few_runs = 16, fewest_runs = 4;
   constexpr double enough = 5, few = 3, fewest = 2, most = 9;  // doublings
@@ -83,7 +85,7 @@ Schedule schedule(const ErrorMethod& method, const ErrorReference& reference, do
           static_cast<std::size_t>(points)};
 }
 
-/// Sums over the runs, from which those without one of them follow.
+/// Errors summed over all runs, from which one run can be left out for the jackknife.
 class SeedErrors {
  public:
   SeedErrors(std::vector<RunErrors> runs, double reference_square)
@@ -94,13 +96,13 @@ class SeedErrors {
       for (std::size_t p = 0; p < total_.size(); ++p) total_[p] += run.square[p];
   }
 
-  /// With all runs, or without one of them.
+  /// Returns the error over all runs, or over all but `without`.
   double error(std::size_t point, const RunErrors* without = nullptr) const {
     return std::sqrt(std::max(0.0, square(point, without) - reference_square_));
   }
   double unsubtracted(std::size_t point) const { return std::sqrt(square(point, nullptr)); }
 
-  /// Jackknife variance of what f gives without each of the runs.
+  /// Jackknife variance of f, evaluated with each run left out.
   template <class F>
   double variance(const F& f) const {
     const auto n = static_cast<double>(runs_.size());
@@ -124,7 +126,8 @@ class SeedErrors {
   std::vector<double> total_;
 };
 
-/// Slope, its error and the efficiency of the points that are above what the reference is off by.
+/// Fits the slope, its error and the efficiency to those points whose error exceeds that of the
+/// reference.
 void fit(const SeedErrors& spread, ErrorCurve& curve) {
   std::vector<std::size_t> used;
   std::vector<double> time, error, whole, weight;

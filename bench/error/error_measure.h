@@ -11,7 +11,8 @@
 
 namespace flatspeckle::bench {
 
-/// One seed of a method: numbered batches, and how their sums are read.
+/// Run of a method with one seed: its batches, and the estimator that computes values from their
+/// sums.
 struct ErrorTrial {
   BatchJob batches;
   Estimator values;
@@ -20,45 +21,47 @@ struct ErrorTrial {
 struct ErrorMethod {
   std::string scene, name;
   std::function<ErrorTrial(std::uint64_t seed)> trial;
-  std::uint64_t first_point = 1;  ///< batches of the first point of a curve
+  std::uint64_t first_point = 1;  ///< number of batches at the first point of a curve
   bool is_monte_carlo = true;     ///< see ErrorCurve
-  double share = 1;               ///< of the time, for dear ones
+  double share = 1;               ///< factor on the time budget; above 1 for expensive methods
   bool slow = false;              ///< see ErrorRun
 };
 
-/// What a curve is compared with.
+/// Reference values with which an error curve is measured.
 struct ErrorReference {
   std::vector<Complex> value;
-  double relative_error = 0;  ///< RMS over the entries, relative to their RMS
-  std::string how;            ///< it is known, in words
+  double relative_error = 0;  ///< RMS error over the entries, divided by the RMS of the values
+  std::string how;            ///< origin of the values, in words
 };
 
-/// RMS over the entries of what `values` are off by, relative to the RMS of the reference.
+/// Returns the RMS error of `values` over the entries, divided by the RMS of the reference.
 double relative_distance(const std::vector<Complex>& values, const ErrorReference& reference);
 
-/// Runs of many seeds, each to the same number of batches, with a point whenever a run's batches
-/// have doubled. All points see the same number of runs, so that a method without finite variance
-/// is seen: its error falls more slowly. Slope by least squares, weighted by the points' own
-/// errors; its error by leaving one run out at a time, with what the reference may be off by.
+/// Measures a curve from runs with many seeds, each of the same number of batches, with a point at
+/// each doubling of the batches. All points average over the same number of runs, so that the error
+/// of a method with infinite variance decays more slowly. The slope is a least-squares fit weighted
+/// by the points' errors. The error of the slope is from a jackknife over the runs and includes the
+/// error of the reference.
 ErrorCurve measure_error(const ErrorMethod& method, const ErrorReference& reference,
                          double cpu_seconds);
 
-/// A curve against a reference that is made once it is measured.
+/// Returns the measurement of a method's error curve. The reference is computed only when the curve
+/// is measured.
 ErrorRun run_of(const ErrorMethod& method, const std::function<ErrorReference()>& reference);
 
-/// A curve of points that have nothing in common: as long as there is time, and `next` makes one,
-/// and it is not as good as the reference. Slope by plain least squares through all of them,
-/// efficiency of the last.
+/// Adds the points that `next` returns to a curve. Stops when the time is used up, `next` returns
+/// nullopt, or a point's error is less than twice the error of the reference. The slope is from
+/// unweighted least squares through all points, the efficiency from the last point.
 void measure_points(ErrorCurve& curve, double cpu_seconds,
                     const std::function<std::optional<ErrorPoint>()>& next);
 
-/// The RMS of what runs of seeds 1 .. `runs` are off by.
+/// CPU time, squared error and number of samples of one run.
 struct OneRun {
   double cpu_s, square, samples;
 };
 ErrorPoint rms_point(unsigned runs, const std::function<OneRun(unsigned seed)>& run);
 
-/// The square that work returns, and the time that it takes.
+/// Runs `work`, which returns the squared error, and measures its time.
 OneRun timed_run(double samples, const std::function<double()>& work);
 
 }  // namespace flatspeckle::bench

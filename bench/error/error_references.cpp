@@ -1,11 +1,12 @@
 #include <map>
 #include <sstream>
 
-#include "bench/error/error_rooms.h"
+#include "bench/error/error_modules.h"
 
 namespace flatspeckle::bench {
 
-extern const char* const error_reference_table;  // data/error_references.txt, made by CMake
+extern const char* const
+    error_reference_table;  // contents of data/error_references.txt, compiled in by CMake
 
 namespace {
 

@@ -2,7 +2,7 @@
 #include <numbers>
 
 #include "bench/baselines/photon_map.h"
-#include "bench/error/error_rooms.h"
+#include "bench/error/error_modules.h"
 #include "bench/oracles/guided_beam.h"
 #include "bench/oracles/lamp_map.h"
 #include "bench/oracles/peierls_slab.h"
@@ -29,11 +29,12 @@ ErrorMethod method_of(const NamedRender& named, const std::string& name, RenderM
           }};
 }
 
-/// Some of the sums of a job, over so much.
+/// Estimates `count` consecutive sums of a job, beginning with number first(bins), divided by an
+/// area.
 ErrorMethod sums_of(const std::string& scene, const std::string& name, const RenderScene& rendered,
                     std::size_t (*first)(const grin::TimeBins&), std::size_t count, double area) {
   return {.scene = scene, .name = name, .trial = [=](auto seed) {
-            const grin::RenderJob job = render_job(rendered, {RenderMethod::analog}, seed);
+            const grin::RenderJob job = render_job(rendered, {RenderMethod::forward}, seed);
             return ErrorTrial{job.batches, [=, at = first(job.bins)](
                                                double samples, std::span<const Complex> sums) {
                                 return sample_mean(samples / area, sums.subspan(at, count));
@@ -41,8 +42,8 @@ ErrorMethod sums_of(const std::string& scene, const std::string& name, const Ren
           }};
 }
 
-/// Of a radius that is a twentieth of the shortest of mean free paths and of half widths of stage
-/// and bodies.
+/// Makes the photon-map method. Callers choose the radius as a twentieth of the smallest length in
+/// the scene: mean free paths and half widths of the stage and of bodies.
 ErrorMethod photon_map(const NamedRender& named, double radius) {
   ErrorMethod method{.scene = named.name,
                      .name = "photon map, biased by its radius",
@@ -50,12 +51,14 @@ ErrorMethod photon_map(const NamedRender& named, double radius) {
                        return ErrorTrial{photon_map_job(scene, radius, seed), sample_mean};
                      }};
   method.is_monte_carlo = false;
-  method.slow = named.name != "glass_ball";  // many photons, of many flights elsewhere
+  method.slow =
+      named.name != "glass_ball";  // other scenes need many photons with many free flights
   return method;
 }
 
-/// Lambertian light of L/n^2 = 1 from all sides, no absorption: L/n^2 = 1 along every ray, so that
-/// the irradiance is pi n^2, and n = 1 on the rim and around balls.
+/// Returns the reference for Lambertian light with L/n^2 = 1 from all sides on a scene without
+/// absorption. L/n^2 = 1 along every ray, so the irradiance is pi n^2; it is pi because n = 1 at
+/// the sensor (on the rim or around the balls).
 ErrorReference even_light(const RenderScene& scene) {
   const auto pixels = static_cast<std::size_t>(grin::pixels_of(scene.sensors[0]).grid.count());
   return {std::vector<Complex>(pixels, pi), 0, "closed form: irradiance pi"};
@@ -67,14 +70,15 @@ void add_all_methods(std::vector<ErrorRun>& runs, const NamedRender& named, doub
                                    method_of(named, "bidirectional", RenderMethod::bidirectional),
                                    photon_map(named, radius)};
   const bool is_sound = named.name == "waveguide";
-  if (is_sound) methods.push_back(method_of(named, "analog light paths", RenderMethod::analog));
+  if (is_sound) methods.push_back(method_of(named, "analog light paths", RenderMethod::forward));
   for (ErrorMethod& method : methods) {
-    if (is_sound) method.share = 2;  // long curved flights
+    if (is_sound) method.share = 2;  // long curved rays
     runs.push_back(run_of(method, [name = named.name] { return stored_reference(name); }));
   }
 }
 
-/// In even light path tracing finds the lamp wherever it goes: no variance, no curve.
+/// Adds a scene in isotropic illumination. Every camera path there ends with the same radiance, so
+/// path tracing has no variance and is omitted.
 void add_even_light(std::vector<ErrorRun>& runs, const NamedRender& named, double radius = 0) {
   std::vector<ErrorMethod> methods{method_of(named, "light tracing", RenderMethod::light),
                                    method_of(named, "bidirectional", RenderMethod::bidirectional)};
@@ -83,14 +87,15 @@ void add_even_light(std::vector<ErrorRun>& runs, const NamedRender& named, doubl
     runs.push_back(run_of(method, [scene = named.scene] { return even_light(scene); }));
 }
 
-/// What a ball of this radius leaves of a beam of radius 1 that it absorbs within a radius.
+/// Returns the fraction of a beam of radius 1 that is not absorbed by a centred ball of this
+/// radius, whose absorption length equals the radius.
 double left_by_ball(double radius) {
-  constexpr double depth = 2;  // across the ball
+  constexpr double depth = 2;  // optical depth across the ball
   const double through = 2 * (1 - (1 + depth) * std::exp(-depth)) / (depth * depth);
   return 1 - radius * radius * (1 - through);
 }
 
-/// A ball of triangles, against the ball of its volume.
+/// Compares an absorbing ball of triangles with a sphere of equal volume.
 ErrorRun absorbing_ball() {
   const grin::LevelSurface ball = smooth(ball_mesh(5), 0.06);
   const double radius = std::cbrt(0.75 * ball.meant_volume() / pi);
@@ -100,14 +105,14 @@ ErrorRun absorbing_ball() {
                  .bodies = {{ball, {.mu_a = 1 / radius}}}};
   scene.lights = {grin::BeamLight{{0, 0, -1.5}, grin::Vec3::UnitZ(), 1.2}};
   scene.sensors = {grin::AreaDetector{{0, 0, 1.5}, grin::Vec3::UnitY(), 3, 3, {}, pi / 2}};
-  return run_of(method_of({"absorbing_ball", scene}, "ball of triangles", RenderMethod::light),
-                [=] {
-                  return ErrorReference{
-                      {left_by_ball(radius / 1.2) / 9}, 0, "closed form, ball of its volume"};
-                });
+  return run_of(
+      method_of({"absorbing_ball", scene}, "ball of triangles", RenderMethod::light), [=] {
+        return ErrorReference{
+            {left_by_ball(radius / 1.2) / 9}, 0, "closed form for a sphere of equal volume"};
+      });
 }
 
-/// Fluence in absorbing fog around a lamp.
+/// Measures the fluence rate in absorbing fog around a lamp.
 ErrorRun map_run() {
   constexpr double albedo = 0.9;
   const RenderScene scene = oracles::lamp_map(albedo);
@@ -125,7 +130,8 @@ ErrorRun map_run() {
   });
 }
 
-/// Transmittance of a slab that scatters as much as it absorbs, by mu_s and mu_a.
+/// Measures the derivatives of a slab's transmittance with respect to mu_s and mu_a, at mu_s =
+/// mu_a.
 ErrorRun gradient_run() {
   RenderScene slab{};
   slab.step = 1;
@@ -148,29 +154,31 @@ ErrorRun gradient_run() {
     return ErrorReference{{(through(1 + apart, 1) - through(1 - apart, 1)) / (2 * apart),
                            (through(1, 1 + apart) - through(1, 1 - apart)) / (2 * apart)},
                           1e-5,
-                          "differences of Peierls' equation"};
+                          "finite differences of solutions of Peierls' equation"};
   });
 }
 
-/// A parabolic guide in fog that hardly turns light: what comes on a disk is what would without.
+/// Measures the derivative of the power on a disk behind a parabolic guide. The fog in the guide
+/// hardly deflects light, so the power is that without fog.
 ErrorRun field_gradient_run() {
   constexpr double radius = 0.3;
   const oracles::GuidedBeam beam{0.2, 6};
   grin::RenderValues guide = oracles::guided_values(beam, {radius}, 0.5, 1 - 1e-9);
   guide.gradient_by = {"alpha"};
   const auto first = [](const grin::TimeBins& bins) {
-    constexpr int narrow = 2;  // of the widths of edges
+    constexpr int narrow = 2;  // index in the list of edge widths
     return static_cast<std::size_t>(bins.first_by_field() + narrow);
   };
-  return run_of(
-      sums_of("parabolic guide", "derivative by alpha", make_render_scene(guide), first, 1,
-              pi * radius * radius),
-      [beam] {
-        return ErrorReference{{beam.by_alpha(radius)}, 1e-5, "where rays of a parabolic guide go"};
-      });
+  return run_of(sums_of("parabolic guide", "derivative by alpha", make_render_scene(guide), first,
+                        1, pi * radius * radius),
+                [beam] {
+                  return ErrorReference{
+                      {beam.by_alpha(radius)}, 1e-5, "closed form of rays in a parabolic guide"};
+                });
 }
 
-/// Joins by 1/r^2 without another strategy beside.
+/// Adds a scene in which path tracing has infinite variance: no competing strategy bounds the 1/r^2
+/// singularity of its connections.
 void add_without_variance(std::vector<ErrorRun>& runs, const NamedRender& named) {
   ErrorMethod path = method_of(named, "path tracing, no finite variance", RenderMethod::path);
   path.is_monte_carlo = false;
@@ -200,7 +208,7 @@ std::vector<LongRun> render_long_runs() {
   scenes.push_back({"glass_ball_beam", beam_on_glass_ball()});
   std::vector<LongRun> runs;
   for (const NamedRender& named : scenes) {
-    const bool by_light = named.name == "slab";  // five times as efficient there
+    const bool by_light = named.name == "slab";  // light tracing is five times as efficient there
     runs.push_back(
         {named.name,
          std::string("long run of ") + (by_light ? "light" : "bidirectional") + " tracing",

@@ -5,7 +5,7 @@
 
 namespace flatspeckle::bench {
 
-/// Of one value or more.
+/// Returns the median of at least one value.
 inline double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;

@@ -4,9 +4,9 @@
 
 namespace flatspeckle::bench {
 
-/// y = amplitude x^exponent, by least squares of log y against log x with these weights, two points
-/// or more; and the standard error of the exponent from the scatter about the line, of equal
-/// weights.
+/// Fits y = amplitude x^exponent to at least two points, by weighted least squares of log y against
+/// log x. The standard error of the exponent is estimated from the unweighted scatter of the points
+/// about the line.
 struct PowerFit {
   double exponent, amplitude, exponent_error;
 };

@@ -6,7 +6,7 @@ namespace flatspeckle::oracles {
 
 using Wide = boost::multiprecision::cpp_bin_float_50;
 
-/// J_n(x) and Y_n(x) in 50 digits.
+/// The values J_n(x) and Y_n(x) in 50 digits.
 struct BesselOracle {
   Wide j, y;
 
@@ -17,7 +17,7 @@ BesselOracle bessel_oracle(int n, const Wide& x);
 /// J_n'(x) and Y_n'(x).
 BesselOracle bessel_prime_oracle(int n, const Wide& x);
 
-/// |found - exact| / scale without leaving extended range
+/// Returns |found - exact| / scale, computed in extended range, without overflow.
 double error(long double found, const Wide& exact, const Wide& scale);
 
 }  // namespace flatspeckle::oracles

@@ -38,7 +38,7 @@ Matrix operator+(Matrix a, const Matrix& b) {
   return a;
 }
 
-/// (1 - a)^-1 b
+/// Returns (1 - a)^-1 b.
 Matrix solve_one_minus(Matrix a, Matrix b, std::size_t n) {
   for (double& element : a) element = -element;
   for (std::size_t i = 0; i < n; ++i) a[i * n + i] += 1;
@@ -49,7 +49,7 @@ Matrix solve_one_minus(Matrix a, Matrix b, std::size_t n) {
   return b;
 }
 
-/// int_0^depth exp(-s a - (depth - s) b) ds
+/// Returns int_0^depth exp(-s a - (depth - s) b) ds.
 double overlap(double a, double b, double depth) {
   const double difference = (a - b) * depth;
   if (std::abs(difference) < 1e-5)
@@ -65,16 +65,16 @@ double folded(double angle) {
 /// Nodes and weights of Gauss-Legendre quadrature on (0, 1), by Newton steps on the recurrence.
 void gauss_legendre(int n, std::vector<double>& node, std::vector<double>& weight) {
   for (int i = 0; i < n; ++i) {
-    double x = std::cos(pi * (i + 0.75) / (n + 0.5)), slope = 1;
+    double x = std::cos(pi * (i + 0.75) / (n + 0.5)), derivative = 1;
     for (int step = 0; step < 20; ++step) {
       double p = x, before = 1;
       for (int degree = 2; degree <= n; ++degree)
         before = std::exchange(p, ((2 * degree - 1) * x * p - (degree - 1) * before) / degree);
-      slope = n * (x * p - before) / (x * x - 1);
-      x -= p / slope;
+      derivative = n * (x * p - before) / (x * x - 1);
+      x -= p / derivative;
     }
     node.push_back((1 + x) / 2);
-    weight.push_back(1 / ((1 - x * x) * slope * slope));
+    weight.push_back(1 / ((1 - x * x) * derivative * derivative));
   }
 }
 
@@ -89,7 +89,7 @@ std::function<double(double)> henyey_greenstein(double g) {
 
 SlabTransport::SlabTransport(const std::vector<Medium>& layers, const std::vector<double>& angles,
                              int nodes) {
-  openblas_set_num_threads(1);  // the matrices are small, and tests run beside each other
+  openblas_set_num_threads(1);  // the matrices are small, and tests run in parallel
   std::vector<double> y, weight;
   gauss_legendre(nodes, y, weight);
   for (std::size_t i = 0; i < y.size(); ++i) {
@@ -117,8 +117,8 @@ void SlabTransport::add_node(double angle, double complement, double weight) {
   weight_.push_back(weight);
 }
 
-/// p(theta_i - theta_j) + parity p(theta_i + theta_j), the outgoing angle counted from -z if
-/// backward.
+/// Returns p(theta_i - theta_j) + parity p(theta_i + theta_j); the outgoing angle is measured from
+/// -z if backward.
 double SlabTransport::phase_element(std::size_t i, std::size_t j, bool backward, int parity) const {
   const double out = backward ? pi - angle_[i] : angle_[i];
   return scale_[i] * scale_[j] *
@@ -140,7 +140,7 @@ void SlabTransport::scale_phase() {
     for (std::size_t i = 0; i < n; ++i) {
       double sum = 0;
       for (std::size_t j = 0; j < n; ++j) sum += scattered[i * n + j] * before[j];
-      // between old and new the iteration would swing
+      // the geometric mean damps oscillations of the iteration
       scale_[i] = weight_[i] > 0 ? std::sqrt(before[i] / sum) : 1 / sum;
     }
   }
@@ -161,7 +161,7 @@ SlabTransport::Layer SlabTransport::thin_layer(double optical_depth, int parity)
   return layer;
 }
 
-/// Two layers of equal optical depth on top of each other.
+/// Adds two layers of equal optical depth.
 SlabTransport::Layer SlabTransport::doubled(const Layer& half, double optical_depth) const {
   const std::size_t n = angle_.size();
   const auto direct = this->direct(optical_depth);
@@ -182,8 +182,8 @@ std::vector<double> SlabTransport::direct(double optical_depth) const {
   return direct;
 }
 
-/// Different layers: radiance between them goes down as through the upper one and by what that
-/// reflects from below.
+/// Adds two different layers. Downward radiance between them is the light transmitted by the upper
+/// layer plus the light that layer reflects back from below.
 SlabTransport::Stack SlabTransport::added(const Stack& upper, const Stack& lower) const {
   const std::size_t n = angle_.size();
   const auto from = [&](const Layer& first, const Layer& first_behind, double first_depth,
@@ -208,7 +208,8 @@ SlabTransport::Stack SlabTransport::added(const Stack& upper, const Stack& lower
 }
 
 SlabTransport::Layer SlabTransport::slab(int parity) const {
-  constexpr int doublings = 46;  // what a layer scatters twice is lost: 1e-14 of the optical depth
+  constexpr int doublings =
+      46;  // double scattering in the first layer is neglected: 1e-14 of the optical depth
   double optical_depth = std::ldexp(medium_.optical_depth, -doublings);
   Layer layer = thin_layer(optical_depth, parity);
   for (int i = 0; i < doublings; ++i, optical_depth *= 2) layer = doubled(layer, optical_depth);
@@ -222,7 +223,8 @@ std::optional<std::size_t> SlabTransport::find(double angle) const {
   return static_cast<std::size_t>(found - angle_.begin());
 }
 
-/// Power through a face over power that enters; both signs of theta are in the even radiance.
+/// Returns power through a face over incident power; the even radiance contains both signs of
+/// theta.
 double SlabTransport::flux(const Matrix& radiance, double light) const {
   const std::size_t n = angle_.size(), in = find(light).value();
   double sum = 0;

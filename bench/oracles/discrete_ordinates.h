@@ -6,29 +6,30 @@
 
 namespace flatspeckle::oracles {
 
-/// Transport of intensity through an infinite slab, or layers on top of each other, without random
-/// numbers, for any phase function:
+/// Solves transport of intensity through an infinite slab or a stack of layers deterministically,
+/// for any phase function:
 ///   cos(theta) dI/dtau = -I + albedo int p(theta - theta') I(theta') dtheta'
 /// on discrete ordinates over the circle, by adding and doubling from a layer so thin that it
-/// scatters once (van de Hulst 1980, ch. 4). Light and views are ordinates of weight 0, so that
-/// nothing is interpolated. The nodes are Gauss-Legendre in sqrt(pi/2 - theta): radiance has a
-/// logarithm at grazing angles, near the faces. The matrix of the phase function is scaled to
-/// conserve power.
+/// scatters only once (van de Hulst [hulst1980], ch. 4). Illumination and detection directions are
+/// ordinates of weight 0, so that nothing is interpolated. The nodes are Gauss-Legendre in
+/// sqrt(pi/2 - theta): near the faces radiance has a logarithmic singularity at grazing angles. The
+/// matrix of the phase function is scaled to conserve power.
 class SlabTransport {
  public:
   struct Medium {
     double optical_depth, albedo;
     std::function<double(double)> phase;  ///< p(angle), even, integral 1 over 2 pi (C5)
   };
-  /// angles: every light and view that will be asked for (C2), none along the slab. `nodes` per
-  /// quadrant: 50 give 1e-5 up to g = 0.8, forward peaks of width 1 - g want 6 / (1 - g) of them.
+  /// angles: all illumination and detection directions that will be requested (C2), none of them
+  /// parallel to the slab. `nodes` per quadrant: 50 give 1e-5 up to g = 0.8; forward peaks of width
+  /// 1 - g require 6 / (1 - g).
   SlabTransport(const Medium& medium, const std::vector<double>& angles, int nodes)
       : SlabTransport(std::vector{medium}, angles, nodes) {}
-  /// Of layers, from z = 0 on.
+  /// A stack of layers, from z = 0 on.
   SlabTransport(const std::vector<Medium>& layers, const std::vector<double>& angles, int nodes);
 
-  /// Shares of the light that enters from an angle, |light| < pi/2; transmittance without what was
-  /// never scattered.
+  /// Fractions of the power incident at an angle, |light| < pi/2. The transmittance excludes
+  /// unscattered light.
   double reflectance(double light) const;
   double transmittance(double light) const;
   double direct_transmittance(double light) const;
@@ -38,12 +39,12 @@ class SlabTransport {
   double covariance_without_reversed(double light, double view) const;
 
  private:
-  /// Diffuse radiance at [out][in] per unit radiance in; angles from the z axis in the first
-  /// quadrant, those of reflected light from -z.
+  /// Diffuse radiance per unit incident radiance, [out][in]. Angles are in the first quadrant; they
+  /// are measured from the z axis, for reflected light from -z.
   struct Layer {
     std::vector<double> reflected, transmitted;
   };
-  /// Of light that comes from above, and from below.
+  /// Response to light incident from above and from below.
   struct Stack {
     double optical_depth;
     Layer above, below;
@@ -60,9 +61,10 @@ class SlabTransport {
   double flux(const std::vector<double>& radiance, double light) const;
   double radiance(double light, double view) const;
 
-  Medium medium_;  ///< the layer that is being made
+  Medium medium_;  ///< the layer under construction
   std::vector<double> angle_, cosine_, weight_, scale_;
-  Stack even_, odd_;  ///< for radiance even and odd in theta; both on 0 < theta < pi/2
+  /// Solutions for radiance even and odd in theta, both stored for 0 < theta < pi/2.
+  Stack even_, odd_;
 };
 
 /// 2D Henyey-Greenstein (C22).

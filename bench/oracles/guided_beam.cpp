@@ -33,7 +33,7 @@ double GuidedBeam::arc_length(double rho) const {
 }
 
 double GuidedBeam::power(double radius) const {
-  double low = 0, high = 1;  // of where the ray begins that lands there
+  double low = 0, high = 1;  // bounds of the starting height of the ray that lands there
   for (int i = 0; i < 60; ++i) {
     const double middle = (low + high) / 2;
     (std::abs(landing(middle)) < radius ? low : high) = middle;

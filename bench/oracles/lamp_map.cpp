@@ -9,7 +9,7 @@ namespace flatspeckle::oracles {
 
 namespace {
 
-/// The root of albedo atanh(kappa) = kappa, in (0, 1): by bisection.
+/// Returns the root of albedo atanh(kappa) = kappa in (0, 1), by bisection.
 double decay(double albedo) {
   double low = 0, high = 1;
   for (int i = 0; i < 200; ++i) {
@@ -19,13 +19,14 @@ double decay(double albedo) {
   return low;
 }
 
-/// 4 pi r times the part of the pole, mu_t = 1.
+/// Returns the contribution of the pole times 4 pi r, for mu_t = 1.
 double diffusing(double albedo, double r) {
   const double kappa = decay(albedo), square = kappa * kappa;
   return 2 * square * (1 - square) * std::exp(-kappa * r) / (albedo * (square - (1 - albedo)));
 }
 
-/// The same of the cut: integral of exp(-r t) g(t) over t > 1.
+/// Returns the contribution of the branch cut times 4 pi r, the integral of exp(-r t) g(t) over t >
+/// 1, for mu_t = 1.
 double transient(double albedo, double r) {
   GaussPanels beyond_1;
   for (double from = 1e-14; from < 60 / r; from *= 4) beyond_1.add(from, 4 * from);
@@ -42,7 +43,7 @@ double transient(double albedo, double r) {
 constexpr double nearest = 1, farthest = 5, radius = 1;
 constexpr int discs = 4;
 
-/// Mean over a disc between two distances from the lamp.
+/// Returns the mean fluence rate in a disc between two distances from the lamp.
 double disc_mean(double albedo, double from, double to) {
   GaussPanels across, along;
   across.add(0, radius);

@@ -7,18 +7,17 @@
 namespace flatspeckle::oracles {
 
 /// Fluence rate at the distance r from an isotropic point source of power 1 in an infinite medium
-/// of matched index that scatters isotropically, by transport theory (Case, de Hoffmann and
-/// Placzek, Introduction to the Theory of Neutron Diffusion, 1953): a pole, which is what diffusion
-/// has far away, and an integral over a branch cut, in which unscattered light is. Albedo from 0.1
-/// to below 1.
+/// of matched index that scatters isotropically, by transport theory [case1953]. It is the sum of a
+/// pole, which is the asymptotic diffusion, and an integral over a branch cut, which contains the
+/// unscattered light. The albedo must be at least 0.1 and below 1.
 double point_source_fluence(double mu_t, double albedo, double r);
 
-/// A lamp in a ball of fog of extinction 1 that scatters isotropically, so wide (12) that light
-/// hardly comes back from its rim, and a map beside the lamp: discs about an axis through it, from
-/// 1 to 5 away.
+/// Returns the scene of a lamp in isotropically scattering fog of extinction 1. The fog fills a
+/// ball of radius 12, so that hardly any light returns from its rim. The cells of the fluence map
+/// are discs around an axis through the lamp, at distances from 1 to 5.
 grin::RenderScene lamp_map(double albedo);
 
-/// The fluence rate of its cells, as in an infinite medium.
+/// Returns the mean fluence rate in each cell of the map, for an infinite medium.
 std::vector<double> lamp_fluence(double albedo);
 
 }  // namespace flatspeckle::oracles

@@ -18,15 +18,16 @@ std::vector<WideComplex> wide_bessel_ratios(int order, const WideComplex& z) {
 WideComplex wide_t(const Scatterer& cylinder, double k, int n) {
   using Kind = Scatterer::Kind;
   const Wide x(k * cylinder.radius);
-  const Wide j = boost::math::cyl_bessel_j(n, x), j_slope = boost::math::cyl_bessel_j_prime(n, x);
+  const Wide j = boost::math::cyl_bessel_j(n, x),
+             j_derivative = boost::math::cyl_bessel_j_prime(n, x);
   const WideComplex h(j, boost::math::cyl_neumann(n, x)),
-      h_slope(j_slope, boost::math::cyl_neumann_prime(n, x));
+      h_derivative(j_derivative, boost::math::cyl_neumann_prime(n, x));
   if (cylinder.kind == Kind::soft) return -j / h;
-  if (cylinder.kind == Kind::hard) return -j_slope / h_slope;
+  if (cylinder.kind == Kind::hard) return -j_derivative / h_derivative;
   const WideComplex m(Wide(cylinder.index.real()), Wide(cylinder.index.imag())), mx = m * x;
   const WideComplex q = cylinder.kind == Kind::tm ? m : WideComplex(1 / m);
   const WideComplex inside = q * (n / mx - wide_bessel_ratios(n, mx)[n]);  // q J'/J
-  return -(inside * j - j_slope) / (inside * h - h_slope);
+  return -(inside * j - j_derivative) / (inside * h - h_derivative);
 }
 
 }  // namespace flatspeckle::oracles

@@ -23,15 +23,15 @@ inline WideComplex wide(ExtendedComplex a) {
   return {Wide(a.real()), Wide(a.imag())};
 }
 
-/// |found - exact| / |exact|
+/// Returns |found - exact| / |exact|.
 inline double relative_error(const WideComplex& found, const WideComplex& exact) {
   return static_cast<double>(abs(found - exact) / abs(exact));
 }
 
-/// J_{n+1}(z) / J_n(z) for n = 0 .. order by recurrence downwards.
+/// Returns J_{n+1}(z) / J_n(z) for n = 0 .. order by downward recurrence.
 std::vector<WideComplex> wide_bessel_ratios(int order, const WideComplex& z);
 
-/// T_n of a cylinder: C7 word for word.
+/// Returns T_n of a cylinder, by the formula of C7 in 50 digits.
 WideComplex wide_t(const Scatterer& cylinder, double k, int n);
 
 }  // namespace flatspeckle::oracles

@@ -16,9 +16,10 @@ double e(unsigned n, double x) {
   return boost::math::expint(n, x);
 }
 
-using Values = std::vector<double>;  // means over equal cells
+using Values = std::vector<double>;  // mean values in cells of equal thickness
 
-/// (1/2) int E1(|x - x'|) f(x') dx', averaged over the cells: E3'' = E1.
+/// Applies (1/2) int E1(|x - x'|) f(x') dx', averaged over the cells, by differences of E3 (E3'' =
+/// E1).
 class PeierlsOperator {
  public:
   PeierlsOperator(double optical_depth, int cells) : of_distance_(cells) {
@@ -60,7 +61,7 @@ double eigenvalue(double optical_depth) {
   return (4 * fine - rough) / 3;
 }
 
-/// By orders of scattering.
+/// Sums the orders of scattering.
 Values fluence(const PeierlsOperator& peierls, double albedo, const Values& unscattered) {
   Values total = unscattered, order = unscattered;
   while (*std::max_element(order.begin(), order.end()) > 1e-13) {
@@ -98,7 +99,7 @@ double critical_ratio(double optical_depth) {
 }
 
 double slab_decay_rate(double length, double mu_s, double mu_a) {
-  double low = 0, high = mu_s;  // of the extinction that is left
+  double low = 0, high = mu_s;  // bounds of mu_s - rate
   for (int i = 0; i < 40; ++i) {
     const double left = (low + high) / 2;
     (mu_s / left > critical_ratio(left * length) ? low : high) = left;

@@ -25,7 +25,7 @@ Number square(Number a) {
   return a * a;
 }
 
-/// Real roots of a t^2 + 2 b t + c.
+/// Appends the real roots t of a t^2 + 2 b t + c = 0.
 void add_roots(Number a, Number b, Number c, std::vector<Number>& roots) {
   if (a == 0) {
     if (b != 0) roots.push_back(-c / (2 * b));
@@ -38,8 +38,8 @@ void add_roots(Number a, Number b, Number c, std::vector<Number>& roots) {
   roots.push_back(c / far);
 }
 
-/// A round surface, in space or in the plane across z: its centre is arm away from `origin`, which
-/// is the centre itself, or a point of the surface, as is exact at any radius.
+/// A sphere, or a circular cylinder along z. Its centre is at origin + arm. The origin is the
+/// centre itself or a point of the surface, which keeps precision at any radius.
 struct RoundSurface {
   Long3 origin, arm;
   Number radius;
@@ -49,7 +49,7 @@ struct RoundSurface {
     return {x[0] - origin[0], x[1] - origin[1], is_cylinder ? 0 : x[2] - origin[2]};
   }
   Long3 from(const Long3& x) const { return at(from_origin(x), -1, arm); }
-  /// |x - centre|^2 - radius^2
+  /// Returns |x - centre|^2 - radius^2.
   Number power(const Long3& x) const {
     const Long3 p = from_origin(x);
     const bool starts_on_surface = dot(arm, arm) > 0;
@@ -64,11 +64,12 @@ struct RoundSurface {
   }
 };
 
-/// The parts of a lens.
+/// Surfaces of a lens.
 struct LensParts {
   Long3 vertex;
   Number radius;
-  std::array<Number, 2> curved, z;  ///< radii of curvature, and where the faces' vertices are
+  /// Radii of curvature of the two faces, and z of their vertices.
+  std::array<Number, 2> curved, z;
 
   explicit LensParts(const std::array<double, 7>& s)
       : vertex{s[0], s[1], s[2]},
@@ -80,7 +81,7 @@ struct LensParts {
   RoundSurface sphere(int face) const {
     return {{vertex[0], vertex[1], z[face]}, {0, 0, curved[face]}, std::abs(curved[face])};
   }
-  /// Depth of a face's surface at this square of the distance from the axis.
+  /// Returns z of a face at this squared distance from the axis.
   Number face_at(int face, Number rho_squared) const {
     if (curved[face] == 0) return z[face];
     const Number rest = std::sqrt(std::max<Number>(0, square(curved[face]) - rho_squared));
@@ -112,7 +113,7 @@ Number SolidBody::volume() const {
   if (kind == Kind::block)
     return (static_cast<Number>(s[3]) - s[0]) * (static_cast<Number>(s[4]) - s[1]) *
            (static_cast<Number>(s[5]) - s[2]);
-  const LensParts lens(shape);  // midpoint rule over rings of equal area
+  const LensParts lens(shape);  // volume by the midpoint rule over rings of equal area
   constexpr int rings = 2000;
   Number sum = 0;
   for (int i = 0; i < rings; ++i) {
@@ -173,7 +174,7 @@ Long3 SolidBody::normal(const Long3& x) const {
 
 namespace {
 
-/// Finds the body that a place lies in, by its number, or -1 around them.
+/// Finds the number of the body that contains a place, or -1 outside all bodies.
 class Layering {
  public:
   explicit Layering(const SolidScene& scene) : scene_(scene) {
@@ -198,12 +199,12 @@ class Layering {
   std::vector<int> order_;
 };
 
-/// A line's crossings from its start on, those close together as one, and what it is in between.
+/// Next change of medium along a line. Crossings close together count as one.
 struct NextChange {
-  Number way;
+  Number distance;
   int beyond;
-  int surface;  ///< number of the body whose surface it is
-  bool leaves;  ///< the room
+  int surface;  ///< index of the body whose surface is crossed
+  bool leaves;  ///< whether the ray leaves the domain
 };
 
 class SolidRayFollower {
@@ -217,7 +218,7 @@ class SolidRayFollower {
     while (true) {
       const auto next = next_change(ray, in);
       if (!next) return std::nullopt;
-      go(ray, next->way, in);
+      go(ray, next->distance, in);
       if (next->leaves) return ray;
       if (index(next->beyond) == index(in)) {
         in = next->beyond;
@@ -237,11 +238,11 @@ class SolidRayFollower {
     return body < 0 ? scene_.extinction_around : scene_.bodies[body].extinction;
   }
 
-  /// Ascending, beyond what is at the start.
+  /// Returns the distances of all crossings beyond the start, in ascending order.
   std::vector<Number> crossings(const SolidRay& ray) const {
     std::vector<Number> all;
     for (const SolidBody& body : scene_.bodies) body.add_crossings(ray.x, ray.d, all);
-    scene_.room.add_crossings(ray.x, ray.d, all);
+    scene_.domain.add_crossings(ray.x, ray.d, all);
     std::erase_if(all, [](Number t) { return !(t > together) || !std::isfinite(t); });
     std::sort(all.begin(), all.end());
     return all;
@@ -259,7 +260,7 @@ class SolidRayFollower {
       const Number before = i > 0 ? all[i - 1] : 0;
       const Long3 here = at(ray.x, (before + all[i]) / 2, ray.d);
       const Long3 x = at(ray.x, (all[last] + after) / 2, ray.d);
-      const bool leaves = !scene_.room.holds(x);
+      const bool leaves = !scene_.domain.holds(x);
       const int beyond = layering_.at(x);
       const bool enters =
           beyond >= 0 && scene_.bodies[beyond].holds(x) != scene_.bodies[beyond].holds(here);
@@ -268,14 +269,15 @@ class SolidRayFollower {
     }
     return std::nullopt;
   }
-  void go(SolidRay& ray, Number way, int in) const {
-    ray.x = at(ray.x, way, ray.d);
-    ray.arc_length += way;
-    ray.optical_path += index(in) * way;
-    ray.transmitted *= std::exp(-extinction(in) * way);
+  void go(SolidRay& ray, Number distance, int in) const {
+    ray.x = at(ray.x, distance, ray.d);
+    ray.arc_length += distance;
+    ray.optical_path += index(in) * distance;
+    ray.transmitted *= std::exp(-extinction(in) * distance);
     ray.index = index(in);
   }
-  /// Snell's and Fresnel's laws, by the cosines of both angles.
+  /// Refracts or reflects a ray by Snell's and Fresnel's laws, in terms of the cosines of both
+  /// angles.
   bool jump(SolidRay& ray, int& in, const NextChange& next,
             const std::vector<bool>* reflects) const {
     Long3 n = scene_.bodies[next.surface].normal(ray.x);

@@ -12,7 +12,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// int_0^x K_0 = pi/2 - int_0^inf exp(-x cosh t)/cosh t dt; the trapezoidal rule converges
+/// Returns int_0^x K_0 = pi/2 - int_0^inf exp(-x cosh t)/cosh t dt; the trapezoidal rule converges
 /// exponentially.
 double integral_of_k0(double x) {
   constexpr double step = 0.05;
@@ -24,7 +24,8 @@ double integral_of_k0(double x) {
   return pi / 2 - step * sum;
 }
 
-/// int_from^{from+length} exp(constant + rate z) dz, without overflow where that is finite
+/// Returns int_from^{from+length} exp(constant + rate z) dz, without overflow if the result is
+/// finite.
 Complex integral_of_exp(Complex constant, Complex rate, double from, double length) {
   const Complex half = rate * length / 2.0, middle = constant + rate * from + half;
   if (std::abs(half) < 1e-4) return length * std::exp(middle) * (1.0 + half * half / 6.0);
@@ -33,10 +34,11 @@ Complex integral_of_exp(Complex constant, Complex rate, double from, double leng
 
 }  // namespace
 
-/// albedo int K over the cells, and LU factors of 1 - that.
+/// The operator A = albedo int K dz', discretised on the cells, and LU factors of 1 - A.
 struct IsotropicSlab::Kernel {
   double q;
-  std::vector<double> over_cell;  ///< by the distance of the cells: the matrix is Toeplitz
+  /// Elements of A by the distance of two cells; the matrix is Toeplitz.
+  std::vector<double> over_cell;
   std::vector<double> factors;
   std::vector<lapack_int> pivots;
 
@@ -45,7 +47,7 @@ struct IsotropicSlab::Kernel {
 
 IsotropicSlab::IsotropicSlab(double k, double depth, double mu_t, double albedo, int cells)
     : k_(k), depth_(depth), mu_t_(mu_t), albedo_(albedo), cells_(cells) {
-  openblas_set_num_threads(1);  // the matrices are small, and tests run beside each other
+  openblas_set_num_threads(1);  // the matrices are small, and tests run in parallel
 }
 
 IsotropicSlab::~IsotropicSlab() = default;
@@ -62,12 +64,12 @@ IsotropicSlab::Wave IsotropicSlab::view_wave(double angle) const {
 }
 
 IsotropicSlab::Wave IsotropicSlab::times_conjugate(Wave a, Wave b) {
-  return {a.constant + std::conj(b.constant), a.slope + std::conj(b.slope)};
+  return {a.constant + std::conj(b.constant), a.rate + std::conj(b.rate)};
 }
 
 Complex IsotropicSlab::mean_over_cell(Wave wave, int cell) const {
   const double h = depth_ / cells_;
-  return integral_of_exp(wave.constant, wave.slope, h * cell, h) / h;
+  return integral_of_exp(wave.constant, wave.rate, h * cell, h) / h;
 }
 
 const IsotropicSlab::Kernel& IsotropicSlab::kernel(double q) const {
@@ -120,7 +122,7 @@ Complex IsotropicSlab::single(Channel a, Channel b) const {
   const Wave light = times_conjugate(light_wave(a.light), light_wave(b.light));
   const Wave view = times_conjugate(view_wave(a.view), view_wave(b.view));
   return albedo_ * mu_t_ / (2 * pi) *
-         integral_of_exp(light.constant + view.constant, light.slope + view.slope, 0, depth_);
+         integral_of_exp(light.constant + view.constant, light.rate + view.rate, 0, depth_);
 }
 
 Complex IsotropicSlab::ladder(Channel a, Channel b) const {
@@ -137,7 +139,7 @@ Complex IsotropicSlab::crossed(Channel a, Channel b) const {
 
 double IsotropicSlab::absorbed(double light) const {
   const Wave source = times_conjugate(light_wave(light), light_wave(light));
-  double collisions = mu_t_ * integral_of_exp(0, source.slope, 0, depth_).real();
+  double collisions = mu_t_ * integral_of_exp(0, source.rate, 0, depth_).real();
   for (const Complex c : multiple_collisions(0, source)) collisions += c.real() * depth_ / cells_;
   return (1 - albedo_) * collisions / std::cos(light);
 }

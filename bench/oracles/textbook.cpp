@@ -15,7 +15,7 @@ namespace flatspeckle::oracles {
 namespace {
 
 using std::numbers::pi;
-constexpr std::uint64_t stream = 1001;  // none that the estimator under test draws from
+constexpr std::uint64_t stream = 1001;  // not used by the estimator under test
 
 struct Ray {
   double angle;
@@ -29,7 +29,7 @@ Ray turned_round(const Ray& r) {
   return {r.angle + pi, -r.w};
 }
 
-/// Amplitude per sqrt(sigma_s), so that |amplitude|^2 is the phase function (C5, C22).
+/// Scattering amplitude over sqrt(sigma_s), so that |amplitude|^2 is the phase function (C5, C22).
 class Scattering {
  public:
   explicit Scattering(const Scene& scene) : hg_{scene.scatterer.g} {
@@ -65,7 +65,7 @@ class Scattering {
     for (double& c : cumulative_) c /= cumulative_.back();
   }
 
-  /// Even in the angle.
+  /// Interpolates the table, which is even in the angle.
   Complex interpolate(double angle) const {
     const double position = std::abs(std::remainder(angle, 2 * pi)) / step;
     const int i = std::min(static_cast<int>(position), intervals - 1);
@@ -85,11 +85,12 @@ class Scattering {
   static constexpr double step = pi / intervals;
   Kind kind_ = Kind::henyey_greenstein;
   grin::HenyeyGreenstein<2> hg_;
-  std::vector<Complex> table_;      ///< at the angles i step
-  std::vector<double> cumulative_;  ///< of |table|^2, constant in each interval
+  std::vector<Complex> table_;  ///< at the angles i step
+  /// Cumulative distribution, with |amplitude|^2 constant within each step.
+  std::vector<double> cumulative_;
 };
 
-/// One walker per batch.
+/// Samples the paths of one batch.
 class Walker {
  public:
   Walker(const Scene& scene, const Scattering& scattering, bool reversed, RandomStream random,
@@ -120,12 +121,12 @@ class Walker {
     single_scattering(first);
 
     const Ray start = scattering_.sample(lights_[chosen], random_.uniform());
-    double density = 0;  // of the mixture of all lights
+    double density = 0;  // probability density of x, summed over all illuminations
     for (std::size_t i = 0; i < lights_.size(); ++i) {
       density += density_[i] * scattering_.density(lights_[i], start);
       light_first_[i] = product(light_first_[i], scattering_.amplitude(lights_[i], start));
     }
-    if (reversed_) see_views(first, turned_round(start), view_first_);
+    if (reversed_) view_amplitudes(first, turned_round(start), view_first_);
 
     double weight = 1;
     Vec2 x = first;
@@ -147,7 +148,7 @@ class Walker {
  private:
   double light_count() const { return static_cast<double>(lights_.size()); }
 
-  /// B = 1 of C14.
+  /// Adds single scattering, B = 1 of C14.
   void single_scattering(Vec2 x) {
     double density = 0;
     for (double p : density_) density += p;
@@ -160,10 +161,11 @@ class Walker {
     add(scene_.medium.mu_s / density);
   }
 
-  /// B >= 2 of C14, the last scatterer at x, reached along w.
+  /// Adds multiple scattering, B >= 2 of C14. The last scatterer is at x and is reached in
+  /// direction w.
   void multiple_scattering(Vec2 x, const Ray& w, double weight) {
-    see_views(x, w, view_last_);
-    if (reversed_) see_lights(x, turned_round(w), light_last_);
+    view_amplitudes(x, w, view_last_);
+    if (reversed_) light_amplitudes(x, turned_round(w), light_last_);
     for (std::size_t c = 0; c < field_.size(); ++c) {
       const auto [i, v] = request_.channels[c];
       field_[c] = product(light_first_[i], view_last_[v]);
@@ -179,7 +181,7 @@ class Walker {
     }
   }
 
-  /// e_i(x) and e_v(x) of C13.
+  /// The endpoint factors e_i(x) and e_v(x) of C13.
   Complex light_factor(Vec2 x, const Ray& light) const {
     const double inside = scene_.domain.distance_to_edge(x, -light.w);
     return std::polar(std::exp(-scene_.medium.mu_t * inside / 2), scene_.k * dot(light.w, x));
@@ -189,25 +191,26 @@ class Walker {
     return std::polar(std::exp(-scene_.medium.mu_t * inside / 2), -scene_.k * dot(view.w, x));
   }
 
-  /// e_i(x) A(i -> w) of every light.
-  void see_lights(Vec2 x, const Ray& w, std::vector<Complex>& out) const {
+  /// Computes e_i(x) A(i -> w) for every illumination.
+  void light_amplitudes(Vec2 x, const Ray& w, std::vector<Complex>& out) const {
     for (std::size_t i = 0; i < lights_.size(); ++i)
       out[i] = product(light_factor(x, lights_[i]), scattering_.amplitude(lights_[i], w));
   }
-  /// A(w -> v) e_v(x) of every view.
-  void see_views(Vec2 x, const Ray& w, std::vector<Complex>& out) const {
+  /// Computes A(w -> v) e_v(x) for every detection direction.
+  void view_amplitudes(Vec2 x, const Ray& w, std::vector<Complex>& out) const {
     for (std::size_t v = 0; v < views_.size(); ++v)
       out[v] = product(view_factor(x, views_[v]), scattering_.amplitude(w, views_[v]));
   }
 
-  /// Length across which a light meets the medium; per unit length of a slab.
+  /// Returns the width of the medium perpendicular to the illumination; for a slab, the width per
+  /// unit length of its face.
   double aperture(const Ray& light) const {
     const Domain& domain = scene_.domain;
     if (domain.kind == Domain::Kind::slab) return std::abs(light.w.z);
     return domain.width * std::abs(light.w.z) + domain.depth * std::abs(light.w.x);
   }
 
-  /// Uniform over the faces that the light meets, seen along the light.
+  /// Samples an entry point uniformly over the illuminated faces, projected along the light.
   Vec2 sample_entry(const Ray& light) {
     const Domain& domain = scene_.domain;
     const double z = light.w.z > 0 ? 0 : domain.depth;
@@ -226,7 +229,7 @@ class Walker {
     return entry + -std::log1p(random_.uniform() * absorbed) / mu_t * light.w;
   }
 
-  /// Density with which sample_first of a light comes to x.
+  /// Returns the density with which sample_first samples x for an illumination.
   double first_density(Vec2 x, const Ray& light) const {
     const double mu_t = scene_.medium.mu_t;
     const double behind = scene_.domain.distance_to_edge(x, -light.w);
@@ -241,7 +244,7 @@ class Walker {
   RandomStream random_;
   std::span<Complex> sums_;
   std::vector<Ray> lights_, views_;
-  std::vector<double> density_;  ///< of each light's share of first scatterers where this one is
+  std::vector<double> density_;  ///< density of the first scatterer, for each illumination
   std::vector<Complex> light_first_, light_last_, view_first_, view_last_;
   std::vector<Complex> field_;  ///< per channel
 };

@@ -7,14 +7,15 @@
 
 namespace flatspeckle::oracles {
 
-/// The published Monte Carlo estimator of the covariance (Bar, Alterman, Gkioulekas, Levin 2019,
-/// algorithm 1), written from the paper in plain code: the oracle of the tests and the baseline of
-/// the benchmarks. A light of the request at random, the first scatterer by its attenuation inside
-/// the medium, the first direction by the phase function, free flights that may leave, albedo
-/// weights with roulette below 0.2; every scatterer of the path is joined to all views and a full
-/// rank-one update made for the requested entries.
-/// reversed: f = F + R with the weight 1/2 of C14 and the density of the forward walk alone.
-/// Far views and independent scatterers only.
+/// The published Monte Carlo estimator of the covariance (Bar, Alterman, Gkioulekas, Levin
+/// [bar2019], algorithm 1), written in plain code from the paper. It is a reference for the tests
+/// and a baseline for the benchmarks. It picks an illumination of the request at random and samples
+/// the first scatterer in proportion to the attenuated intensity inside the medium, and the first
+/// direction from the phase function. Free flights may leave the medium; paths carry albedo
+/// weights, with Russian roulette below 0.2. Every scatterer of the path is connected to all
+/// detection directions, with a full rank-one update of the requested entries. With `reversed`,
+/// each contribution is f = F + R with the weight 1/2 of C14, and the density is that of the
+/// forward walk alone. Only for far-field detection and independent scatterers.
 FieldJob textbook_job(const Scene& scene, bool reversed, std::uint64_t paths_per_batch,
                       std::uint64_t seed);
 

@@ -1,4 +1,4 @@
-// Derivatives of rays that a search of a field needs.
+// Comparisons for the design module: derivatives of rays with respect to the field.
 
 #include <memory>
 
@@ -11,18 +11,18 @@ namespace {
 
 using namespace grin::design;
 
-/// The loss of rays that are to meet, and its derivatives.
+/// A lens under design: the loss of rays that should meet in a focus, and its derivatives.
 class LensUnderDesign {
  public:
   explicit LensUnderDesign(int coefficients)
-      : scene_(scene(coefficients)), task_(scene_.aim->task(scene_.walk, false)) {}
+      : scene_(scene(coefficients)), task_(scene_.design_target->task(scene_.walk, false)) {}
 
   std::vector<Complex> by_reversed_rays() {
-    objective().loss(start_);  // the last trace is remembered
+    objective().loss(start_);  // replaces the cached trace
     const auto gradient = objective().gradient(*objective().residuals(at_));
     return {gradient.begin(), gradient.end()};
   }
-  /// Central ones of each coefficient.
+  /// Returns the gradient by central differences in each coefficient.
   std::vector<Complex> by_differences() {
     constexpr double step = 1e-5;
     std::vector<Complex> all;
@@ -42,12 +42,12 @@ class LensUnderDesign {
     DesignValues values;
     values.form.design = "radial";
     values.form.coefficients = coefficients;
-    auto& light = std::get<FocusValues>(values.aim.kinds);
+    auto& light = std::get<FocusValues>(values.design_target.kinds);
     light.directions = 1;
     light.rays_per_direction = 30;
     return make_design_scene(values);
   }
-  Objective objective() { return {*task_.rays, *task_.goal, form_}; }
+  Objective objective() { return {*task_.rays, *task_.objective, form_}; }
 
   DesignScene scene_;
   DesignTask task_;
@@ -61,7 +61,7 @@ class LensUnderDesign {
 std::vector<PlanCase> design_plan_cases() {
   return {case_of_values(
       {"design", "a trace for each coefficient", "lens of 40 coefficients", "gradient"}, 1e-6,
-      [](bool) -> TwoWays {
+      [](bool) -> TwoAlternatives {
         const auto lens = std::make_shared<LensUnderDesign>(40);
         return {[=] { return lens->by_differences(); }, [=] { return lens->by_reversed_rays(); }};
       })};

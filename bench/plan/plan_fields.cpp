@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint64_t seed = 1, paths_per_field = 500;
 constexpr int views = 256;
 
-/// box_points with all pairs of its views.
+/// Returns the scene box_points with all pairs of its detection directions.
 Scene viewed_scene() {
   std::vector<View> fan;
   for (int v = 0; v < views; ++v) fan.push_back(far_view(0.2 + 0.8 * v / views));
@@ -27,7 +27,7 @@ mc::Plan plan_of(const Scene& scene) {
   return mc::make_plan(scene, mc::ReversedPaths::no);
 }
 
-/// Sums of the covariance from some batches of paths.
+/// Returns the sums of the covariance over the first `batches` batches of paths.
 GroupedSums covariance_sums(const FieldJob& job, int batches) {
   GroupedSums sums(job.batches.size);
   std::vector<Complex> batch(job.batches.size);
@@ -53,7 +53,8 @@ mc::FieldDraw drawn_by_paths(Scene scene) {
   return mc::fields_by_paths(scene, plan_of(scene), seed + 1, paths_per_field);
 }
 
-/// Fields one by one; their batches estimate the intensity of every view.
+/// Makes a kernel that samples one field per batch and estimates the intensity in every detection
+/// direction.
 SampledKernel kernel_of(const mc::FieldDraw& draw) {
   return {views, 1,
           [draw](std::uint64_t number, std::span<Complex> sums) {
@@ -69,14 +70,16 @@ SampledKernel kernel_of(const mc::FieldDraw& draw) {
           }};
 }
 
-/// Of many fields, whose covariance is found once and not counted here.
+/// Compares the time per field when many fields are sampled. The covariance is then estimated only
+/// once, and its time is not counted.
 TwoKernels light_paths_of_each_field() {
   const Scene scene = viewed_scene();
   const FieldJob job = job_of(scene);
   return {kernel_of(drawn_by_paths(scene)), kernel_of(drawn_from(job, covariance_sums(job, 32)))};
 }
 
-/// Of two fields: their covariance would have to be found first, here to about 2 %.
+/// Compares the time per field when only two fields are sampled. It includes estimating their
+/// covariance to about 2 %.
 void covariance_of_few_fields(PlanRow& row, double cpu_seconds) {
   constexpr int fields = 2, batches = 8;
   const Scene scene = viewed_scene();

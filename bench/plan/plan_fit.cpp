@@ -1,5 +1,4 @@
-// Media found from measurements.
-
+// Comparisons for fits of media to measurements.
 
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/synthetic_slab.h"
@@ -12,7 +11,7 @@ namespace flatspeckle::bench {
 
 namespace {
 
-/// A slab's curves, and the model of them.
+/// Curves measured on a slab, and the media of their model.
 struct Curves {
   std::vector<mc::Curve> curves;
   mc::Media media;
@@ -35,14 +34,15 @@ struct Curves {
   }
 };
 
-/// Transport to views that curves share, done again for each.
-TwoWays curves_one_by_one(bool) {
+/// Compares one transport solution per curve with one solution shared by all detection directions.
+TwoAlternatives curves_one_by_one(bool) {
   const Curves of(slab_task(standard_slab().exact()));
   return {[=] { return of.one_by_one(); }, [=] { return of.joint(); }};
 }
 
-/// Light that goes paths backwards, where views are far from backscattering.
-TwoWays reversed_paths(bool) {
+/// Compares transport with and without reversed paths, for a detection direction far from
+/// backscattering.
+TwoAlternatives reversed_paths(bool) {
   const Scene scene = Curves(slab_task(standard_slab().exact())).media[2].scene;
   const auto covariance = [=](bool reversed) {
     return mc::slab_covariance(scene, reversed, {1e-4}).value;
@@ -61,7 +61,8 @@ SceneSpec slab_of(double optical_depth) {
   return spec;
 }
 
-/// By the optical depth, from runs of other random numbers on both sides.
+/// Estimates the derivative with respect to the optical depth by the difference of two runs with
+/// different random numbers.
 SampledKernel difference_of_runs() {
   constexpr double optical_depth = 4, step = 0.2;
   const auto job = [&](double at, std::uint64_t seed) {
@@ -76,16 +77,16 @@ SampledKernel difference_of_runs() {
             below.batches.run(number, sums.last(half));
           },
           [=](double samples, std::span<const Complex> sums) {
-            auto slopes = above.covariance(samples, sums.first(half));
+            auto derivatives = above.covariance(samples, sums.first(half));
             const auto low = below.covariance(samples, sums.last(half));
-            for (std::size_t i = 0; i < slopes.size(); ++i)
-              slopes[i] = (slopes[i] - low[i]) / (2 * step);
-            return slopes;
+            for (std::size_t i = 0; i < derivatives.size(); ++i)
+              derivatives[i] = (derivatives[i] - low[i]) / (2 * step);
+            return derivatives;
           }};
 }
 
-/// The same from the paths of one run.
-SampledKernel slopes_of_run() {
+/// Estimates the derivative with respect to the optical depth from the paths of one run.
+SampledKernel derivatives_of_run() {
   const Scene scene = make_scene(slab_of(4));
   const auto job = mc::gradient_job(scene, mc::gradient_plan(scene, mc::ReversedPaths::no), 1);
   return {
@@ -107,7 +108,7 @@ std::vector<PlanCase> fit_plan_cases() {
                      reversed_paths),
       case_of_samples({"fit", "differences of two runs", "slab, intensities by optical depth", ""},
                       Draws::other, Measure::error, []() -> TwoKernels {
-                        return {difference_of_runs(), slopes_of_run()};
+                        return {difference_of_runs(), derivatives_of_run()};
                       })};
 }
 

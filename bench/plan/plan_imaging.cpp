@@ -1,4 +1,4 @@
-// Points found in autocorrelations.
+// Comparisons for imaging: points recovered from autocorrelations, and source patterns.
 
 #include <Eigen/Core>
 
@@ -11,8 +11,8 @@ namespace flatspeckle::bench {
 
 namespace {
 
-/// Partial objects beyond a thousand.
-TwoWays more_objects(bool) {
+/// Compares beam searches that keep 8000 and 1000 partial objects.
+TwoAlternatives more_objects(bool) {
   constexpr std::size_t kept = 1000, more = 8000;
   const std::vector<double> marks{0, 40, 111, 163, 230, 255, 310};
   const auto found = [marks, peaks = noisy_peaks(marks, 4, 1)](std::size_t beam) {
@@ -22,8 +22,8 @@ TwoWays more_objects(bool) {
   return {[=] { return found(more); }, [=] { return found(kept); }};
 }
 
-/// Singular vectors, and all but the products of frames.
-TwoWays products_of_frames(bool) {
+/// Compares singular values by LAPACK with those from the matrix of products of frames.
+TwoAlternatives products_of_frames(bool) {
   const auto made = blinking_frames({.pixels = 2000}, 1);
   Eigen::MatrixXd light(2000, static_cast<Eigen::Index>(made.frames.size()));
   for (Eigen::Index f = 0; f < light.cols(); ++f)

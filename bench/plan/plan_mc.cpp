@@ -29,13 +29,13 @@ Plan plan_without_reversed(const Scene& scene) {
   return mc::make_plan(scene, mc::ReversedPaths::no);
 }
 
-/// A scene as rows are about it.
+/// A scene and its name in the rows.
 struct NamedScene {
   std::string name;
   Scene scene;
 };
 
-/// Makes the general and the special kernel of a scene.
+/// Makes the general and the specialised kernel of a scene.
 using Kernels = TwoKernels (*)(const Scene& scene);
 
 PlanCase case_of(const std::string& left_out, const NamedScene& on, Draws numbers,
@@ -44,22 +44,23 @@ PlanCase case_of(const std::string& left_out, const NamedScene& on, Draws number
                          [=, scene = on.scene] { return kernels(scene); });
 }
 
-/// The kernel that a scene would have against the one that `generalise` makes of its plan.
+/// Compares a scene's own kernel with the one that `generalise` makes of its plan.
 PlanCase flag(const std::string& left_out, const NamedScene& on, Draws numbers, Measure measure,
               void (*generalise)(Plan&)) {
-  return case_of_samples({"mc", left_out, on.name, "path"}, numbers, measure,
-                         [=, scene = on.scene]() -> TwoKernels {
-                           const Plan special = plan_without_reversed(scene);
-                           Plan general = special;
-                           generalise(general);
-                           const std::uint64_t other = numbers == Draws::same ? first_seed : first_seed + 1;
-                           return {kernel_of(mc::covariance_job(scene, general, first_seed)),
-                                   kernel_of(mc::covariance_job(scene, special, other))};
-                         });
+  return case_of_samples(
+      {"mc", left_out, on.name, "path"}, numbers, measure, [=, scene = on.scene]() -> TwoKernels {
+        const Plan special = plan_without_reversed(scene);
+        Plan general = special;
+        generalise(general);
+        const std::uint64_t other = numbers == Draws::same ? first_seed : first_seed + 1;
+        return {kernel_of(mc::covariance_job(scene, general, first_seed)),
+                kernel_of(mc::covariance_job(scene, special, other))};
+      });
 }
 
-/// A scene with something of no effect against the scene without it, whose single scattering is by
-/// paths as well where `sampled_single`.
+/// Compares the scene `general`, which has a feature without effect on the result, with the scene
+/// `special`, which lacks it. If `sampled_single` is true, paths also sample the single scattering
+/// of `special`.
 TwoKernels beside(const Scene& general, const Scene& special, bool sampled_single = false) {
   Plan plan = plan_without_reversed(special);
   plan.sampled_single |= sampled_single;
@@ -67,7 +68,7 @@ TwoKernels beside(const Scene& general, const Scene& special, bool sampled_singl
           kernel_of(mc::covariance_job(special, plan, first_seed + 1))};
 }
 
-/// All entries of a scene's channels.
+/// Returns the scene with all pairs of its channels requested.
 Scene with_whole_matrix(Scene scene) {
   scene.request.kind = CovarianceRequest::Kind::full;
   scene.request.entries.clear();
@@ -77,7 +78,7 @@ Scene with_whole_matrix(Scene scene) {
   return scene;
 }
 
-/// Entries picked from a lower triangle.
+/// Returns an estimator that picks entries from the lower triangle of a matrix.
 Estimator picked(const Estimator& triangle, const std::vector<Entry>& entries) {
   return [=](double samples, std::span<const Complex> sums) {
     const auto matrix = triangle(samples, sums);
@@ -99,7 +100,7 @@ TwoKernels few_entries(const Scene& scene) {
   return {all, kernel_of(mc::covariance_job(scene, special, first_seed))};
 }
 
-/// The same phase function as one of the bulk that has no form of its own.
+/// Compares a table of the Henyey-Greenstein phase function with its closed form.
 TwoKernels bulk_table(const Scene& scene) {
   Scene table = scene;
   table.scatterer.kind = Scatterer::Kind::other_bulk;
@@ -107,7 +108,7 @@ TwoKernels bulk_table(const Scene& scene) {
   return beside(table, scene);
 }
 
-/// The same medium as two layers.
+/// Compares two equal layers with the undivided medium.
 TwoKernels equal_layers(const Scene& scene) {
   Scene layered = scene;
   const double half = scene.domain.depth / 2;
@@ -116,7 +117,8 @@ TwoKernels equal_layers(const Scene& scene) {
   return beside(layered, scene, true);
 }
 
-/// Point sources and near sensors, in a field of hardly any gradient.
+/// Compares curved rays in an index field of negligible gradient with straight rays, for point
+/// sources and near sensors.
 TwoKernels curved_rays(const Scene& scene) {
   Scene straight = scene;
   straight.request = full_request({point_source({0, -4}), point_source({0.5, -4})},
@@ -124,11 +126,11 @@ TwoKernels curved_rays(const Scene& scene) {
   Scene graded = straight;
   graded.index.emplace();
   graded.index->kind = IndexField::Kind::linear;
-  graded.index->slope = {0, 1e-9};
+  graded.index->gradient = {0, 1e-9};
   return beside(graded, straight);
 }
 
-/// A map of density 1.
+/// Compares a density map that is 1 everywhere with a homogeneous medium.
 TwoKernels even_map(const Scene& scene) {
   constexpr std::size_t rows = 8, columns = 16;
   Scene mapped = scene;
@@ -138,7 +140,8 @@ TwoKernels even_map(const Scene& scene) {
   return beside(mapped, scene, true);
 }
 
-/// By scatterers that do not shift the wavenumber.
+/// Compares mean-field refraction with straight rays, for scatterers that do not shift the
+/// wavenumber.
 TwoKernels refraction(const Scene& scene) {
   Scene refracted = scene;
   refracted.index.emplace().kind = IndexField::Kind::mean_field;
@@ -153,14 +156,16 @@ TwoKernels derivatives(const Scene& scene) {
 
 SampledKernel delays_of(const Scene& scene, const mc::Motion& motion = {}) {
   const std::vector<double> times = {0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2};
-  return kernel_of(mc::delay_job(scene, plan_without_reversed(scene), times, first_seed, motion).field);
+  return kernel_of(
+      mc::delay_job(scene, plan_without_reversed(scene), times, first_seed, motion).field);
 }
 
 TwoKernels delays(const Scene& scene) {
-  return {delays_of(scene), kernel_of(mc::covariance_job(scene, plan_without_reversed(scene), first_seed))};
+  return {delays_of(scene),
+          kernel_of(mc::covariance_job(scene, plan_without_reversed(scene), first_seed))};
 }
 
-/// Scatterers that flow by nothing beside diffusing.
+/// Compares diffusing scatterers with and without a negligible flow.
 TwoKernels flow(const Scene& scene) {
   return {delays_of(scene, {.velocity = {1e-300, 0}}), delays_of(scene)};
 }

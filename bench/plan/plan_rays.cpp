@@ -19,17 +19,17 @@ constexpr double step = 0.05, max_length = 8;
 Vec3 turned(RandomStream& random) {
   return random_turn(Vec3::UnitX(), 2 * random.uniform(), random);
 }
-/// In the ball of radius 0.95.
+/// Samples a point in the ball of radius 0.95.
 PathPoint place(RandomStream& random) {
   return {0.95 * std::cbrt(random.uniform()) * turned(random)};
 }
 
-/// Appends what is known of a point on a way.
+/// Appends the position of a point on a ray and its optical path.
 void note(std::vector<Complex>& values, const Vec3& x, double optical_path) {
   values.insert(values.end(), {{x[0], x[1]}, {x[2], optical_path}});
 }
 
-/// Rays from anywhere in the unit ball to its surface.
+/// Traces rays from random points in the unit ball to its surface.
 template <grin::IndexField F>
 std::vector<Complex> traced(const F& field) {
   const Surface ball = Sphere{};
@@ -45,7 +45,8 @@ std::vector<Complex> traced(const F& field) {
   return values;
 }
 
-/// Flights from anywhere in the unit ball, with the same random numbers in every call.
+/// Samples free flights from random points in the unit ball. Every call uses the same random
+/// numbers.
 std::vector<Complex> flown(const Space& space) {
   std::vector<Complex> values;
   RandomStream random(1, 0, 0);
@@ -57,9 +58,10 @@ std::vector<Complex> flown(const Space& space) {
   return values;
 }
 
-/// Joins of pairs of points, the same in every space: per batch, sums of what the curves have, each
-/// weighted so that those not found count (C26).
-SampledKernel joins(const std::shared_ptr<const Space>& space) {
+/// Makes a kernel that connects pairs of points by curves; the pairs are the same for every space.
+/// Each batch sums properties of the curves found, weighted so that the expectation is the sum over
+/// all curves (C26).
+SampledKernel connections(const std::shared_ptr<const Space>& space) {
   constexpr int pairs = 50;
   return {2, pairs,
           [=](std::uint64_t number, std::span<Complex> sums) {
@@ -67,16 +69,17 @@ SampledKernel joins(const std::shared_ptr<const Space>& space) {
             RandomStream points(1, 0, number), random(1, 1, number);
             for (int i = 0; i < pairs; ++i) {
               const PathPoint from = place(points), to = place(points);
-              const auto join = space->join(from, to, random, statistics);
-              if (!join) continue;
-              sums[0] += join->multiplicity;
-              sums[1] += join->multiplicity * Complex(join->spreading, join->optical_path);
+              const auto connection = space->connect(from, to, random, statistics);
+              if (!connection) continue;
+              sums[0] += connection->multiplicity;
+              sums[1] += connection->multiplicity *
+                         Complex(connection->spreading, connection->optical_path);
             }
           },
           sample_mean};
 }
 
-/// A field whose kind is looked up at every step.
+/// A field whose type is dispatched at every step.
 struct LookedUpField {
   AnyIndexField field;
 
@@ -95,21 +98,21 @@ Stage foggy_ball_stage() {
   return {.boundary = Sphere{}, .medium = {.mu_s = 2}};
 }
 
-/// An index that is the same everywhere, which the compiler does not know.
+/// Returns a guide with a constant index, which the compiler cannot treat as constant.
 ParabolicGuide constant_guide() {
   return ParabolicGuide({0.5, 0});
 }
 
-TwoWays curved_rays(bool) {
+TwoAlternatives curved_rays(bool) {
   return {[] { return traced(constant_guide()); }, [] { return traced(Homogeneous{0.5}); }};
 }
 
-TwoWays kind_of_field(bool) {
+TwoAlternatives kind_of_field(bool) {
   return {[looked_up = LookedUpField{Luneburg({})}] { return traced(looked_up); },
           [field = Luneburg({})] { return traced(field); }};
 }
 
-TwoWays spreading(bool) {
+TwoAlternatives spreading(bool) {
   const auto flights = [](Spreading spreading) {
     const std::shared_ptr<const Space> space =
         make_space(Fisheye({1, 1.5}), foggy_ball_stage(), {step, max_length, spreading});
@@ -118,7 +121,7 @@ TwoWays spreading(bool) {
   return {flights(Spreading::all), flights(Spreading::none)};
 }
 
-/// Rays from anywhere in a ball out of it.
+/// Traces rays from random points in a ball to its surface.
 std::vector<Complex> flown_out(const RayField& field, const Sphere& ball, double h) {
   const Surface surface = ball;
   const PartMedium clear;
@@ -134,28 +137,28 @@ std::vector<Complex> flown_out(const RayField& field, const Sphere& ball, double
   return values;
 }
 
-Way rays_out(const std::shared_ptr<const RayField>& field, const Sphere& ball, double h) {
+ValueFunction rays_out(const std::shared_ptr<const RayField>& field, const Sphere& ball, double h) {
   return [=] { return flown_out(*field, ball, h); };
 }
 
-TwoWays closed_forms(bool) {
+TwoAlternatives closed_forms(bool) {
   const Sphere ball;
   const Surface rim = ball;
   return {rays_out(make_ray_field(Luneburg({1, LuneburgProfile::for_stops})), ball, step),
           rays_out(make_ray_field(Luneburg({}), {&rim, 1}), ball, step)};
 }
 
-/// Both to steps that render would choose.
-TwoWays leapfrogs(bool) {
+/// Compares the integrators at the step sizes that render would choose.
+TwoAlternatives leapfrogs(bool) {
   const StandingWave field(0.33, 1e-3, 0, 3.4, 20);
   const Sphere ball{Vec3::Zero(), 15};
   return {rays_out(make_ray_field(field), ball, 0.88),
           rays_out(make_ray_field(field, {}, true), ball, 0.7)};
 }
 
-/// So many steps of a bundle, far from everything.
+/// Advances a bundle of rays that are far from all surfaces.
 template <class Go>
-std::vector<Complex> went_on(const RayField& field, const Go& go) {
+std::vector<Complex> advanced(const RayField& field, const Go& go) {
   RayLanes bundle{};
   std::fill_n(bundle.step, lanes, step);
   RandomStream random(1, 0, 0);
@@ -168,7 +171,7 @@ std::vector<Complex> went_on(const RayField& field, const Go& go) {
   return values;
 }
 
-TwoWays one_ray_at_a_time(bool) {
+TwoAlternatives one_ray_at_a_time(bool) {
   constexpr int steps = 200;
   const std::shared_ptr<const RayField> field =
       make_ray_field(StandingWave(0.33, 1e-3, 0, 3.4, 20), {}, true);
@@ -180,19 +183,19 @@ TwoWays one_ray_at_a_time(bool) {
     }
   };
   const auto in_lanes = [=](RayLanes& bundle) { field->advance_lanes(steps, bundle); };
-  return {[=] { return went_on(*field, one_by_one); }, [=] { return went_on(*field, in_lanes); }};
+  return {[=] { return advanced(*field, one_by_one); }, [=] { return advanced(*field, in_lanes); }};
 }
 
 TwoKernels search_for_curves() {
-  return {joins(make_space(constant_guide(), foggy_ball_stage(), {step, max_length})),
-          joins(make_space(Homogeneous{0.5}, foggy_ball_stage()))};
+  return {connections(make_space(constant_guide(), foggy_ball_stage(), {step, max_length})),
+          connections(make_space(Homogeneous{0.5}, foggy_ball_stage()))};
 }
 
 }  // namespace
 
 std::vector<PlanCase> ray_plan_cases() {
   const auto row = [](const std::string& left_out, const std::string& scene, const std::string& per,
-                      double limit, TwoWays (*make)(bool), int count = rays) {
+                      double limit, TwoAlternatives (*make)(bool), int count = rays) {
     return case_of_values({"grin rays", left_out, scene, per}, limit, make, count);
   };
   return {

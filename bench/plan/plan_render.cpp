@@ -5,7 +5,7 @@
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/meshes.h"
 #include "bench/scenes/render_scenes.h"
-#include "grin/render/methods/analog_light.h"
+#include "grin/render/methods/forward_light.h"
 #include "grin/render/methods/path_kernels.h"
 #include "grin/render/methods/tracer.h"
 #include "grin/render/pictures/map_datasets.h"
@@ -23,15 +23,15 @@ std::shared_ptr<Transport> transport_in(const RenderScene& scene) {
   const auto index = [&](const PathPoint& p) {
     return 1 + (p.part == scene.stage.field_part() ? excess : scene.stage.excess_in(p.part));
   };
-  auto transport =
-      std::make_shared<Transport>(Transport{.stage = scene.stage,
-                                            .lights = {scene.lights, scene.stage, index},
-                                            .sensors = sensor_ends(scene.sensors, scene.stage)});
-  transport->join_levels = {1e-3};
+  auto transport = std::make_shared<Transport>(
+      Transport{.stage = scene.stage,
+                .lights = {scene.lights, scene.stage, index},
+                .sensors = sensor_endpoints(scene.sensors, scene.stage)});
+  transport->connection_levels = {1e-3};
   return transport;
 }
 
-/// A kernel for straight rays, or one that solves for rays in a field that happens to be constant.
+/// Makes a kernel for straight rays, or one that traces curved rays in a constant field.
 PathKernel path_kernel(const RenderPlan& plan, const std::shared_ptr<Transport>& transport,
                        const RenderScene& scene) {
   const double excess = std::get<Homogeneous>(scene.field).n_excess;
@@ -41,7 +41,7 @@ PathKernel path_kernel(const RenderPlan& plan, const std::shared_ptr<Transport>&
       make_space(ParabolicGuide({excess, 0}), scene.stage, {scene.step, scene.max_length}));
 }
 
-/// The steady picture, whatever its bins.
+/// Returns an estimator of the time-integrated picture, for any number of time bins.
 Estimator steady(std::size_t pixels) {
   return [pixels](double samples, std::span<const Complex> sums) {
     const std::size_t bins = sums.size() / pixels;
@@ -83,7 +83,7 @@ SampledKernel kernel_of(const RenderJob& job, const Estimator& estimator) {
           estimator};
 }
 
-/// The power on each pixel, whatever else is found.
+/// Makes a kernel that estimates the power on each pixel and ignores all other sums.
 SampledKernel powers_of(const RenderJob& job) {
   const auto stride = static_cast<std::size_t>(job.bins.sums());
   return kernel_of(job, [=, all = job.pictures](double samples, std::span<const Complex> sums) {
@@ -102,7 +102,7 @@ SampledKernel map_of(const RenderScene& scene) {
       });
 }
 
-/// The kernel that a scene would have against the one that `generalise` makes of its plan.
+/// Compares a scene's own kernel with the one that `generalise` makes of its plan.
 PlanCase flag(const std::string& left_out, const std::string& name, const RenderScene& scene,
               Draws numbers, void (*generalise)(RenderPlan&)) {
   return case_of_samples({"render", left_out, name, "path"}, numbers, Measure::sample,
@@ -115,7 +115,7 @@ PlanCase flag(const std::string& left_out, const std::string& name, const Render
                          });
 }
 
-/// A map beside a picture, and by itself.
+/// Compares a run that makes a map and a picture with a run that makes the map alone.
 TwoKernels map_alone() {
   const RenderScene alone = oracles::lamp_map(0.9);
   RenderScene both = alone;
@@ -123,7 +123,7 @@ TwoKernels map_alone() {
   return {map_of(both), map_of(alone)};
 }
 
-/// Light tracing through a slab.
+/// Compares light tracing through a slab without and with importance as a function of depth.
 TwoKernels depth_alone() {
   RenderScene scene{};
   scene.stage.boundary = Box{Vec3(-200, -200, 0), Vec3(200, 200, 10)};
@@ -138,32 +138,34 @@ TwoKernels depth_alone() {
   return {kernel_of(general, scene, transport), kernel_of(tracers.plan(), scene, transport)};
 }
 
-/// Analog light, and beside it light paths that are not aimed.
-TwoKernels analog_light(const RenderScene& scene) {
-  const RenderRequest request{RenderMethod::analog};
-  const Tracer special = Tracers(scene, request).make(RenderMethod::analog);
+/// Compares forward tracing with and without light paths that are not directed at the sensor.
+TwoKernels forward_light(const RenderScene& scene) {
+  const RenderRequest request{RenderMethod::forward};
+  const Tracer special = Tracers(scene, request).make(RenderMethod::forward);
   Tracer general = special;
   const SpaceOptions options{scene.step, scene.max_length, Spreading::none, scene.leapfrogs};
   general.kernel =
-      analog_kernel(special.transport, make_space(scene.field, scene.stage, options), {}, false);
+      forward_kernel(special.transport, make_space(scene.field, scene.stage, options), {}, false);
   return {kernel_of(general), kernel_of(special)};
 }
 
-/// Rays of a beam, and beside them light paths, which bring nothing where nothing scatters.
+/// Compares the rays of a beam with and without light paths, which contribute nothing because the
+/// medium does not scatter.
 TwoKernels rays_alone() {
   RenderScene scene = waveguide();
   scene.stage.medium = {};
-  return analog_light(scene);
+  return forward_light(scene);
 }
 
-/// Light paths that scatter, to a small disk: most are given up, what heads for it is split.
-TwoKernels aimed_light() {
+/// Compares scattered light paths to a small disk. The specialised kernel terminates most of them
+/// and splits those directed at the disk.
+TwoKernels light_to_small_disk() {
   RenderScene scene = waveguide();
   scene.sensors = {RadialDetector{{0, 0, 30}, 0.2, 1, 1.5}};
-  return analog_light(scene);
+  return forward_light(scene);
 }
 
-/// Powers alone, and beside them their derivatives by the sound's amplitude.
+/// Compares powers with and without their derivatives with respect to the amplitude of the sound.
 TwoKernels powers_alone() {
   RenderScene powers = waveguide();
   powers.sensors = {RadialDetector{{0, 0, 30}, 0.2, 1, std::numbers::pi / 2}};
@@ -173,14 +175,14 @@ TwoKernels powers_alone() {
   both.parameters = {{"amplitude", sound.amplitude(), apart * sound.amplitude(),
                       sound.frozen(1 - apart), sound.frozen(1 + apart)}};
   both.bins.by_field = edge_widths;
-  const auto analog = [](const RenderScene& scene) {
-    return powers_of(render_job(scene, {RenderMethod::analog}, 1));
+  const auto forward = [](const RenderScene& scene) {
+    return powers_of(render_job(scene, {RenderMethod::forward}, 1));
   };
-  return {analog(both), analog(powers)};
+  return {forward(both), forward(powers)};
 }
 
-/// Scenes in which a method costs many times what another does, and in which another one does: the
-/// method that the pilot chooses, in place of the same for all scenes.
+/// Adds scenes whose best method differs from scene to scene, by a large factor in efficiency. The
+/// method chosen by the pilot run is compared with one method for all scenes.
 void add_choices(std::vector<PlanCase>& rows) {
   RenderScene fibre{};
   fibre.field = ParabolicGuide({.axis_excess = 0.6, .alpha = 0.5});
@@ -200,7 +202,7 @@ void add_choices(std::vector<PlanCase>& rows) {
           }));
 }
 
-/// A ball by its equation, and as triangles.
+/// Compares a ball of triangles with one given by its equation.
 PlanCase ball_of_triangles(const std::string& name, const RenderScene& scene) {
   return case_of_samples({"render", "triangles", name, "path"}, Draws::other, Measure::sample,
                          [=]() -> TwoKernels {
@@ -212,7 +214,7 @@ PlanCase ball_of_triangles(const std::string& name, const RenderScene& scene) {
                          });
 }
 
-/// A ball of glass and fog in fog under a beam.
+/// Returns a scene with a glass ball under a beam, with fog inside and outside the ball.
 RenderScene foggy_ball() {
   RenderScene scene{};
   scene.field = Homogeneous{0.5};
@@ -232,7 +234,8 @@ std::vector<PlanCase> render_plan_cases() {
   const RenderScene ball = foggy_ball();
   RenderScene clear = ball, alone = ball;
   clear.stage.medium = clear.stage.bodies[0].medium = {};
-  clear.lights = {FaceLight{.radius = INFINITY}};  // what a beam sheds unscattered is summed apart
+  clear.lights = {
+      FaceLight{.radius = INFINITY}};  // unscattered light of a beam is summed separately
   alone.stage.bodies = {};
   alone.stage.medium.mu_s = 1;
   constexpr auto same = Draws::same, other = Draws::other;
@@ -244,7 +247,7 @@ std::vector<PlanCase> render_plan_cases() {
       case_of_samples({"render", "light paths", "guide of sound, nothing scatters", "ray"}, other,
                       sample, rays_alone),
       case_of_samples({"render", "paths past a small sensor", "guide of sound in tissue", ""},
-                      other, error, aimed_light),
+                      other, error, light_to_small_disk),
       case_of_samples({"render", "derivatives by the field", "guide of sound in tissue", "path"},
                       same, sample, powers_alone),
       case_of_samples({"render", "importance in depth", "slab of OD 10, albedo 0.9", ""}, other,

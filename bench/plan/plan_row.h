@@ -6,24 +6,28 @@
 
 namespace flatspeckle::bench {
 
-/// One thing that a plan leaves out: the general kernel against the specialised one, in turn on one
-/// thread.
+/// Comparison for one feature that a plan can omit. The general kernel, which includes the feature,
+/// and the specialised kernel run alternately on one thread.
 struct PlanRow {
-  std::string room = {}, left_out = {}, scene = {};
-  std::string per = {};  ///< what the times are for: "path", "placement", "1 % error"
+  std::string module_name = {}, left_out = {}, scene = {};
+  /// Unit of work to which the times refer: "path", "placement", "1 % error".
+  std::string per = {};
   double general_s = 0, special_s = 0;  ///< CPU seconds, medians
-  double ratio = 0, ratio_spread = 0;   ///< general / special: median, half the quartiles' distance
-  double difference = 0, limit = 0;     ///< of the results
-  std::string difference_in = {};       ///< "relative"; "standard errors" where the two draw other
-                                        ///< random numbers
+  /// general_s / special_s: median and half the interquartile range.
+  double ratio = 0, ratio_spread = 0;
+  double difference = 0, limit = 0;  ///< difference of the results, and the largest one that passes
+  /// Unit of `difference`: "relative", or "standard errors" if the kernels use different random
+  /// numbers.
+  std::string difference_in = {};
 };
 
 using PlanCase = std::function<PlanRow(double cpu_seconds)>;
 
-/// Rows of mc, transport, fields, fit, imaging, wave solver, rays and render.
+/// Returns the comparisons of all modules: mc, transport, fields, fit, imaging, wave solver, rays,
+/// render and design.
 std::vector<PlanCase> plan_cases();
 
-/// Whether both kernels have the same result.
+/// Whether the results of both kernels agree within the limit.
 bool passes(const PlanRow& row);
 
 }  // namespace flatspeckle::bench

@@ -12,7 +12,7 @@ namespace flatspeckle::bench {
 namespace {
 
 constexpr int most_rounds = 15;
-constexpr double quick = 1;  // CPU seconds: fewer are only a look
+constexpr double quick = 1;  // CPU seconds; less time means a quick run
 
 double quartile_distance(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -20,7 +20,7 @@ double quartile_distance(std::vector<double> values) {
   return values[values.size() - 1 - quarter] - values[quarter];
 }
 
-/// Largest |a - b| relative to the largest |b|.
+/// Returns the largest |a - b| relative to the largest |b|.
 double relative_difference(std::span<const Complex> a, std::span<const Complex> b) {
   double difference = 0, largest = 0;
   for (std::size_t i = 0; i < b.size(); ++i) {
@@ -30,7 +30,7 @@ double relative_difference(std::span<const Complex> a, std::span<const Complex> 
   return difference / largest;
 }
 
-/// A kernel at work: its batches in order, and the sums of the first of them.
+/// Runs the batches of a kernel in order, and sums the first `compared` of them.
 class Contestant {
  public:
   Contestant(const SampledKernel& kernel, std::uint64_t compared)
@@ -42,7 +42,8 @@ class Contestant {
     return (thread_cpu_seconds() - start) / (batches * kernel_.samples_per_batch);
   }
 
-  /// CPU seconds to a relative error of 1 %, from these batches alone.
+  /// Returns the CPU seconds needed for a relative error of 1 %, extrapolated from these batches
+  /// alone.
   double seconds_to_error(int batches) {
     constexpr double target = 0.01;
     GroupedSums slice(kernel_.size);
@@ -96,7 +97,7 @@ void compare_times(PlanRow& row, const Slice& general, const Slice& special, dou
   const int rounds =
       std::clamp(static_cast<int>(affordable / fewest_calls), fewest_rounds, most_rounds);
   const int calls = std::max(fewest_calls, static_cast<int>(affordable / std::max(rounds, 1)));
-  if (rounds > 0)  // that was to warm up
+  if (rounds > 0)  // the first round only warms up the caches
     for (auto* times : {&general_s, &special_s, &ratio}) times->clear();
   for (int round = 0; round < rounds; ++round) {
     const bool turned = round % 2 == 1;
@@ -123,18 +124,19 @@ void compare_estimates(PlanRow& row, const Estimate& general, const Estimate& sp
 PlanCase named(const PlanName& name,
                const std::function<void(PlanRow& row, double cpu_seconds)>& run) {
   return [=](double cpu_seconds) {
-    PlanRow row{name.room, name.left_out, name.scene, name.per};
+    PlanRow row{name.module_name, name.left_out, name.scene, name.per};
     run(row, cpu_seconds);
     return row;
   };
 }
 
-PlanCase case_of_values(const PlanName& name, double limit, const MakeWays& make, int count) {
+PlanCase case_of_values(const PlanName& name, double limit, const MakeAlternatives& make,
+                        int count) {
   return named(name, [=](PlanRow& row, double cpu_seconds) {
     const auto [general, special] = make(cpu_seconds < quick);
     std::vector<Complex> a, b;
-    compare_times(row, timed([&, &way = general] { a = way(); }),
-                  timed([&, &way = special] { b = way(); }), cpu_seconds);
+    compare_times(row, timed([&, &compute = general] { a = compute(); }),
+                  timed([&, &compute = special] { b = compute(); }), cpu_seconds);
     row.general_s /= count;
     row.special_s /= count;
     row.difference = relative_difference(a, b);
@@ -149,32 +151,33 @@ PlanCase case_of_samples(const PlanName& name, Draws numbers, Measure measure,
   constexpr int batches_for_an_error = 48;
   const bool to_error = measure == Measure::error;
   const std::string per = to_error ? "1 % error" : name.per;
-  return named({name.room, name.left_out, name.scene, per}, [=](PlanRow& row, double cpu_seconds) {
-    const auto [general, special] = make();
-    const std::uint64_t compared = cpu_seconds < quick ? 32 : 64;
-    Contestant one(general, compared), other(special, compared);
-    const auto slice_of = [&](Contestant& contestant) -> Slice {
-      return [&](int batches) {
-        return to_error ? contestant.seconds_to_error(batches)
-                        : contestant.seconds_per_sample(batches);
-      };
-    };
-    compare_times(row, slice_of(one), slice_of(other), cpu_seconds,
-                  to_error ? batches_for_an_error : 1);
-    const Estimate a = one.estimate(), b = other.estimate();
-    if (numbers == Draws::other) return compare_estimates(row, a, b);
-    row.difference = relative_difference(a.value, b.value);
-    row.limit = rounding;
-    row.difference_in = "relative";
-  });
+  return named({name.module_name, name.left_out, name.scene, per},
+               [=](PlanRow& row, double cpu_seconds) {
+                 const auto [general, special] = make();
+                 const std::uint64_t compared = cpu_seconds < quick ? 32 : 64;
+                 Contestant one(general, compared), other(special, compared);
+                 const auto slice_of = [&](Contestant& contestant) -> Slice {
+                   return [&](int batches) {
+                     return to_error ? contestant.seconds_to_error(batches)
+                                     : contestant.seconds_per_sample(batches);
+                   };
+                 };
+                 compare_times(row, slice_of(one), slice_of(other), cpu_seconds,
+                               to_error ? batches_for_an_error : 1);
+                 const Estimate a = one.estimate(), b = other.estimate();
+                 if (numbers == Draws::other) return compare_estimates(row, a, b);
+                 row.difference = relative_difference(a.value, b.value);
+                 row.limit = rounding;
+                 row.difference_in = "relative";
+               });
 }
 
 std::vector<PlanCase> plan_cases() {
   std::vector<PlanCase> cases;
-  for (const auto& room :
+  for (const auto& cases_of :
        {mc_plan_cases, transport_plan_cases, field_plan_cases, fit_plan_cases, imaging_plan_cases,
         wave_plan_cases, ray_plan_cases, render_plan_cases, design_plan_cases})
-    for (PlanCase& plan_case : room()) cases.push_back(std::move(plan_case));
+    for (PlanCase& plan_case : cases_of()) cases.push_back(std::move(plan_case));
   return cases;
 }
 

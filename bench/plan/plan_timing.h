@@ -12,7 +12,7 @@
 
 namespace flatspeckle::bench {
 
-// The cases of plan_cases(), by room.
+// The cases of plan_cases(), by module.
 std::vector<PlanCase> mc_plan_cases();
 std::vector<PlanCase> transport_plan_cases();
 std::vector<PlanCase> field_plan_cases();
@@ -23,25 +23,26 @@ std::vector<PlanCase> ray_plan_cases();
 std::vector<PlanCase> render_plan_cases();
 std::vector<PlanCase> design_plan_cases();
 
-/// What a row is called.
+/// Names in a PlanRow.
 struct PlanName {
-  std::string room, left_out, scene, per;
+  std::string module_name, left_out, scene, per;
 };
 
-/// Computes values, which another way must agree with.
-using Way = std::function<std::vector<Complex>()>;
-struct TwoWays {
-  Way general, special;
+/// Computes the values that both alternatives must have in common.
+using ValueFunction = std::function<std::vector<Complex>()>;
+struct TwoAlternatives {
+  ValueFunction general, special;
 };
-/// Prepares what both ways share, smaller for a quick look.
-using MakeWays = std::function<TwoWays(bool is_quick)>;
-/// A case of values that must agree to a relative difference of `limit`. Its times are for one of
-/// `count` things that a call makes.
-PlanCase case_of_values(const PlanName& name, double limit, const MakeWays& make, int count = 1);
+/// Prepares both alternatives. A quick run uses smaller problems.
+using MakeAlternatives = std::function<TwoAlternatives(bool is_quick)>;
+/// Makes a case from two functions whose values must agree to a relative difference of `limit`. One
+/// call of a function performs `count` units of work; the times of the row are per unit.
+PlanCase case_of_values(const PlanName& name, double limit, const MakeAlternatives& make,
+                        int count = 1);
 
-/// A kernel that makes numbered batches of samples.
+/// A Monte Carlo kernel, which samples numbered batches.
 struct SampledKernel {
-  std::size_t size;  ///< sums per batch
+  std::size_t size;  ///< number of sums per batch
   double samples_per_batch;
   std::function<void(std::uint64_t number, std::span<Complex> sums)> run;
   Estimator estimator;
@@ -50,29 +51,32 @@ struct TwoKernels {
   SampledKernel general, special;
 };
 
-enum class Draws { same, other };      ///< that two kernels draw
-enum class Measure { sample, error };  ///< time per sample, or to an error of 1 %
+/// Whether both kernels use the same random numbers.
+enum class Draws { same, other };
+/// Whether times per sample or times to an error of 1 % are compared.
+enum class Measure { sample, error };
 
-/// A case of kernels that draw random numbers. Results are compared over a number of batches that
-/// does not depend on the clock; of the same numbers they agree to rounding, of others within 4
-/// standard errors.
+/// Makes a case from kernels that use random numbers. Their results are compared over a fixed
+/// number of batches, independent of the time spent. With the same random numbers the results must
+/// agree to rounding, with different ones within 4 standard errors.
 PlanCase case_of_samples(const PlanName& name, Draws numbers, Measure measure,
                          const std::function<TwoKernels()>& make);
 
-/// For a case of another form: `run` fills in the figures of its row.
+/// Makes a case in which `run` fills in the times and the difference of the row.
 PlanCase named(const PlanName& name,
                const std::function<void(PlanRow& row, double cpu_seconds)>& run);
 
-/// Work done `calls` times; returns the CPU seconds of this thread that one call cost.
+/// Repeats a task `calls` times and returns this thread's CPU seconds per call.
 using Slice = std::function<double(int calls)>;
 Slice timed(std::function<void()> work);
 
-/// Fills in times and ratio: slices of both in turn, the order turned round from one to the next,
-/// for about so many CPU seconds. fewest_calls: of a slice.
+/// Fills in the times and their ratio. Both kernels run in turn for about `cpu_seconds` in total;
+/// which of them runs first alternates from round to round. fewest_calls: smallest number of calls
+/// of a kernel in one round.
 void compare_times(PlanRow& row, const Slice& general, const Slice& special, double cpu_seconds,
                    int fewest_calls = 1);
 
-/// Fills in the difference in standard errors.
+/// Fills in the largest difference of the two estimates, in combined standard errors.
 void compare_estimates(PlanRow& row, const Estimate& general, const Estimate& special);
 
 }  // namespace flatspeckle::bench

@@ -1,4 +1,4 @@
-// Slabs without chance.
+// Comparisons for deterministic transport through slabs.
 
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
@@ -19,7 +19,7 @@ std::vector<Complex> covariance_in_space(const Scene& slab) {
   return mc::slab_covariance(slab, false, {in_space_tolerance}).value;
 }
 
-/// What tilts share, done again for each.
+/// Solves transport separately for each tilt, repeating work that all tilts share.
 template <class CovarianceOf>
 std::vector<Complex> one_by_one(const Scene& slab, const CovarianceOf& covariance_of) {
   std::vector<Complex> values;
@@ -31,8 +31,8 @@ std::vector<Complex> one_by_one(const Scene& slab, const CovarianceOf& covarianc
   return values;
 }
 
-std::vector<Complex> with_slopes(const Scene& slab) {
-  auto values = mc::slab_slopes(slab, false, {tolerance}, mc::BulkParameter::mu_t).value;
+std::vector<Complex> with_derivatives(const Scene& slab) {
+  auto values = mc::slab_derivatives(slab, false, {tolerance}, mc::BulkParameter::mu_t).value;
   values.resize(slab.request.entries.size());
   return values;
 }
@@ -48,9 +48,9 @@ std::vector<PlanCase> transport_plan_cases() {
   few.request.entries.resize(8);
   const Scene space = mc::in_space(few, spec);
   const auto alone = [](const Scene& scene) { return covariance(scene); };
-  const auto on_slab = [&](const std::string& left_out, const Way& general) {
+  const auto on_slab = [&](const std::string& left_out, const ValueFunction& general) {
     return case_of_values({"transport", left_out, "slab_hg g 0.9, 64 tilts", "solution"}, tolerance,
-                          [=](bool) -> TwoWays {
+                          [=](bool) -> TwoAlternatives {
                             return {general, [=] { return alone(slab); }};
                           });
   };
@@ -58,13 +58,13 @@ std::vector<PlanCase> transport_plan_cases() {
           case_of_values(
               {"transport", "tilts one by one", "slab_hg g 0.9, 8 tilts in space", "solution"},
               in_space_tolerance,
-              [=](bool) -> TwoWays {
+              [=](bool) -> TwoAlternatives {
                 return {[=] { return one_by_one(space, covariance_in_space); },
                         [=] { return covariance_in_space(space); }};
               }),
-          // complex numbers throughout
+          // a tiny frequency shift makes all numbers complex
           on_slab("a second frequency", [=] { return covariance(slab, {.shift = 1e-14}); }),
-          on_slab("derivatives", [=] { return with_slopes(slab); })};
+          on_slab("derivatives", [=] { return with_derivatives(slab); })};
 }
 
 }  // namespace flatspeckle::bench

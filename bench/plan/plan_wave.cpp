@@ -39,20 +39,21 @@ SolveOptions to(double tolerance, Method method = Method::dense) {
   return {.tolerance = tolerance, .sensors = {}, .diagnose = false, .method = method};
 }
 
-/// Fields at eight views of one light.
+/// Returns a plan of the fields in eight detection directions under one illumination.
 FieldPlan eight_views() {
   return {.lights = {{0}, {}, {}}, .far_views = {}, .views = far_views(angles(8, -1, 3))};
 }
 
-Way fields_of(const Placement& placement, const FieldPlan& plan, const SolveOptions& options) {
+ValueFunction fields_of(const Placement& placement, const FieldPlan& plan,
+                        const SolveOptions& options) {
   return [=] { return scattered_fields(placement, k, plan, options); };
 }
 
-/// LU with row exchanges against the symmetric factor.
-TwoWays row_exchanges(bool) {
+/// Compares LU factorisation with row exchanges against the symmetric factorisation.
+TwoAlternatives row_exchanges(bool) {
   const TMatrixSystem system(draw(point, 1000, 40, 20), k, 1e-9);
   const auto matrix = system.matrix();
-  const auto side = system.right_sides(std::vector{0.0});
+  const auto side = system.right_hand_sides(std::vector{0.0});
   const std::size_t unknowns = system.unknowns();
   const auto by_lu = [=] {
     auto lu = matrix;
@@ -65,8 +66,8 @@ TwoWays row_exchanges(bool) {
   return {by_lu, [=] { return DenseFactor(matrix, unknowns).solve(side); }};
 }
 
-/// Every entry by the rule for multipoles against what points need.
-TwoWays multipoles(bool) {
+/// Compares the matrix entries computed for general multipoles with those for points.
+TwoAlternatives multipoles(bool) {
   const auto system = std::make_shared<const TMatrixSystem>(draw(point, 400, 40, 20), k, 1e-9);
   const std::size_t n = system->unknowns();
   std::vector<std::size_t> all(n);
@@ -83,22 +84,24 @@ TwoWays multipoles(bool) {
   return {by_entries, by_points};
 }
 
-/// Orders for 1e-12 where an ensemble's 1e-4 is asked.
-TwoWays orders(bool) {
+/// Compares multipole orders for a tolerance of 1e-12 with those for 1e-4, which suffices for an
+/// ensemble.
+TwoAlternatives orders(bool) {
   const Placement cylinders = draw(disk, 67, 20, 10);
   return {fields_of(cylinders, eight_views(), to(1e-12)),
           fields_of(cylinders, eight_views(), to(1e-4))};
 }
 
-/// 256 lights solved one by one, for one view, against the view alone.
-TwoWays reciprocity(bool) {
+/// Compares solutions for 256 illuminations with the reciprocal solution for the one detection
+/// direction.
+TwoAlternatives reciprocity(bool) {
   const Placement points = draw(point, 200, 20, 10);
   const auto lights = angles(256, -0.7, 0.7);
   const double view = 0.3;
   const auto for_lights = [=] {
     const TMatrixSystem system(points, k, 1e-9);
     EquationSolver solver(system, Method::dense, 1e-9);
-    const auto x = solver.solve(system.right_sides(lights));
+    const auto x = solver.solve(system.right_hand_sides(lights));
     const auto seen = system.far_rows(std::vector{view});
     std::vector<Complex> fields(lights.size());
     for (std::size_t l = 0; l < lights.size(); ++l)
@@ -109,8 +112,9 @@ TwoWays reciprocity(bool) {
   return {for_lights, fields_of(points, plan, to(1e-9))};
 }
 
-/// 1024 lights and views each against the few that stand for all of them.
-TwoWays lights_that_others_make(bool) {
+/// Compares solving for 1024 illuminations and 1024 detection directions with solving for a few,
+/// from which the others are interpolated.
+TwoAlternatives lights_that_others_make(bool) {
   constexpr double tolerance = 1e-9;
   const Placement points = draw(point, 200, 20, 10);
   const auto fan = angles(1024, -0.7, 0.7);
@@ -121,8 +125,8 @@ TwoWays lights_that_others_make(bool) {
                     to(tolerance))};
 }
 
-/// Residual, condition and mismatch on the rims, which an ensemble does not ask for.
-TwoWays diagnosis(bool) {
+/// Computes residual, condition and boundary mismatch, which ensembles do not need.
+TwoAlternatives diagnosis(bool) {
   const auto fields = [cylinders = draw(disk, 67, 20, 10)](const SolveOptions& options) {
     return solve(cylinders, k, {0}, options).fields(eight_views().views);
   };
@@ -131,8 +135,8 @@ TwoWays diagnosis(bool) {
   return {[=] { return fields(asked); }, [=] { return fields(to(1e-6)); }};
 }
 
-/// The dense matrix against recursive skeletonization.
-TwoWays whole_matrix(bool is_quick) {
+/// Compares the dense matrix with recursive skeletonization.
+TwoAlternatives whole_matrix(bool is_quick) {
   constexpr double tolerance = 1e-6;
   const std::uint64_t count = is_quick ? 500 : 4000;
   const double depth = std::sqrt(static_cast<double>(count));
@@ -143,8 +147,8 @@ TwoWays whole_matrix(bool is_quick) {
           fields_of(points, plan, to(tolerance, Method::fast))};
 }
 
-/// Every scatterer at every pixel against sums on a grid.
-TwoWays pixels_one_by_one(bool) {
+/// Compares a field map summed over all scatterers at each pixel with one from sums on a grid.
+TwoAlternatives pixels_one_by_one(bool) {
   constexpr double tolerance = 1e-8;
   const Placement cylinders = draw(disk, 100, 20, 10);
   const MapGrid grid{{-11, -1}, {11, 11}, 220, 120};
@@ -159,8 +163,9 @@ TwoWays pixels_one_by_one(bool) {
           [=] { return map(FieldMap::Route::fastest); }};
 }
 
-/// All disks of copies of a cluster against its T-matrix, made once.
-TwoWays disks_of_copies(bool) {
+/// Compares a system of all disks in all copies of a cluster with one that uses the cluster's
+/// T-matrix, computed once.
+TwoAlternatives disks_of_copies(bool) {
   constexpr double tolerance = 1e-9;
   const Scatterer dense{.kind = Scatterer::Kind::tm, .radius = 0.1, .index = 1.5};
   Placement disks;
@@ -178,7 +183,7 @@ TwoWays disks_of_copies(bool) {
 std::vector<PlanCase> wave_plan_cases() {
   blas_single_thread();
   const auto row = [](const std::string& left_out, const std::string& scene, const std::string& per,
-                      double limit, TwoWays (*make)(bool)) {
+                      double limit, TwoAlternatives (*make)(bool)) {
     return case_of_values({"wave solver", left_out, scene, per}, limit, make);
   };
   return {row("row exchanges", "1000 points", "solution", 1e-10, row_exchanges),

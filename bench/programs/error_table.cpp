@@ -1,4 +1,4 @@
-// The long runs that error curves are compared with.
+// Prints the long runs that serve as references of error curves.
 //
 //   bench_error_table [CPU seconds of each [name ...]] > data/error_references.txt
 #include <cstdio>
@@ -8,18 +8,19 @@
 
 #include <omp.h>
 
-#include "bench/error/error_rooms.h"
+#include "bench/error/error_modules.h"
 
 using namespace flatspeckle;
 using namespace flatspeckle::bench;
 
 namespace {
 
-constexpr std::uint64_t seed = 1'000'000;  // no curve's
+constexpr std::uint64_t seed = 1'000'000;  // no curve uses this seed
 
 void print(const LongRun& run, double cpu_seconds) {
   ErrorTrial trial = run.trial(seed);
-  trial.batches.relative_error = [](const GroupedSums&) { return 1.0; };  // not asked for
+  // The stopping criterion is not used.
+  trial.batches.relative_error = [](const GroupedSums&) { return 1.0; };
   RunState state{GroupedSums(trial.batches.size), {}};
   RunOptions options;
   for (std::uint64_t batches = 256; state.cpu_s < cpu_seconds; batches += batches / 4) {
@@ -44,9 +45,9 @@ bool is_wanted(const std::string& name, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  omp_set_num_threads(1);  // the runner has threads enough
+  omp_set_num_threads(1);  // the batches themselves run in parallel
   const double cpu_seconds = argc > 1 ? std::atof(argv[1]) : 600;
-  std::printf("# by bench_error_table %g: what error curves are compared with\n", cpu_seconds);
+  std::printf("# by bench_error_table %g: references of error curves\n", cpu_seconds);
   for (const auto& runs : {box_long_runs(), render_long_runs()})
     for (const LongRun& run : runs)
       if (is_wanted(run.name, argc, argv)) print(run, cpu_seconds);

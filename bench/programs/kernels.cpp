@@ -1,6 +1,6 @@
-// What the hot parts cost, each beside what it replaces where there is such a thing. Compare rows
-// of one run, by CPU time; absolute times say little on a shared machine. Against its drift:
-// --benchmark_enable_random_interleaving=true --benchmark_repetitions=9
+// Times the most expensive kernels, and the code that each of them replaced, if any. Compare CPU
+// times within one run; absolute times mean little on a shared machine. To average out slow changes
+// of the machine's speed, use --benchmark_enable_random_interleaving=true --benchmark_repetitions=9
 #include <cmath>
 
 #include <benchmark/benchmark.h>
@@ -24,7 +24,7 @@ std::vector<double> distances(std::size_t n) {
   return values;
 }
 
-// Every second one below 4, where another piece of the kernel holds.
+// Every second value is below 4, where another branch of the kernel is used.
 std::vector<double> mixed_distances(std::size_t n) {
   auto values = distances(n);
   for (std::size_t i = 0; i < n; i += 2) values[i] /= 50;
@@ -101,7 +101,7 @@ void phasors_one_by_one(benchmark::State& state) {
 }
 BENCHMARK(phasors_one_by_one);
 
-/// Items: light paths.
+/// One item is one light path.
 void light_paths(benchmark::State& state, const SceneSpec& spec) {
   const Scene scene = make_scene(spec);
   const auto plan = mc::make_plan(scene, mc::ReversedPaths::automatic);
@@ -138,7 +138,7 @@ SceneSpec slab_hg() {
 BENCHMARK_CAPTURE(light_paths, box_points, box_points());
 BENCHMARK_CAPTURE(light_paths, slab_hg, slab_hg());
 
-/// One placement of points, 10 to the unit area, to its far field in one view.
+/// Solves one placement of points, 10 per unit area, for its far field in one direction.
 void exact_points(benchmark::State& state) {
   SceneSpec spec = box_points();
   spec.width = spec.depth = std::sqrt(static_cast<double>(state.range(0)) / 10);
@@ -153,7 +153,7 @@ void exact_points(benchmark::State& state) {
 }
 BENCHMARK(exact_points)->Arg(31)->Arg(250)->Arg(1000)->Unit(benchmark::kMillisecond);
 
-/// Items: steps of a ray.
+/// One item is one step of a ray.
 template <class Integrator, class Field>
 void ray_steps(benchmark::State& state, const Field& field) {
   constexpr int steps = 400;
@@ -166,7 +166,7 @@ void ray_steps(benchmark::State& state, const Field& field) {
   state.SetItemsProcessed(state.iterations() * steps);
 }
 const grin::StandingWave sound(0.33, 0.01, 0, 7, 4);
-// names without brackets, which the macro needs
+// The benchmark macro requires names without template arguments.
 const auto leapfrog_steps = ray_steps<grin::Leapfrog, grin::StandingWave>;
 const auto yoshida_steps = ray_steps<grin::Yoshida4, grin::StandingWave>;
 const auto sharma_steps = ray_steps<grin::Sharma, grin::StandingWave>;
@@ -195,15 +195,15 @@ void flights(benchmark::State& state, const std::shared_ptr<const grin::Space>& 
 BENCHMARK_CAPTURE(flights, straight, straight_fog);
 BENCHMARK_CAPTURE(flights, fisheye, fisheye_fog);
 
-void joins(benchmark::State& state, const std::shared_ptr<const grin::Space>& space) {
+void connections(benchmark::State& state, const std::shared_ptr<const grin::Space>& space) {
   RandomStream random(1, 1, 0);
   grin::ConnectionStatistics statistics;
   for (auto _ : state) {
     const grin::PathPoint from = random_place(random), to = random_place(random);
-    benchmark::DoNotOptimize(space->join(from, to, random, statistics));
+    benchmark::DoNotOptimize(space->connect(from, to, random, statistics));
   }
 }
-BENCHMARK_CAPTURE(joins, straight, straight_fog);
-BENCHMARK_CAPTURE(joins, fisheye, fisheye_fog);
+BENCHMARK_CAPTURE(connections, straight, straight_fog);
+BENCHMARK_CAPTURE(connections, fisheye, fisheye_fog);
 
 }  // namespace

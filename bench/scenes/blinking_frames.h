@@ -5,16 +5,17 @@
 #include <vector>
 
 #include "mc/imaging/imaging.h"
-#include "mc/imaging/unmixing/unmixing.h"
+#include "mc/imaging/separation/separation.h"
 
 namespace flatspeckle::bench {
 
-/// Frames of sources whose patterns are speckle without correlation, each bright in half of them.
+/// Frames of blinking sources with uncorrelated speckle patterns, each source on in half of the
+/// frames.
 struct BlinkingFrames {
   std::vector<std::vector<double>> patterns, frames;
 };
 
-/// What they are like.
+/// Parameters of the frames.
 struct BlinkingScene {
   std::size_t pixels = 400, frames = 40;
   std::vector<double> brightness{1, 1, 1, 1};
@@ -46,7 +47,8 @@ inline BlinkingFrames blinking_frames(const BlinkingScene& scene, unsigned seed)
   return made;
 }
 
-/// The rms over the patterns of what the nearest that was found differs by, over its rms.
+/// For each true pattern, computes the RMS difference from the most similar recovered pattern,
+/// divided by the RMS of the true one. Returns the RMS of these values over all true patterns.
 inline double pattern_error(const BlinkingFrames& truth, const Eigen::MatrixXd& found) {
   double sum = 0;
   for (const auto& pattern : truth.patterns) {

@@ -7,7 +7,7 @@
 
 namespace flatspeckle::bench {
 
-/// All disks of copies of a cluster.
+/// Returns the disks of all copies of a cluster.
 inline Placement copies(const Placement& cluster, const std::vector<wave::ClusterPlace>& places) {
   Placement all;
   for (const auto& [centre, angle] : places)
@@ -19,7 +19,7 @@ inline Placement copies(const Placement& cluster, const std::vector<wave::Cluste
   return all;
 }
 
-/// Rows of copies, pitch apart, each turned by another angle.
+/// Returns places for copies of a cluster in rows at this pitch, each rotated by a different angle.
 inline std::vector<wave::ClusterPlace> rows_of_places(int rows, int columns, double pitch) {
   std::vector<wave::ClusterPlace> places;
   for (int row = 0; row < rows; ++row)

@@ -13,13 +13,14 @@ inline constexpr double right_angle = std::numbers::pi / 2;
 grin::Surface unit_box();
 
 grin::Light environment();
-/// All of the box's face at z = 1.
+/// A detector that covers the box's face at z = 1.
 grin::AreaDetector whole_face();
 
 grin::RenderScene scene_in(grin::AnyIndexField field, grin::Stage stage, grin::Light light,
                            grin::Sensor sensor);
 
-/// Mean of n^2 over the face at z = 1, and over the phases of sound.
+/// Returns the mean of n^2 over the face at z = 1. If the field contains sound, it also averages
+/// over the phase of the sound.
 double mean_square_index(const grin::RenderScene& scene);
 
 }  // namespace flatspeckle::bench

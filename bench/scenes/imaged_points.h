@@ -7,7 +7,7 @@
 
 namespace flatspeckle::bench {
 
-/// Four points behind five mean free paths of fog, seen from afar.
+/// A scene of four points behind five mean free paths of fog, viewed from afar.
 inline mc::LineScene imaged_points() {
   SceneSpec spec;
   spec.width = 1000;
@@ -19,7 +19,8 @@ inline mc::LineScene imaged_points() {
                         {std::nullopt, -0.5, 0.5, 2048});
 }
 
-/// An autocorrelation in which pairs of these marks stand so many times above white noise.
+/// Returns an autocorrelation with white noise, in which each pair of points at `marks` adds a peak
+/// of height `signal` times the standard deviation of the noise.
 inline mc::PairPeaks noisy_peaks(const std::vector<double>& marks, double signal, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0, 1);

@@ -8,7 +8,7 @@
 
 namespace flatspeckle::bench {
 
-/// [-half, half]^3.
+/// The cube [-half, half]^3.
 inline grin::TriangleMesh cube_mesh(double half) {
   grin::TriangleMesh mesh;
   for (int i = 0; i < 8; ++i)
@@ -18,7 +18,8 @@ inline grin::TriangleMesh cube_mesh(double half) {
   return mesh;
 }
 
-/// An octahedron, each triangle cut in four `times` times and thrown onto the unit sphere.
+/// Returns an approximation of the unit ball: the triangles of an octahedron are divided into four,
+/// `times` times, and all new corners are projected onto the unit sphere.
 inline grin::TriangleMesh ball_mesh(int times) {
   grin::TriangleMesh mesh;
   mesh.corners = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -41,7 +42,7 @@ inline grin::TriangleMesh ball_mesh(int times) {
   return mesh;
 }
 
-/// About the z axis, of radius 0.6 and a tube of 0.25.
+/// A torus about the z axis, of radius 0.6 and tube radius 0.25.
 inline grin::TriangleMesh torus_mesh() {
   constexpr int around = 96, across = 48;
   grin::TriangleMesh mesh;

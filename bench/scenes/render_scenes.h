@@ -12,23 +12,24 @@ struct NamedRender {
   grin::RenderScene scene;
 };
 
-/// Henyey-Greenstein.
+/// A medium with Henyey-Greenstein scattering.
 grin::ScatteringMedium fog(double mu_s, double mu_a, double g);
 
-/// The ultrasonic waveguide in tissue: data/scenes/render_waveguide.toml with fewer pixels, in mm.
+/// The ultrasonic waveguide in tissue: data/scenes/render_waveguide.toml with fewer pixels and
+/// lengths in mm.
 grin::RenderScene waveguide();
 
-/// Lit by a part of the boundary and seen by another (8 x 8 pixels of irradiance), which rays can
-/// hit: the Luneburg ball, the waveguide, a slab of five mean free paths with straight rays, and a
-/// glass ball in fog.
+/// Scenes in which one part of the boundary is the lamp and another the detector (8 x 8 pixels of
+/// irradiance), so that rays can hit both: the Luneburg ball, the waveguide, a slab of five mean
+/// free paths with straight rays, and a glass ball in fog.
 std::vector<NamedRender> lamp_scenes();
-/// The Luneburg ball in even light from everywhere.
+/// The Luneburg ball in isotropic illumination.
 grin::RenderScene even_luneburg();
-/// Balls in each other and side by side, in the same light.
+/// Nested and adjacent balls in isotropic illumination.
 grin::RenderScene even_balls();
-/// A ring of triangles, of fog with an index of its own.
+/// A ring of triangles that contains fog with its own index.
 grin::RenderScene even_ring();
-/// The glass ball in fog under a beam, seen from the side.
+/// The glass ball in fog under a beam, viewed from the side.
 grin::RenderScene beam_on_glass_ball();
 
 }  // namespace flatspeckle::bench

@@ -11,7 +11,7 @@ Scatterer disk(Scatterer::Kind kind, double ka, Complex index) {
 
 namespace {
 
-/// 0 and 63 more, their sines equally spaced.
+/// A memory-effect scene with tilt 0 and 63 more, their sines equally spaced.
 SceneSpec with_tilts(double largest_sine) {
   SceneSpec spec;
   spec.covariance = "memory_effect";

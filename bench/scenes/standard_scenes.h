@@ -6,18 +6,18 @@
 
 namespace flatspeckle::bench {
 
-/// The wavenumber of a wavelength of 1.
+/// Wavenumber at wavelength 1.
 inline constexpr double k = 2 * std::numbers::pi;
 
-/// A cylinder of this size parameter at a wavelength of 1.
+/// A cylinder of size parameter ka at wavelength 1.
 Scatterer disk(Scatterer::Kind kind, double ka, Complex index = 1.5);
 
-// Standard scenes (data/scenes) as memory effect over 64 tilts that reach beyond its range, in
-// transmission.
+// Standard scenes (data/scenes): memory effect in transmission, over 64 tilts that extend beyond
+// its range.
 
-/// Views 0.1 and 0.8.
+/// Returns the box with detection directions at 0.1 and 0.8 rad.
 Scene box_points();
-/// At optical depth 10, along the normal.
+/// Returns the slab with optical depth 10, detected along the normal.
 Scene slab_hg(double g);
 
 }  // namespace flatspeckle::bench

@@ -16,8 +16,8 @@
 
 namespace flatspeckle::bench {
 
-/// A slab that measurements are made of, by transport that is refined to a part in a million, and
-/// noise that is a share of each value.
+/// A slab with synthetic measurements. They are computed by deterministic transport to a relative
+/// tolerance of 1e-6; noise has a standard deviation of 1 % of each value.
 class SyntheticSlab {
  public:
   SyntheticSlab(double depth, double g, double albedo, double optical_depth)
@@ -31,7 +31,8 @@ class SyntheticSlab {
     truth_.optical_depth = optical_depth;
   }
 
-  /// C_E of a view, tilts in 1/depth of the transverse wavenumber.
+  /// Adds C_E for a detection direction. Each tilt is given as the change of the transverse
+  /// wavenumber times the depth.
   void add_curve(double view, const std::vector<double>& tilts) {
     mc::Curve curve{slab_, mc::Observable::field_correlation, {}, {}};
     curve.scene.covariance = "memory_effect";
@@ -46,20 +47,21 @@ class SyntheticSlab {
 
   static constexpr double beta = 0.5;
 
-  /// |g1| of a view after delays k^2 D tau.
+  /// Adds |g1| for a detection direction at delays given as k^2 D tau.
   void add_decay(double view, const std::vector<double>& delays) {
     mc::Curve curve{slab_, mc::Observable::field_correlation, {}, delays, delays, delays};
     put_moving(curve, view);
   }
 
-  /// K^2 of a view after exposures, `beta` of still scatterers.
+  /// Adds the squared contrast K^2 for a detection direction and these exposure times. For static
+  /// scatterers K^2 equals `beta`.
   void add_contrast(double view, const std::vector<double>& times) {
     mc::Curve curve{slab_, mc::Observable::squared_contrast, {}, times,
                     times, mc::exposure_delays(times)};
     put_moving(curve, view);
   }
 
-  /// What follows is of another thickness of the medium.
+  /// Changes the thickness of the medium for the measurements that follow.
   void set_depth(double depth) {
     slab_.depth = depth;
     truth_.optical_depth = *truth_.optical_depth * depth / depth_;
@@ -71,7 +73,7 @@ class SyntheticSlab {
     put(curve, {mc::slab_flux(at_truth(curve.scene), 1, {1e-6}).value[mc::transmitted].real()});
   }
 
-  /// With noise of a seed.
+  /// Returns the measurements with noise drawn with this seed.
   std::vector<mc::Measurement> measured(unsigned seed) const {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
@@ -83,7 +85,7 @@ class SyntheticSlab {
     }
     return all;
   }
-  /// Without noise; with errors of a share of each value.
+  /// Returns the measurements without noise; their stated errors are `share` times each value.
   std::vector<mc::Measurement> exact(double share = 0.01) const {
     auto all = exact_;
     for (mc::Measurement& one : all) one.covariance = (share * one.values).cwiseAbs2().asDiagonal();
@@ -124,27 +126,29 @@ class SyntheticSlab {
   std::vector<mc::Measurement> exact_;
 };
 
-/// Fit of these parameters; `tell` writes into the scene of each curve what else is known of it.
+/// Returns the task of fitting the parameters `free`; `set_known` sets the known values in the
+/// scene of each curve.
 inline mc::FitTask slab_task(
     std::vector<mc::Measurement> measurements, const std::vector<std::string>& free,
-    const std::function<void(mc::MovingSpec& scene)>& tell = [](mc::MovingSpec&) {}) {
+    const std::function<void(mc::MovingSpec& scene)>& set_known = [](mc::MovingSpec&) {}) {
   mc::MovingSpec none;
   none.scatterer = "hg";
   mc::FitTask task;
   task.free = mc::read_free_parameters(free, none);
   for (mc::Measurement& one : measurements)
-    for (mc::Curve& curve : one.curves) tell(curve.scene);
+    for (mc::Curve& curve : one.curves) set_known(curve.scene);
   task.measurements = std::move(measurements);
   return task;
 }
 
-/// The three that describe a slab; from grids of starts.
+/// Returns the task of fitting g, albedo and optical depth within fixed bounds.
 inline mc::FitTask slab_task(std::vector<mc::Measurement> measurements, double thickest = 20) {
   return slab_task(std::move(measurements),
                    {"g=0.5:0.95", "albedo=0.9:1", "optical_depth=1:" + std::to_string(thickest)});
 }
 
-/// Two views in transmission and two in reflection, and the transmittance.
+/// Returns a slab with curves for two detection directions in transmission and two in reflection,
+/// and its transmittance.
 inline SyntheticSlab standard_slab() {
   SyntheticSlab slab(2000, 0.8, 0.98, 4);
   for (const double view : {0.0, 0.3, std::numbers::pi - 0.44, std::numbers::pi - 0.84})

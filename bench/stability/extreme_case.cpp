@@ -12,7 +12,7 @@ namespace flatspeckle::bench {
 
 std::vector<ExtremeCase> extreme_cases() {
   struct Part {
-    const char* room;
+    const char* module_name;
     void (*add)(ExtremeRows& rows);
   };
   constexpr Part parts[] = {{"functions", function_extremes}, {"flatland", flatland_extremes},
@@ -25,8 +25,8 @@ std::vector<ExtremeCase> extreme_cases() {
                             {"grin", render_extremes},        {"grin", mesh_extremes},
                             {"grin", design_extremes}};
   ExtremeRows rows;
-  for (const auto& [room, add] : parts) {
-    rows.begin_room(room);
+  for (const auto& [module_name, add] : parts) {
+    rows.begin_module(module_name);
     add(rows);
   }
   return std::move(rows).rows();
@@ -35,7 +35,7 @@ std::vector<ExtremeCase> extreme_cases() {
 Finding examine(const ExtremeCase& extreme) {
   try {
     return extreme.run();
-  } catch (const std::exception& error) {  // InputError, or what fails by itself
+  } catch (const std::exception& error) {  // InputError, or any other failure
     return {0, 0, error.what()};
   }
 }

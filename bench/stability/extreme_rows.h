@@ -12,38 +12,39 @@
 
 namespace flatspeckle::bench {
 
-/// As few characters as tell it, 1e-7 and 100: for the names of rows.
+/// Returns the shortest text of a number, such as 1e-7 or 100, for the names of rows.
 std::string short_number(double value);
 
-/// The rows of a table, written one after the other: a name, an invariant, and the check that finds
-/// how far it is off in the case of some values.
+/// Collects the rows of the stability table. Each has a name, an invariant, and a check, which is
+/// called with the given values and returns the deviation from the invariant.
 class ExtremeRows {
  public:
-  void begin_room(std::string name) { room_ = std::move(name); }
+  void begin_module(std::string name) { module_name_ = std::move(name); }
 
   template <class Check, class... Values>
   void add(std::string name, std::string invariant, const Check& check, const Values&... values) {
-    rows_.push_back({room_,
+    rows_.push_back({module_name_,
                      std::move(name),
                      std::move(invariant),
                      {},
                      [=]() -> Finding { return check(values...); },
                      false});
   }
-  /// For one that takes more than about a second.
+  /// Adds a row that takes more than about a second.
   template <class Check, class... Values>
   void add_slow(std::string name, std::string invariant, const Check& check,
                 const Values&... values) {
     add_timed(true, std::move(name), std::move(invariant), check, values...);
   }
-  /// Slow in some cases.
+  /// Adds a row that is slow or not, as `is_slow` states.
   template <class Check, class... Values>
   void add_timed(bool is_slow, std::string name, std::string invariant, const Check& check,
                  const Values&... values) {
     add(std::move(name), std::move(invariant), check, values...);
     rows_.back().slow = is_slow;
   }
-  /// A row for each of some numbers, which stands in its name and comes first of the values.
+  /// Adds one row for each number. The number is part of the row's name and the first argument of
+  /// the check.
   template <class Check, class... Values>
   void add_each(const std::string& before, std::initializer_list<double> numbers,
                 const std::string& after, const std::string& invariant, const Check& check,
@@ -51,7 +52,7 @@ class ExtremeRows {
     for (const double number : numbers)
       add(before + short_number(number) + after, invariant, check, number, values...);
   }
-  /// What must be refused with a message that holds these words.
+  /// Adds a case that must be rejected with a message that contains `must_say`.
   template <class Attempt, class... Values>
   void add_refused(std::string name, std::string must_say, const Attempt& attempt,
                    const Values&... values) {
@@ -65,11 +66,11 @@ class ExtremeRows {
   std::vector<ExtremeCase> rows() && { return std::move(rows_); }
 
  private:
-  std::string room_;
+  std::string module_name_;
   std::vector<ExtremeCase> rows_;
 };
 
-// The rows of each part.
+// Each of these functions adds the rows of one part of the program.
 void function_extremes(ExtremeRows& rows);
 void flatland_extremes(ExtremeRows& rows);
 void wave_extremes(ExtremeRows& rows);
@@ -88,21 +89,24 @@ void render_extremes(ExtremeRows& rows);
 void mesh_extremes(ExtremeRows& rows);
 void design_extremes(ExtremeRows& rows);
 
-// Checks that rows share.
+// Checks shared by several rows.
 
-/// A random figure: how many standard errors it is off, limit 4, beyond the relative accuracy of
-/// what is expected. Infinite where the error is above `largest_error` of that, as then nothing was
-/// tested.
+/// Compares a random value with the expected one. The figure is the deviation that exceeds the
+/// relative `accuracy` of the expected value, in standard errors; its limit is 4. The figure is
+/// infinite if the relative standard error exceeds `largest_error`, because the comparison would
+/// then be meaningless.
 Finding in_errors(Complex found, double error, Complex expected, double largest_error,
                   double accuracy = 0);
-/// All values of two estimates, the first times `scale`: the worst.
+/// Compares all values of two estimates, the first multiplied by `scale`, and returns the worst
+/// result.
 Finding in_errors(const Estimate& found, const Estimate& expected, double largest_error,
                   double scale = 1);
-/// All values of an estimate against known ones: the worst.
+/// Compares all values of an estimate with known ones and returns the worst result.
 Finding in_errors(const Estimate& found, const std::vector<Complex>& expected, double largest_error,
                   double accuracy = 0);
 
-/// The mean of sample(0) .. sample(count - 1), in its own errors.
+/// Compares the mean of sample(0) .. sample(count - 1) with the expected value, in standard errors
+/// estimated from the samples.
 template <class Sample>
 Finding mean_in_errors(int count, const Sample& sample, double expected, double largest_error) {
   double sum = 0, squares = 0;
@@ -114,12 +118,12 @@ Finding mean_in_errors(int count, const Sample& sample, double expected, double 
   return in_errors(sum, std::sqrt((squares - sum * sum) / count), expected, largest_error);
 }
 
-/// 1: what should have happened did not.
+/// Returns a result that passes if `happened`; otherwise its figure is 1.
 inline Finding yes(bool happened) {
   return {happened ? 0.0 : 1.0, 0};
 }
 
-/// The largest figure; NaN where any is, which std::max would lose.
+/// Returns the larger figure, or NaN if one is NaN, which std::max might ignore.
 inline double larger(double a, double b) {
   return std::isnan(a) || a > b ? a : b;
 }
@@ -127,7 +131,7 @@ inline double larger(std::initializer_list<double> figures) {
   return std::accumulate(figures.begin(), figures.end(), 0.0,
                          [](double a, double b) { return larger(a, b); });
 }
-/// The largest figure_of(value) over all values.
+/// Returns the largest figure_of(value) over all values.
 template <class Values, class FigureOf>
 Finding worst_of(const Values& values, double limit, const FigureOf& figure_of) {
   double worst = 0;
@@ -138,10 +142,10 @@ template <class Value, class FigureOf>
 Finding worst_of(std::initializer_list<Value> values, double limit, const FigureOf& figure_of) {
   return worst_of<std::initializer_list<Value>>(values, limit, figure_of);
 }
-/// The worse of two rows with one limit.
+/// Returns the worse of two results with the same limit.
 Finding worse(const Finding& a, const Finding& b);
 
-/// |a - b| / |b|
+/// Returns |a - b| / |b|.
 double relative_difference(const std::vector<Complex>& a, const std::vector<Complex>& b);
 
 }  // namespace flatspeckle::bench

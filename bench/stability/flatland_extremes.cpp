@@ -1,4 +1,4 @@
-// Scatterers, scenes and requests at the ends of their ranges.
+// Scatterers, scenes and requests at the limits of their ranges.
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,8 @@ using namespace oracles;
 using Kind = Scatterer::Kind;
 using std::numbers::pi;
 
-/// T_n up to where it is 1e-15 of the largest, and some beyond.
+/// Returns the largest relative error of T_n, up to five orders beyond the one at which T_n is
+/// 1e-15 of the largest.
 double t_matrix_error(const Scatterer& scatterer) {
   const int last = isolated_order(scatterer, k, 1e-15) + 5;
   const auto t = scaled_t_matrix(scatterer, k, last);
@@ -35,7 +36,7 @@ Finding t_matrix_row(Kind kind, Complex index, double limit) {
                   [&](double ka) { return t_matrix_error(disk(kind, ka, index)); });
 }
 
-/// |1 + 2 T_n| = 1
+/// Checks |1 + 2 T_n| = 1 for a lossless scatterer.
 Finding lossless(const Scatterer& scatterer, double limit) {
   double worst = 0;
   for (const ExtendedComplex t : t_matrix(scatterer, k, isolated_order(scatterer, k, 1e-15)))
@@ -43,7 +44,7 @@ Finding lossless(const Scatterer& scatterer, double limit) {
   return {worst, limit};
 }
 
-/// sigma_s and g against the integral of |A|^2, by the trapezoidal rule.
+/// Compares sigma_s and g with the integral of |A|^2, by the trapezoidal rule.
 Finding integrals(const Scatterer& scatterer, double limit) {
   const auto t = t_matrix(scatterer, k, isolated_order(scatterer, k, 1e-15));
   const std::size_t intervals = 8 * t.size();
@@ -88,7 +89,7 @@ Finding optical_depths() {
       if (spec.scatterer != "hg") spec.g.reset();
       if (spec.scatterer == "te") {
         spec.albedo.reset();
-        spec.radius = 1e-6;  // so small that many find room
+        spec.radius = 1e-6;  // so small that many disks fit into the box
         if (depth > 1e-6) continue;
       }
       worst = larger(worst, std::abs(make_scene(spec).medium.mu_t * 10 / depth - 1));
@@ -96,7 +97,7 @@ Finding optical_depths() {
   return {worst, 1e-14};
 }
 
-/// 1 - albedo is left of the scatterers' digits.
+/// Checks mu_t - mu_s = mu_t (1 - albedo) despite cancellation.
 Finding absorption() {
   const double albedo = 1 - 1e-9;
   SceneSpec points = hg(0, albedo);
@@ -117,7 +118,7 @@ Finding transport_lengths() {
   });
 }
 
-/// Nobody, and one.
+/// Checks placements of no scatterer or one.
 Finding few_scatterers(std::int64_t count) {
   SceneSpec spec = box();
   spec.count = count;
@@ -133,8 +134,8 @@ Finding few_scatterers(std::int64_t count) {
   return {wrong, 1e-14};
 }
 
-/// The phase k L (sin v2 - sin v1 - q / k) that a matched view is off over k L = 1e6: the angles'
-/// rounding, 1e-16 of 1, is 1e-10 of it.
+/// Checks the phase error k L (sin v2 - sin v1 - q / k) of matched detection directions v1, v2 for
+/// k L = 1e6. Rounding the angles to 1e-16 contributes 1e-10.
 Finding matched_views() {
   double worst = 0;
   for (const double light : {0.0, 0.8, 1.5})
@@ -154,7 +155,7 @@ Finding matched_views() {
   return {worst, 1e-9};
 }
 
-/// A tilt of 0 is no tilt, to the last bit.
+/// Checks that tilt 0 gives exactly the untilted channel.
 Finding no_tilt() {
   const auto request = memory_effect_request(k, 1.5, {0.1, 1.55, pi}, {0.0});
   double wrong = std::abs(request.tilt_q[0]);
@@ -163,7 +164,8 @@ Finding no_tilt() {
   return {wrong, 0};
 }
 
-/// Along the axes exactly, cos(pi/2) = 6e-17 in numbers, from inside and from corners.
+/// Checks distances to the edge in directions exactly along the axes (cos(pi/2) = 6e-17 in floating
+/// point), from points inside and from corners.
 Finding edges() {
   const Domain domain{Domain::Kind::box, 20, 10};
   double worst = 0;
@@ -180,8 +182,9 @@ Finding edges() {
   return {worst, 1e-14};
 }
 
-/// S(0) = 1 / [d(eta Z) / d eta], Z = (1 + eta^2/8) / (1 - eta)^2; the stiffness 1/S(0), 70 at
-/// packing 0.69, multiplies the 1e-6 that Simpson's rule leaves of c(q).
+/// Checks S(0) = 1 / [d(eta Z) / d eta] for hard disks of packing fraction eta, with the
+/// compressibility factor Z = (1 + eta^2/8) / (1 - eta)^2. The stiffness 1/S(0), 70 at packing
+/// 0.69, amplifies the 1e-6 error of Simpson's rule for c(q).
 Finding compressibility(double eta) {
   const double rest = 1 - eta, z = 1 + eta * eta / 8;
   const double stiffness = ((z + eta * eta / 4) * rest + 2 * eta * z) / (rest * rest * rest);
@@ -192,7 +195,7 @@ Finding compressibility(double eta) {
           eta < 0.1 ? 1e-9 : 1e-3};
 }
 
-/// The least distance of centres, which periodic edges do not shorten.
+/// Checks that no two disks overlap; overlaps across the periodic edges are not checked.
 Finding dense_fluid() {
   const double radius = 0.5, packing = 0.68;
   const Domain domain{Domain::Kind::box, 12, 10};
@@ -213,7 +216,8 @@ void add_scatterers(ExtremeRows& rows) {
   const Complex metal(0.1, 5);
   for (const auto& [name, kind] : {std::pair("TM", Kind::tm), {"TE", Kind::te}}) {
     const std::string disks = name;
-    // half of the digits of m - 1 are gone where m was rounded to double, for both sides alike
+    // rounding the index m to double loses half of the digits of m - 1; the reference uses the same
+    // rounded index
     rows.add(disks + ", index 1 + 1e-8" + sizes, digits, t_matrix_row, kind, 1 + 1e-8, 1e-9);
     rows.add(disks + ", index 10" + sizes, digits, t_matrix_row, kind, 10.0, 1e-12);
     rows.add(disks + ", index 0.1 + 5i" + sizes, digits, t_matrix_row, kind, metal, 1e-12);
@@ -226,7 +230,7 @@ void add_scatterers(ExtremeRows& rows) {
   rows.add("TM, index 0.1 + 5i, k a 100: sigma_s and g", area, integrals,
            disk(Kind::tm, 100, metal), 1e-11);
   rows.add("TE, k a 1000: sigma_s and g", area, integrals, disk(Kind::te, 1000),
-           1e-9);  // rounding of order squared
+           1e-9);  // rounding errors grow as the order squared
 }
 
 void add_scenes(ExtremeRows& rows) {
@@ -271,7 +275,7 @@ void add_refusals(ExtremeRows& rows) {
     s.width = 1e9;
     s.count = 1;
   });
-  refuse("disks of index 1.5 - 1e-12i", "must not be 0 nor amplify", disks,
+  refuse("disks of index 1.5 - 1e-12i", "must not be 0 and must not amplify", disks,
          [](auto& s) { s.index = "1.5-1e-12i"; });
   refuse("random hard disks, packing 0.55", "packing fraction", disks,
          [](auto& s) { s.density = 0.55 / (pi * 0.04); });
@@ -281,7 +285,7 @@ void add_refusals(ExtremeRows& rows) {
   });
   refuse("light along a slab from below, 3 pi / 4", "light enters a slab at z = 0", slab,
          [](auto& s) { s.light_angles = {3 * pi / 4}; });
-  refuse("full covariance of 1e6 channels", "GB, there are", box(), [](auto& s) {
+  refuse("full covariance of 1e6 channels", "GB of memory; available GB", box(), [](auto& s) {
     s.count = 1;
     s.covariance = "full";
     s.view_angles.clear();

@@ -1,4 +1,5 @@
-// Special functions, phases and sums against 50 digits where double is in doubt.
+// Special functions, phases and sums, compared with 50 digits where double precision may not
+// suffice.
 
 #include <algorithm>
 #include <cmath>
@@ -17,8 +18,8 @@ namespace {
 
 using namespace oracles;
 
-/// H_n relative to |H_n|, and J_n to itself: beyond the turning point n = x nothing is left of it
-/// in H_n.
+/// Compares H_n relative to |H_n|, and J_n relative to |J_n|, because for orders n > x J_n is
+/// negligible in H_n.
 Finding cylinder_row(double x, const std::vector<int>& orders) {
   const int last = *std::max_element(orders.begin(), orders.end());
   const auto h = scaled_hankel(last, x);
@@ -32,7 +33,7 @@ Finding cylinder_row(double x, const std::vector<int>& orders) {
   });
 }
 
-/// The vectorised sets, over arguments of all sizes at once.
+/// Compares the vectorised Hankel functions for arguments of all magnitudes in one call.
 Finding hankel_sets_row() {
   const std::vector<double> x{1e-300, 1e-100, 1e-8, 3.999999, 4, 4.000001, 8388608, 1e9, 1e15};
   constexpr int order = 8;
@@ -59,7 +60,7 @@ Finding ratio_row(ExtendedComplex z) {
   return {worst, 1e-15};
 }
 
-/// A product of phases over 1e8 wavelengths has arguments up to 6e8, and a box may be so large.
+/// Compares phases of large arguments: over 1e8 wavelengths, the largest box, they reach 6e8.
 Finding phasor_row() {
   std::vector<double> phase, none;
   for (double p = 1e-300; p < 1e300; p *= 1.7e7) phase.insert(phase.end(), {p, -p});
@@ -77,7 +78,7 @@ Finding phasor_row() {
   return {worst, 1e-15};
 }
 
-/// What is left of light beyond all range: 0, not NaN.
+/// Checks that damping underflows to 0 and does not give NaN.
 Finding damping_row() {
   std::vector<double> log_magnitude, found;
   for (double d = 1e-300; d < 1e300; d *= 1.9e3) log_magnitude.push_back(-d);
@@ -92,7 +93,8 @@ Finding damping_row() {
   return {worst, 1e-15};
 }
 
-/// 1e8 beside a spread of 1: the sum of 1e12 is rounded to 1e-4.
+/// Compares the standard error for a mean of 1e8 and a spread of 1 with that for mean 0. The sum of
+/// 1e12 is rounded to 1e-4.
 Finding jackknife_row() {
   const auto error_with = [](double offset) {
     GroupedSums sums(1);
@@ -106,7 +108,7 @@ Finding jackknife_row() {
   return {std::abs(error_with(1e8) / error_with(0) - 1), 1e-4};
 }
 
-/// 1 would be an infinite flight.
+/// Checks that uniform numbers are strictly between 0 and 1; 1 would give an infinite free flight.
 Finding uniform_row() {
   const double least = RandomStream::uniform(0), most = RandomStream::uniform(~std::uint64_t{0});
   return yes(least > 0 && most < 1);

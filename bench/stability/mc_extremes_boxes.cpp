@@ -1,4 +1,5 @@
-// Paths in boxes: needles, sheets and specks; ends on the edge of the medium and in it.
+// Paths in boxes that are needles, sheets or specks; sensors and sources on the edge of the medium
+// and inside.
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,8 @@ namespace {
 using mc::ReversedPaths;
 using std::numbers::pi;
 
-/// Single scattering alone: mu_s p area.
+/// Checks a tiny box, in which only single scattering matters: mu_s times the phase function times
+/// the area.
 Finding speck() {
   const double size = 1e-6, g = 0.5;
   const auto request = intensity_request({0, 1.0, pi / 2}, far_views({0.3, pi / 2, -2.0}));
@@ -29,10 +31,11 @@ Finding speck() {
     const double p = (1 - g * g) / (2 * pi * (1 + g * g - 2 * g * std::cos(angle)));
     worst = larger(worst, std::abs(found.value[c] / (p * size * size) - 1.0));
   }
-  return {worst, 1e-5};  // the optical depth, and what is scattered twice
+  return {worst, 1e-5};  // attenuation and double scattering are neglected
 }
 
-/// A needle lit and seen across is a sheet lit and seen through.
+/// Checks that a needle, illuminated and viewed across its axis, gives the same values as a sheet
+/// turned by 90 degrees, illuminated and viewed along its normal.
 Finding quarter_turn() {
   const auto across = intensity_request({pi / 2}, far_views({pi / 2 + 0.4, -pi / 2, pi / 2 + 1.5}));
   const auto through = intensity_request({0}, far_views({0.4, pi, 1.5}));
@@ -42,8 +45,8 @@ Finding quarter_turn() {
   return in_errors(a, b, 0.1);
 }
 
-/// The needle lit and seen along itself, 1000 mean free paths: |C_ab|^2 <= C_aa C_bb, but for
-/// variances below 1e-308, which are 0.
+/// Checks |C_ab|^2 <= C_aa C_bb for the needle, illuminated and viewed along its axis, which is
+/// 1000 mean free paths long. Variances below 1e-308 underflow to 0 and are excepted.
 Finding along_needle() {
   const auto request = full_request({0, 1e-3, pi / 2}, far_views({0, pi, pi / 2}));
   const Estimate found =
@@ -58,7 +61,8 @@ Finding along_needle() {
   return {worst, 1 + 1e-12};
 }
 
-/// A near source in far views is a far light at near sensors (C13): on faces, corners and inside.
+/// Checks reciprocity (C13): a near source with far-field detection against a plane wave with a
+/// near sensor at the same point, on faces, on corners and inside.
 Finding near_reciprocity(Vec2 point) {
   const std::vector<double> views{0.3, pi - 0.4};
   const Bulk bulk{2.5, 0.5};
@@ -73,7 +77,7 @@ Finding near_reciprocity(Vec2 point) {
   return in_errors(from, to, 0.15, 8 * pi * k);
 }
 
-/// Intensity at a sensor where it passes through a face or a corner.
+/// Checks that the intensity is continuous when a sensor crosses a face or a corner.
 Finding across_edge(Vec2 point, Vec2 outwards) {
   const auto at = [&](double off) {
     const auto request = intensity_request({0.2}, {near_sensor(point + off * outwards)});
@@ -83,7 +87,8 @@ Finding across_edge(Vec2 point, Vec2 outwards) {
   return {larger(std::abs(at(1e-9) / on - 1.0), std::abs(at(-1e-9) / on - 1.0)), 1e-6};
 }
 
-/// A point source very far away is a plane wave: k r = 6e9 in all phases.
+/// Checks that a very distant point source gives the same values as a plane wave; k r = 6e9 enters
+/// all phases.
 Finding far_source() {
   const double r = 1e9;
   const auto views = far_views({0.2, 1.3, pi - 0.2});
@@ -110,7 +115,7 @@ Finding empty_box() {
   return {sum, 0};
 }
 
-/// 1 - cos of turns, whose mean is 1 - g.
+/// Checks that the mean of 1 - cos of scattering angles is 1 - g.
 Finding turns(double g) {
   const mc::HenyeyGreensteinScattering scattering{{g}};
   RandomStream random(3, 1, 0);
@@ -123,7 +128,7 @@ Finding turns(double g) {
       1 - g, 0.1);
 }
 
-/// The density between directions a hair apart, which 1 - cos would lose.
+/// Checks the phase-function density at tiny angles, where computing 1 - cos would lose all digits.
 Finding forward_density() {
   const double g = 0.999;
   const mc::HenyeyGreensteinScattering scattering{{g}};

@@ -7,14 +7,15 @@ namespace flatspeckle::bench {
 
 namespace {
 
-/// Distances of what is found, from true ones.
+/// Compares the recovered points with the true ones.
 Finding search(const std::vector<double>& marks, double signal) {
   const auto fit = mc::sparse_search(noisy_peaks(marks, signal, 1), {marks.size(), 1, 1000});
   const mc::LineObject truth{marks, std::vector<double>(marks.size(), 1)};
   return {1 - mc::score(truth, fit.object, 1).found, 0};
 }
 
-/// How far the success of peaks that grow by a factor of 10 each is from rising from 0 to 1.
+/// Returns by how much the success probability fails to rise monotonically from 0 to 1 while the
+/// peaks grow by factors of 10.
 double success_figure(std::size_t points, double places, bool weighted) {
   double last = 0, figure = 0;
   for (double signal = 1e-6; signal < 1e7; signal *= 10) {
@@ -30,8 +31,8 @@ Finding success(std::size_t points, double places) {
                   [=](bool weighted) { return success_figure(points, places, weighted); });
 }
 
-/// Contrast of speckle without correlation under an envelope that falls by so much, off 1 in errors
-/// of so many pixels.
+/// Checks that the contrast of uncorrelated speckle is 1 under an envelope that falls by `decades`
+/// powers of ten. The deviation is in standard errors for this number of pixels.
 Finding steep_envelope(double decades) {
   constexpr std::size_t pixels = 20000;
   std::mt19937 random(1);
@@ -39,28 +40,28 @@ Finding steep_envelope(double decades) {
   std::vector<double> frame;
   for (std::size_t p = 0; p < pixels; ++p)
     frame.push_back(intensity(random) * std::pow(10, -decades * static_cast<double>(p) / pixels));
-  const double error = std::sqrt(8.0 / (0.75 * pixels));  // of the square of the contrast
+  const double error = std::sqrt(8.0 / (0.75 * pixels));  // standard error of the squared contrast
   return {std::abs(mc::squared_contrast(frame) - 1) / error, 4};
 }
 
-/// Patterns of frames that are scaled.
+/// Checks the separation of sources in frames multiplied by `scale`.
 Finding sources(const BlinkingScene& scene, double scale) {
   BlinkingFrames made = blinking_frames(scene, 1);
   for (auto& frame : made.frames)
     for (double& value : frame) value *= scale;
-  const auto found = mc::unmixed(made.frames, {{}, 40});
+  const auto found = mc::separated_sources(made.frames, {{}, 40});
   if (found.count.sources != scene.brightness.size()) return {1, 0};
   return {pattern_error(made, found.factors.pattern), 0.05};
 }
 
-/// Sources beyond one that are counted in nothing but shot noise on even light.
+/// Checks that shot noise on uniform frames is not counted as additional sources.
 Finding counted_in_noise(double photons) {
   std::vector<std::vector<double>> frames(40, std::vector<double>(1000, 1.0));
   for (std::size_t f = 0; f < frames.size(); ++f) {
     RandomStream stream(1, static_cast<std::uint64_t>(Stream::camera), f);
     mc::expose(frames[f], {.photons = photons}, stream);
   }
-  const auto found = mc::unmixed(frames, {{.photons = photons}, 40});
+  const auto found = mc::separated_sources(frames, {{.photons = photons}, 40});
   return yes(found.count.sources <= 1);
 }
 
@@ -85,7 +86,8 @@ void mc_imaging_extremes(ExtremeRows& rows) {
   rows.add_each("even light of ", {1e-3, 1e6}, " photons a pixel",
                 "1 where noise is counted as sources", counted_in_noise);
   rows.add_refused("dark frames", "not positive", [] {
-    mc::unmixed(std::vector<std::vector<double>>(3, std::vector<double>(100, 0.0)), {{}, 10});
+    mc::separated_sources(std::vector<std::vector<double>>(3, std::vector<double>(100, 0.0)),
+                          {{}, 10});
   });
 }
 

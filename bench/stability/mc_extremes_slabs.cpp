@@ -1,4 +1,4 @@
-// Paths in slabs as thin, deep, absorbing, peaked and grazed as they come.
+// Paths in extremely thin, deep, absorbing, forward-scattering and obliquely illuminated slabs.
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +26,7 @@ namespace {
 using mc::ReversedPaths;
 using std::numbers::pi;
 
-/// The same slab as layers on top of each other.
+/// Returns the slab divided into equal layers.
 Scene in_layers(Scene slab, std::size_t layers) {
   const double thickness = slab.domain.depth / static_cast<double>(layers);
   slab.profile =
@@ -35,7 +35,7 @@ Scene in_layers(Scene slab, std::size_t layers) {
   return slab;
 }
 
-/// Every intensity against the integral equation of isotropic slabs, which is good to 1e-3.
+/// Compares every intensity with the integral equation of isotropic slabs, accurate to 1e-3.
 Finding isotropic_slab(const Bulk& bulk, const std::vector<double>& lights,
                        const std::vector<double>& views, ReversedPaths reversed,
                        std::uint64_t paths, std::size_t layers) {
@@ -52,7 +52,8 @@ Finding isotropic_slab(const Bulk& bulk, const std::vector<double>& lights,
   return in_errors(found, expected, 0.1, 1e-3);
 }
 
-/// The power over all views is what the beam lost. Views are dense about the lobes at 0 and pi.
+/// Checks that the scattered power over all directions equals the loss of the beam. Directions are
+/// dense about the lobes at 0 and pi.
 Finding scattered_power(double g, double optical_depth) {
   using Rule = boost::math::quadrature::gauss<double, 10>;
   std::vector<double> views, weights;
@@ -76,11 +77,11 @@ Finding scattered_power(double g, double optical_depth) {
         return std::vector<Complex>{total};
       });
   const double expected = -std::expm1(-optical_depth);
-  // 2e-3: the quadrature over the lobe
+  // the quadrature over the lobe is accurate to 2e-3
   return in_errors(power.value[0], power.error[0], expected, 0.02, 2e-3);
 }
 
-/// Covariance of tilted fields at k L = 1e6, q L = 0 .. 2, against the integral equation.
+/// Compares the covariance of tilted fields at k L = 1e6, q L = 0 .. 2, with the integral equation.
 Finding tilted_fields() {
   const Bulk bulk{5, 0, 1, 1e6 / k};
   std::vector<double> tilts;
@@ -98,7 +99,7 @@ Finding tilted_fields() {
   return in_errors(found, expected, 0.1, 1e-3);
 }
 
-/// Correlation 1 at tilt 0, with no error.
+/// Checks that the correlation at tilt 0 is exactly 1, with error 0.
 Finding untilted() {
   const auto request = memory_effect_request(k, 1.5, {0.1, 1.55}, {0.0, 1e-7});
   const Scene scene = hg_slab({3, 0.9, 0.99, 1e6 / k}, request);
@@ -107,8 +108,8 @@ Finding untilted() {
   return {larger(std::abs(effect.correlation[0] - 1), effect.correlation_error[0]), 1e-12};
 }
 
-/// Lights and views at exactly pi/2 of an infinite slab: cos(pi/2) is 6e-17 in numbers, and so is
-/// the power that such light brings.
+/// Checks illumination and detection along an infinite slab, at exactly pi/2. As cos(pi/2) is 6e-17
+/// in floating point, the power is of that order.
 Finding along() {
   const auto request = intensity_request({0, 1.5}, far_views({pi / 2, -pi / 2}));
   double sum = 0;
@@ -123,7 +124,8 @@ Finding black() {
   return {total_magnitude(covariance(hg_slab({2, 0, 0}, request), ReversedPaths::yes, 4000)), 0};
 }
 
-/// Without reversed paths an intensity does not know the wavelength: k L 63 against 6e6.
+/// Checks that intensities without reversed paths do not depend on the wavelength, by comparing k L
+/// = 63 with 6e6.
 Finding wavelength() {
   const auto request = intensity_request({0, -0.7}, far_views({0.1, 1.5, pi}));
   Scene scene = hg_slab({2.5, 0.5}, request);
@@ -139,7 +141,7 @@ Finding wavelength() {
 
 struct Flux {
   mc::FluxEstimates shares;
-  Estimate total;  ///< of all shares together, per light
+  Estimate total;  ///< sum of all fractions, for each illumination
 };
 Flux flux_of(const Scene& scene, std::uint64_t paths) {
   const mc::FluxJob job = mc::flux_job(scene, 1, 1);
@@ -154,13 +156,13 @@ Flux flux(const Bulk& bulk, std::uint64_t paths) {
   return flux_of(hg_slab(bulk, intensity_request({0}, far_views({0}))), paths);
 }
 
-/// Walk by walk: without absorption none is lost.
+/// Checks that without absorption every walk conserves power.
 Finding lossless_flux(const Bulk& bulk, std::uint64_t paths) {
   const double scattered = -std::expm1(-bulk.optical_depth);
   return {std::abs(flux(bulk, paths).total.value[0] / scattered - 1.0), 1e-10};
 }
 
-/// All orders of scattering in discrete ordinates, so many a quadrant.
+/// Compares the fractions of power with a solution by discrete ordinates, `nodes` per quadrant.
 Finding crossing(const mc::FluxEstimates& shares, const Bulk& bulk,
                  const std::function<double(double)>& phase, int nodes) {
   const oracles::SlabTransport theory({bulk.optical_depth, bulk.albedo, phase}, {0}, nodes);
@@ -184,7 +186,7 @@ SceneSpec bulk_slab(const std::string& scatterer, const Bulk& bulk) {
   return spec;
 }
 
-/// Two peaks, forwards and backwards.
+/// Checks a phase function with a forward and a backward peak.
 Finding two_peaks(double g, const Bulk& bulk, std::uint64_t paths) {
   SceneSpec spec = bulk_slab("two_term_hg", bulk);
   std::get<TwoTermHg>(spec.bulk) = {g, -g, 0.5};
@@ -195,7 +197,7 @@ Finding two_peaks(double g, const Bulk& bulk, std::uint64_t paths) {
                   static_cast<int>(6 / (1 - g)));
 }
 
-/// A table that is 0 but in a cone about the light.
+/// Checks a phase-function table that is 0 outside a cone around the forward direction.
 Finding cone(double half, const Bulk& bulk, std::uint64_t paths) {
   const std::string path = std::filesystem::temp_directory_path() / "flatspeckle_cone.csv";
   std::ofstream(path) << std::setprecision(17) << "angle,value\n0,1\n"
@@ -211,7 +213,7 @@ Finding cone(double half, const Bulk& bulk, std::uint64_t paths) {
   return crossing(flux_of(scene, paths).shares, bulk, phase, 200);
 }
 
-/// Of what is hardly absorbed: (1 - albedo) times the collisions.
+/// Checks the absorptance of a weak absorber, 1 - albedo times the mean number of collisions.
 Finding absorbed(double albedo) {
   const auto shares = flux({20, 0, albedo}, 8000).shares;
   const oracles::IsotropicSlab theory(k, mc_depth, 20 / mc_depth, albedo);

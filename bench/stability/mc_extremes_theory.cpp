@@ -1,4 +1,4 @@
-// What of the Monte Carlo method is not random: theory, integrals, factors.
+// Deterministic parts of the Monte Carlo method: diffusion theory, integrals and matrix factors.
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "bench/stability/extreme_rows.h"
 #include "flatland/media/medium.h"
 #include "grin/media/scattering/diffusion_rate.h"
-#include "mc/paths/endpoint_factors/end_factors.h"
+#include "mc/paths/endpoint_factors/endpoint_factors.h"
 #include "mc/paths/estimators/single_scattering.h"
 #include "mc/paths/speckle/speckle_field.h"
 #include "mc/paths/walk/importance.h"
@@ -31,7 +31,7 @@ BulkMedium bulk(double mu_t, double g, double albedo) {
   return bulk_medium(scatterer, {.density = {}, .g = g, .text = {}}, mu_t);
 }
 
-/// C20 word for word in 50 digits, for a slab of thickness 1.
+/// Compares with the formulas of C20 evaluated in 50 digits, for a slab of thickness 1.
 Finding diffusion_row(double optical_depth, double g, double albedo, double q) {
   const BulkMedium medium = bulk(optical_depth, g, albedo);
   const Wide mu_t(medium.mu_t), mu_s(medium.mu_s), transport = 1 / (mu_t - mu_s * Wide(g));
@@ -46,8 +46,8 @@ Finding diffusion_row(double optical_depth, double g, double albedo, double q) {
   return {static_cast<double>(abs(found / exact - 1)), 1e-9};
 }
 
-/// The smallest root of importance.cpp's dispersion relation, with moments until nothing is left of
-/// them.
+/// Returns the smallest root of the dispersion relation used in importance.cpp, with moments of the
+/// phase function down to 1e-22.
 long double decay_rate(long double albedo, long double g) {
   std::vector<long double> moments{1};
   while (moments.back() > 1e-22L) moments.push_back(g * moments.back());
@@ -69,14 +69,15 @@ long double decay_rate(long double albedo, long double g) {
 }
 
 Finding decay_row(double albedo, double g) {
-  // isotropic: c = sqrt(1 - rate^2) is the albedo
+  // for isotropic scattering the albedo is sqrt(1 - rate^2)
   const long double exact = g == 0
                                 ? std::sqrt((1 - static_cast<long double>(albedo)) * (1 + albedo))
                                 : decay_rate(albedo, g);
   return {static_cast<double>(std::abs(grin::diffusion_rate(albedo, g, 2) / exact - 1)), 1e-9};
 }
 
-/// Over an area of k L = 1e6 each way, without attenuation: sinc times area.
+/// Checks the integral of a plane wave over a box without attenuation, with k L = 1e6 along both
+/// sides: sinc functions times the area.
 Finding wave_integral(Vec2 kappa) {
   const double extent = 1e6 / k;
   const Domain domain{Domain::Kind::box, extent, extent};
@@ -88,7 +89,7 @@ Finding wave_integral(Vec2 kappa) {
   return {std::abs(found - exact) / std::abs(exact), 1e-6};
 }
 
-/// All four factors along -z: int exp(-2 mu_t z).
+/// Checks the integral for backscattering, with all four factors along -z: int exp(-2 mu_t z).
 Finding backscattering_integral(double optical_depth) {
   const Domain domain{Domain::Kind::box, 20, 10};
   const double mu_t = optical_depth / 10;
@@ -98,7 +99,8 @@ Finding backscattering_integral(double optical_depth) {
           1e-9};
 }
 
-/// Light and view along the box at exactly pi/2: exp(-mu_t width) everywhere.
+/// Checks the integral for illumination and detection along the box, at exactly pi/2: the integrand
+/// is exp(-mu_t width) everywhere.
 Finding grazing_integral() {
   const Domain domain{Domain::Kind::box, 20, 10};
   const Vec2 w = direction(pi / 2);
@@ -106,7 +108,8 @@ Finding grazing_integral() {
   return {std::abs(found / (200 * std::exp(-2)) - 1.0), 1e-9};
 }
 
-/// C13's near end, k = 1: sqrt(pi k/2) e^{i pi/4} H_0 near by, its far form from k r = 10 on.
+/// Checks the wave of a near endpoint (C13) for k = 1: sqrt(pi k/2) e^{i pi/4} H_0 for k r < 10,
+/// and its far-field form beyond.
 Finding near_wave_row(double kr) {
   using std::numbers::pi_v;
   const auto [j, y] = bessel_oracle(0, kr);
@@ -119,8 +122,8 @@ Finding near_wave_row(double kr) {
   return {static_cast<double>(std::abs(ExtendedComplex(found) - exact) / std::abs(exact)), 1e-14};
 }
 
-/// Fields of one and the same kind in four channels of 1e-100, 1, 1e100 and nothing: rank 1, and F
-/// F^H is the covariance, channel by channel.
+/// Checks the factor F of the covariance of fully correlated fields in four channels, of magnitude
+/// 1e-100, 1, 1e100 and 0: F has rank 1, and F F^H equals the covariance in each channel.
 Finding factor_row() {
   const double scale[] = {1e-100, 1, 1e100, 0};
   std::vector<Complex> lower;

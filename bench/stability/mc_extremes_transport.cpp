@@ -1,5 +1,5 @@
-// Slabs without chance, in the plane and in space, as thin, deep and peaked as they come; media
-// found again from their own curves.
+// Deterministic transport through extremely thin, deep and forward-scattering slabs, in 2D and 3D;
+// fits of media to synthetic curves of the same media.
 
 #include <cmath>
 
@@ -25,7 +25,7 @@ Scene viewed_slab(const Bulk& bulk, double view, int dimension) {
   return dimension == 3 ? mc::in_space(slab, spec) : slab;
 }
 
-/// Reflected and transmitted without absorption, over what is scattered.
+/// Checks that, without absorption, reflected plus transmitted power equals the scattered power.
 Finding lossless_scene(const Scene& scene, double optical_depth) {
   const auto shares = mc::slab_flux(scene, 0, {1e-6}).value;
   const Complex left = shares[mc::reflected] + shares[mc::transmitted];
@@ -36,7 +36,8 @@ Finding lossless_transport(const Bulk& bulk, int dimension) {
   return lossless_scene(viewed_slab(bulk, 0, dimension), bulk.optical_depth);
 }
 
-/// Oblique light on a forward peak that ordinates alone do not resolve.
+/// Checks conservation of power for oblique illumination of a medium whose forward peak the
+/// ordinates alone do not resolve.
 Finding lossless_peak(const Bulk& bulk, int dimension) {
   constexpr double incidence = 1.2;
   Scene scene = viewed_slab(bulk, 0, dimension);
@@ -44,7 +45,7 @@ Finding lossless_peak(const Bulk& bulk, int dimension) {
   return lossless_scene(scene, bulk.optical_depth / std::cos(incidence));
 }
 
-/// Intensities of Monte Carlo, in errors.
+/// Compares intensities with Monte Carlo, in standard errors.
 Finding by_paths(const Bulk& bulk, int dimension) {
   const Scene scene = viewed_slab(bulk, 0.3, dimension);
   const double tolerance = dimension == 3 ? 1e-3 : 1e-4;
@@ -52,7 +53,7 @@ Finding by_paths(const Bulk& bulk, int dimension) {
                    mc::slab_covariance(scene, false, {tolerance}).value, 0.1, tolerance);
 }
 
-/// Spheres, without absorption.
+/// Checks conservation of power for spheres without absorption.
 Finding lossless_spheres(double optical_depth, double radius) {
   SceneSpec spec;
   spec.domain = "slab";
@@ -65,7 +66,8 @@ Finding lossless_spheres(double optical_depth, double radius) {
   return lossless_scene(mc::in_space(make_scene(spec), spec), optical_depth);
 }
 
-/// Frequencies that differ by nothing to speak of, over the intensity; values are complex then.
+/// Checks that the covariance at two nearly equal frequencies equals the intensity. With a
+/// frequency shift all values are complex.
 Finding same_frequencies(const Bulk& bulk, int dimension) {
   const Scene scene = viewed_slab(bulk, 0, dimension);
   const auto solve = [&](double shift) {
@@ -78,16 +80,16 @@ struct Truth {
   double g, albedo, optical_depth;
 };
 
-/// How far the parameters are off, in these errors.
+/// Returns the largest deviation of the fitted parameters, in units of `errors`.
 Finding misfit(const mc::MediumFit& fit, const Eigen::VectorXd& truth,
                const Eigen::VectorXd& errors, double limit) {
   const Eigen::VectorXd in_errors = (fit.estimates - truth).cwiseQuotient(errors);
   return {fit.converged ? in_errors.cwiseAbs().maxCoeff() : 1e9, limit};
 }
 
-/// In the errors that 1 % of noise would give them.
+/// Fits exact curves. The deviation is in units of the standard errors for 1 % noise.
 Finding found_again(const Truth& truth, const std::vector<std::string>& free) {
-  constexpr double depth = 20000;  // few paths walked backwards count
+  constexpr double depth = 20000;  // reversed paths are negligible
   SyntheticSlab slab(depth, truth.g, truth.albedo, truth.optical_depth);
   for (const double view : {0.2, std::numbers::pi - 0.6}) slab.add_curve(view, {1, 2, 4, 8});
   slab.add_transmittance();
@@ -96,7 +98,8 @@ Finding found_again(const Truth& truth, const std::vector<std::string>& free) {
                 0.2);
 }
 
-/// g alone, by paths: in standard errors of their chance.
+/// Fits only g, by Monte Carlo. The deviation is in units of the standard error of the fitted
+/// g.
 Finding found_by_paths(const Truth& truth) {
   SyntheticSlab slab(2000, truth.g, truth.albedo, truth.optical_depth);
   for (const double view : {0.3, std::numbers::pi - 0.6}) slab.add_curve(view, {1, 2, 4, 8});
@@ -106,10 +109,10 @@ Finding found_by_paths(const Truth& truth) {
   });
   task.paths.emplace();
   const mc::MediumFit fit = mc::fit_medium(task);
-  return misfit(fit, Eigen::VectorXd{{truth.g}}, fit.by_chance.diagonal().cwiseSqrt(), 4);
+  return misfit(fit, Eigen::VectorXd{{truth.g}}, fit.by_sampling.diagonal().cwiseSqrt(), 4);
 }
 
-/// The diffusion that a decay tells of, in a medium that is known.
+/// Fits the diffusion coefficient to a decay in a known medium.
 Finding diffusion_again(double optical_depth, const std::vector<double>& delays) {
   SyntheticSlab slab(2000, 0.8, 1, optical_depth);
   slab.add_decay(0.2, delays);

@@ -1,4 +1,4 @@
-// Media that vary as much as they can.
+// Media whose density or index varies extremely.
 
 #include <cmath>
 #include <numbers>
@@ -7,7 +7,7 @@
 #include "bench/stability/mc_extremes.h"
 #include "flatland/media/layers.h"
 #include "flatland/scene/density_maps.h"
-#include "mc/paths/bent/graded_ends.h"
+#include "mc/paths/bent/graded_endpoints.h"
 #include "mc/paths/bent/linear_medium.h"
 #include "mc/paths/dynamics/brownian.h"
 #include "mc/slab/slab_covariance.h"
@@ -18,7 +18,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// The slab that a row is about, and layers in its place.
+/// Compares a homogeneous slab with layers of the same total optical depth.
 Finding as_undivided(const std::vector<double>& densities, const std::vector<double>& depths) {
   constexpr double tolerance = 1e-8;
   const Scene slab = hg_slab({5, 0.7}, intensity_request({0.3}, far_views({0.2, 1.2, pi - 0.5})));
@@ -39,7 +39,8 @@ Finding as_undivided(const std::vector<double>& densities, const std::vector<dou
           1e-6};
 }
 
-/// How far an optical depth reaches, and the optical depth so far, through cells of 1e6 and 0.
+/// Checks that the distance returned for an optical depth has that optical depth, through cells of
+/// density 1e6 and 0.
 Finding rugged_map() {
   const Scene box = hg_box(20, {5}, intensity_request({0}, far_views({0})));
   const CellDensity map(box.domain, {box.scatterer, box.medium}, 4,
@@ -56,15 +57,15 @@ Finding rugged_map() {
   return {worst, 1e-9};
 }
 
-flatspeckle::IndexField linear(Vec2 slope) {
+flatspeckle::IndexField linear(Vec2 gradient) {
   flatspeckle::IndexField field;
   field.kind = flatspeckle::IndexField::Kind::linear;
-  field.slope = slope;
+  field.gradient = gradient;
   return field;
 }
 
-/// Curves there and back, of ends near and far.
-Finding curves_both_ways() {
+/// Compares curved rays traced in both directions, between near and far endpoints.
+Finding curves_in_both_senses() {
   const mc::LinearMedium medium({Domain::Kind::box, 20, 10}, linear({0.01, 0.05}));
   double worst = 0;
   for (const double distance : {1e-9, 1e-3, 1.0, 20.0}) {
@@ -78,20 +79,21 @@ Finding curves_both_ways() {
   return {worst, 1e-12};
 }
 
-/// Along z where n^2 falls to 1e-6 at the back: z = sigma - sigma^2 (1 - 1e-6) / (4 depth).
+/// Checks a ray along z in a medium whose n^2 falls from 1 to 1e-6 at the back: z = sigma - sigma^2
+/// (1 - 1e-6) / (4 depth).
 Finding nearly_turning() {
   constexpr double depth = 10, fall = (1 - 1e-6) / depth;
   const mc::LinearMedium medium({Domain::Kind::box, 20, depth}, linear({0, -fall}));
   double worst = 0;
   for (const double sigma : {1e-6, 1.0, 10.0, 19.9}) {
-    const auto place = medium.flown({0, 0}, {0, 1}, sigma);
+    const auto place = medium.after_flight({0, 0}, {0, 1}, sigma);
     if (!place) return {1, 0};
     worst = larger(worst, std::abs(place->x.z / (sigma - fall * sigma * sigma / 4) - 1));
   }
   return {worst, 1e-9};
 }
 
-/// |g1| of scatterers that only flow, all alike: 1.
+/// Checks |g1| = 1 for scatterers that only flow uniformly.
 Finding fast_flow() {
   const Scene slab = hg_slab({5, 0.7}, intensity_request({0.3}, far_views({0.2, pi - 0.5})));
   const auto job = mc::delay_job(slab, mc::make_plan(slab, mc::ReversedPaths::no), {1}, 1,
@@ -115,7 +117,7 @@ SceneSpec graded(const std::string& field) {
 
 void with_ends(const SceneSpec& spec) {
   const Scene scene = make_scene(spec);
-  mc::check_graded_ends(scene, *mc::graded_medium(scene));
+  mc::check_graded_endpoints(scene, *mc::graded_medium(scene));
 }
 
 void grazing_mean_field() {
@@ -132,7 +134,7 @@ void grazing_mean_field() {
 
 void turning_light() {
   SceneSpec spec = graded("linear");
-  spec.index_slope = {0, -0.09};
+  spec.index_gradient = {0, -0.09};
   spec.light_angles = {1.2};
   with_ends(spec);
 }
@@ -154,7 +156,7 @@ void mc_varying_extremes(ExtremeRows& rows) {
   rows.add("layers, one of 1e-12 of the density", "without it", as_undivided, Layered{1e-12, 1},
            Layered{1, 1});
   rows.add("density map, cells of 0 to 1e6", "reach of an optical depth", rugged_map);
-  rows.add("n^2 linear, ends 1e-9 to 20 apart", "the curve back", curves_both_ways);
+  rows.add("n^2 linear, ends 1e-9 to 20 apart", "the curve back", curves_in_both_senses);
   rows.add("n^2 falling to 1e-6", "parabola", nearly_turning);
   rows.add("flow of 1e6 wavelengths", "|g1| = 1", fast_flow);
   rows.add_refused("light that turns round where n^2 falls", "turns round at z", turning_light);

@@ -25,8 +25,8 @@ Complex far_amplitude(Complex sum) {
 
 namespace {
 
-// Two equal disks, the origin between them; gap in radii. Askew, as along an axis half of a
-// translation is 0.
+// Two equal disks with the origin midway between them; the gap is in radii. The axis is oblique,
+// because along x or z some components of the translation vanish.
 Placement pair(const Scatterer& scatterer, double gap, double axis = 0.7) {
   const Vec2 half = (1 + gap / 2) * scatterer.radius * direction(axis);
   return {{-half, scatterer}, {half, scatterer}};
@@ -36,7 +36,7 @@ WaveSolution solved(const Placement& placement, double tolerance) {
   return solve(placement, k, two_lights, to(tolerance));
 }
 
-// Far fields at two tolerances: the basis orders differ.
+// Compares far fields at two tolerances, which have different basis orders.
 Finding convergence(const Placement& placement, double tolerance, double finer) {
   const auto views = views_around();
   return {relative_difference(solved(placement, tolerance).fields(views),
@@ -44,7 +44,7 @@ Finding convergence(const Placement& placement, double tolerance, double finer) 
           tolerance};
 }
 
-// Scattered against extinct power (C9); lossless disks only.
+// Compares scattered power with extinction (C9). Only for lossless disks.
 Finding energy(const Placement& placement, int views, double limit) {
   const auto solution = solved(placement, 1e-12);
   double scattered = 0;
@@ -61,8 +61,8 @@ Finding boundary(const Placement& placement, double tolerance, double limit) {
   return {solve(placement, k, two_lights, options).diagnosis().boundary_residual, limit};
 }
 
-// C7 word for word, with D_n = J_n'/J_n (mx) from J_n'/J_n = -(n/z) + 1 / (n-1)/z - D_{n-1}) turned
-// downwards, and the C library's J and Y.
+// Returns T_n by the formula of C7, with the C library's J and Y and with D_n = J_n'/J_n at z = m
+// x. D_n is from downward recurrence of D_n = -n/z + 1 / ((n-1)/z - D_{n-1}).
 Complex textbook_t(const Scatterer& cylinder, int n) {
   const double x = k * cylinder.radius;
   const Complex mx = cylinder.index * x,
@@ -71,9 +71,9 @@ Complex textbook_t(const Scatterer& cylinder, int n) {
   Complex d = 0;
   for (int m = start; m > n; --m)
     d = static_cast<double>(m - 1) / mx - 1.0 / (static_cast<double>(m) / mx + d);
-  const double j = ::jn(n, x), slope = n / x * j - ::jn(n + 1, x), y = ::yn(n, x);
-  const Complex h(j, y), h_slope(slope, n / x * y - ::yn(n + 1, x));
-  return -(q * d * j - slope) / (q * d * h - h_slope);
+  const double j = ::jn(n, x), j_derivative = n / x * j - ::jn(n + 1, x), y = ::yn(n, x);
+  const Complex h(j, y), h_derivative(j_derivative, n / x * y - ::yn(n + 1, x));
+  return -(q * d * j - j_derivative) / (q * d * h - h_derivative);
 }
 
 Finding mie(const Scatterer& cylinder, double limit) {
@@ -84,10 +84,12 @@ Finding mie(const Scatterer& cylinder, double limit) {
   return off(solved({{{0, 0}, cylinder}}, 1e-14).far_field(view), far_amplitude(sum), limit);
 }
 
-// Statics: a pair's dipole moment, over that of two disks apart, is the sum over images
-// R^n (sinh xi / sinh (n + 1) xi)^2, cosh xi = d / 2a, R the strength of one reflection.
+// Returns the electrostatic dipole moment of a pair of disks divided by that of two isolated disks.
+// It is the sum over images n of R^n (sinh xi / sinh (n + 1) xi)^2, where cosh xi = d / 2a
+// (distance d, radius a) and R is the strength of one image reflection.
 Complex image_sum(double gap, Complex reflection) {
-  const double xi = 2 * std::asinh(std::sqrt(gap) / 2);  // without loss at small gaps
+  const double xi =
+      2 * std::asinh(std::sqrt(gap) / 2);  // this form avoids cancellation at small gaps
   Complex sum = 0, power = 1;
   for (int n = 0; n < 1 || n * xi < 20; ++n) {
     const double ratio = std::sinh(xi) / std::sinh((n + 1) * xi);
@@ -98,7 +100,8 @@ Complex image_sum(double gap, Complex reflection) {
   return sum;
 }
 
-// Light and view along the axis or across it. reflection: of the axis' images.
+// Compares a pair of small disks, illuminated and viewed along its axis or across it, with the sum
+// over images. reflection: strength of one image reflection along the axis.
 Finding dipole(const Scatterer& small, double gap, Complex reflection, bool across,
                double tolerance, double limit) {
   const double angle = across ? pi / 2 : 0;
@@ -110,7 +113,7 @@ Finding dipole(const Scatterer& small, double gap, Complex reflection, bool acro
   return off(found, image_sum(gap, across ? -reflection : reflection), limit);
 }
 
-// Monopoles: b = T_0 (a + H_0(kd) b), light across the axis.
+// Compares with two coupled monopoles, b = T_0 (a + H_0(kd) b), illuminated across the axis.
 Finding monopoles(const Scatterer& small, double limit) {
   const Placement two = pair(small, 2000, 0);
   const double kd = k * length(two[1].position - two[0].position);
@@ -120,10 +123,10 @@ Finding monopoles(const Scatterer& small, double limit) {
   return off(solution.far_field(pi / 2), far_amplitude(2.0 * b), limit);
 }
 
-// Almost invisible disks scatter independently.
+// Checks that almost invisible disks scatter independently.
 Finding independent(const Scatterer& faint, double limit) {
   const Placement two = pair(faint, 0.5);
-  const auto solution = solved(two, 1e-12), lone = solved({{{0, 0}, faint}}, 1e-12);
+  const auto solution = solved(two, 1e-12), single = solved({{{0, 0}, faint}}, 1e-12);
   std::vector<Complex> found, expected;
   for (const View& view : views_around()) {
     found.push_back(solution.far_field(view.angle));
@@ -131,12 +134,13 @@ Finding independent(const Scatterer& faint, double limit) {
     for (const auto& [position, scatterer] : two)
       phases +=
           std::polar(1.0, k * dot(direction(two_lights[0]) - direction(view.angle), position));
-    expected.push_back(lone.far_field(view.angle) * phases);
+    expected.push_back(single.far_field(view.angle) * phases);
   }
   return {relative_difference(found, expected), limit};
 }
 
-// The size parameter near `guess` at which order n of a disk of index 10 resonates: T_n = -1.
+// Returns the size parameter in [low, high] at which order n of a disk of index 10 resonates, T_n =
+// -1.
 double resonance(int n, double low, double high) {
   const auto strength = [&](double x) {
     return std::abs(static_cast<Complex>(t_matrix(disk(Kind::tm, x, 10), k, n)[n]));
@@ -170,7 +174,7 @@ void add_gaps(ExtremeRows& rows) {
                nearer, 1e-9, 1e-12);
   }
   for (const double ka : {0.01, 1.0, 10.0})
-    // 7.0e3: ln(1e6) / (2 xi), xi = 1e-3, with the gap rounded down
+    // the order is about 7.0e3 = ln(1e6) / (2 xi) with xi = 1e-3; the gap is rounded down
     rows.add_refused("hard, k a " + short_number(ka) + ", gap 1e-6", "basis order 70", boundary,
                      pair(disk(Kind::hard, ka), 1e-6), 1e-6, 0);
 }
@@ -180,7 +184,7 @@ void add_statics(ExtremeRows& rows) {
     const std::string what =
         across ? "dipole across the axis against images" : "dipole along the axis against images";
     for (const double gap : {1e-2, 1e-4}) {
-      // a small gap takes so high an order that less is asked of it
+      // small gaps need very high orders, so the tolerance is relaxed
       const double tolerance = gap < 1e-3 ? 1e-4 : 1e-9, limit = gap < 1e-3 ? 1e-4 : 1e-6;
       rows.add_timed(gap < 1e-3, "hard, k a 1e-4, gap " + short_number(gap), what, dipole,
                      disk(Kind::hard, 1e-4), gap, -1, across, tolerance, limit);
@@ -208,7 +212,7 @@ void add_indices(ExtremeRows& rows) {
   const Complex metal(0.1, 5);
   for (const Kind kind : {Kind::tm, Kind::te}) {
     for (const double x : {1e-4, 1.0, 100.0})
-      // the second scattering is left out: as large as the phase that one disk adds, 2 k a 1e-8
+      // the neglected double scattering is as large as the phase shift by one disk, 2 k a 1e-8
       rows.add(named("k a " + short_number(x) + ", index 1 + 1e-8", kind), "independent scattering",
                independent, disk(kind, x, 1 + 1e-8), x > 1 ? 1e-5 : 1e-7);
     const std::string textbook = "Mie series from J'/J of the textbook";
@@ -223,7 +227,7 @@ void add_indices(ExtremeRows& rows) {
   }
 }
 
-// Gap plasmons ask for orders that those of dielectric pairs do not tell.
+// Adds pairs of metal disks with gap plasmons, which need other orders than dielectric pairs.
 void add_gap_plasmons(ExtremeRows& rows) {
   for (const auto& [gap, index] : {std::pair(0.02, Complex(0.05, 2.2)), {0.002, {0.05, 2.2}}})
     rows.add_slow("TE, k a 0.6, index 0.05 + 2.2i, gap " + short_number(gap),

@@ -19,17 +19,17 @@ inline SolveOptions to(double tolerance, Method method = Method::automatic) {
   return {.tolerance = tolerance, .sensors = {}, .diagnose = false, .method = method};
 }
 
-/// |found - expected| / |expected|
+/// Returns the deviation |found - expected| / |expected| with its limit.
 inline Finding off(Complex found, Complex expected, double limit) {
   return {std::abs(found - expected) / std::abs(expected), limit};
 }
 
-/// Light and view exchanged.
+/// Compares amplitudes before and after exchanging illumination and detection directions.
 Finding reciprocity(const Placement& placement, const SolveOptions& options, double limit);
 
 std::vector<View> views_around();
 
-/// Amplitude of a far field that goes as the sum of T-matrix elements.
+/// Returns the far-field amplitude for a sum of T-matrix elements.
 Complex far_amplitude(Complex sum);
 
 }  // namespace flatspeckle::bench

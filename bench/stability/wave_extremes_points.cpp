@@ -1,4 +1,5 @@
-// Points as near, as far and as many as they come; fields next to rims; units; what is refused.
+// Point scatterers that are very close, very far apart or very many; fields next to boundaries;
+// units of length; rejected inputs.
 
 #include <cmath>
 #include <tuple>
@@ -26,8 +27,9 @@ Placement many_points(std::size_t count, double width, double phase_shift) {
   return points;
 }
 
-/// Two resonant points at kd, light and view at pi/2 and along the axis, by hand in extended
-/// precision: b = T (a + H b) for the sum and the difference of both.
+/// Compares two resonant points at distance kd, illuminated across or along their axis, with the
+/// closed form in extended precision: b = T (a + H b), solved for sum and difference of the
+/// amplitudes.
 Finding two_points(double kd, double light, double view, double limit) {
   const double half = kd / (2 * k);
   const auto solution =
@@ -48,7 +50,7 @@ Placement three_disks(double unit) {
   return {{{0, 0}, one}, {{0.1 * unit, 0.45 * unit}, one}, {{-0.5 * unit, 0.1 * unit}, one}};
 }
 
-/// |A|^2 is a length.
+/// Checks that far fields scale correctly with the unit of length: |A|^2 is a length.
 Finding unit_of_length(double unit) {
   const auto here = solve(three_disks(1), k, two_lights, to(1e-12));
   const auto there = solve(three_disks(unit), k / unit, two_lights, to(1e-12));
@@ -57,7 +59,8 @@ Finding unit_of_length(double unit) {
   });
 }
 
-/// u = 0 on the rim: what is left at 1e-9 radii from it is that far times the slope, about 2 k.
+/// Checks u = 0 on the boundary: at a distance of 1e-9 radii, the field is that distance times the
+/// normal derivative, about 2 k.
 Finding soft_rim() {
   const Scatterer one = disk(Kind::soft, 5);
   const Placement placement{{{0, 0}, one}, {{2 * one.radius, 2 * one.radius}, one}};
@@ -75,7 +78,7 @@ Finding soft_rim() {
   return {worst, 1e-7};
 }
 
-/// Charges in clusters of 1e-7 wavelengths, 300 apart.
+/// Checks sums over charges in clusters that are 1e-7 wavelengths wide and 300 wavelengths apart.
 Finding clustered_sum() {
   RandomStream random(2, 0, 0);
   std::vector<Vec2> points;
@@ -100,7 +103,7 @@ Finding clustered_sum() {
   return {std::sqrt(difference / size), 1e-10};
 }
 
-// Four disks about the origin, the farthest point of them at 3 radii.
+// Four disks about the origin, within a circle of 3 radii.
 constexpr double tolerance = 1e-9;
 Placement four_disks(double radius, Complex index) {
   const Scatterer disk{.kind = Scatterer::Kind::tm, .radius = radius, .index = index};
@@ -108,7 +111,8 @@ Placement four_disks(double radius, Complex index) {
   return {{{out, 0}, disk}, {{0, out}, disk}, {{-out, 0}, disk}, {{0, -0.9 * out}, disk}};
 }
 
-// Two copies whose circles are a gap apart, in the circle's radii.
+// Compares two copies of the four disks, treated by their cluster's T-matrix, with all eight disks
+// in one system. The gap between the circles around the copies is in radii of these circles.
 Finding against_all_disks(double radius, Complex index, double gap, double limit) {
   const Placement disks = four_disks(radius, index);
   const auto cluster = cluster_t_matrix(disks, k, gap * 3 * radius, tolerance);
@@ -140,7 +144,7 @@ void add_clusters(ExtremeRows& rows) {
 void add_points(ExtremeRows& rows) {
   for (const double kd : {1e-12, 1e-6, 1.0, 1e6})
     for (const auto& [where, light] : {std::pair("along", 0.0), {"across", pi / 2}})
-      // of coordinates of 1e6 in the phase, rounding leaves 1e-10
+      // rounding changes phases of 1e6 by 1e-10
       rows.add("two resonant points, k d " + short_number(kd) + ", light " + where + " the axis",
                "closed form in extended precision",
                [=, light = light] { return two_points(kd, light, 2.0, kd > 1e3 ? 1e-9 : 1e-12); });

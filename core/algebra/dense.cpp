@@ -17,7 +17,7 @@ constexpr const char* singular = "singular matrix";
 void multiply(const double* a, Eigen::Index rows, const Matrix& b, double* c) {
   const auto m = static_cast<blasint>(rows), n = static_cast<blasint>(b.cols()),
              inner = static_cast<blasint>(b.rows());
-  const auto height = std::max<blasint>(m, 1);  // BLAS wants it even of nothing
+  const auto height = std::max<blasint>(m, 1);  // BLAS requires at least 1, even for empty matrices
   cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, m, n, inner, 1, a, height, b.data(), inner,
               0, c, height);
 }
@@ -88,7 +88,8 @@ void solve(const Rows& factors, const int* pivots, Rows& b) {
                       pivots, b.data(), n);
 }
 
-/// rows U^-1 L^-1
+/// Replaces the matrix `rows` by rows U^-1 L^-1, where L and U are the triangular LU factors in
+/// `factors`.
 void solve_triangles(Rows& rows, const Matrix& factors) {
   const auto m = static_cast<blasint>(2 * rows.rows()), n = static_cast<blasint>(factors.rows());
   auto* const data = reinterpret_cast<double*>(rows.data());

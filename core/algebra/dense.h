@@ -10,34 +10,36 @@
 
 namespace flatspeckle {
 
-/// As datasets have it: last axis fastest.
+/// Returns the values in row-major order (last axis fastest), as datasets store them.
 inline std::vector<double> row_major(const Eigen::MatrixXd& values) {
   const Eigen::MatrixXd columns = values.transpose();
   return {columns.data(), columns.data() + columns.size()};
 }
 
 using Matrix = Eigen::MatrixXd;
-/// Complex rows, one for each channel: in memory a real matrix of twice as many rows, so that
-/// products with real matrices are real ones.
+/// Complex matrix with one row per channel (a pair of light and view). BLAS treats it as a real
+/// matrix with twice as many rows, so that products with real matrices use real arithmetic.
 using Rows = Eigen::MatrixXcd;
 
-/// Dense algebra by the system's BLAS and LAPACK, on one thread.
+/// Returns the product a b of two matrices. All dense algebra here uses the system's BLAS and
+/// LAPACK, on one thread.
 Matrix product(const Matrix& a, const Matrix& b);
 Rows product(const Rows& rows, const Matrix& a);
 Rows product(const Rows& a, const Rows& b);
-/// a b^T
+/// Returns the product a b^T of a matrix and a transposed matrix.
 Rows product_transposed(const Rows& a, const Rows& b);
-/// Each row times its factor.
+/// Returns the matrix `rows` after multiplying its row i by factor[i].
 Rows scaled(std::span<const std::complex<double>> factor, Rows rows);
 
-/// LU factors of a square matrix a. Throws std::runtime_error for a singular one.
+/// LU factors of a square matrix a, to solve linear systems. Throws std::runtime_error if a is
+/// singular.
 template <typename M>
 class FactorsOf {
  public:
   explicit FactorsOf(M a);
-  /// a^-1 b
+  /// Returns a^-1 b: solves a x = b.
   M before(M b) const;
-  /// rows a^-1
+  /// Returns rows a^-1: solves x a = rows.
   Rows after(Rows rows) const;
 
  private:

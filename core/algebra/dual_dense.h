@@ -9,7 +9,7 @@
 
 namespace flatspeckle {
 
-/// The matrices of calculations with a Number.
+/// Types of real and complex matrices in a calculation whose numbers have the type Number.
 template <typename Number>
 struct DenseNumbers {
   using RealMatrix = Matrix;
@@ -30,7 +30,7 @@ using MatrixOf = typename DenseNumbers<Number>::RealMatrix;
 template <typename Number>
 using RowsOf = typename DenseNumbers<Number>::ComplexRows;
 
-/// f of a matrix, where f is linear.
+/// Applies a linear map f to a matrix, and to its derivative if it has one.
 template <typename F>
 auto linear(const F& f, const Matrix& a) {
   return f(a);
@@ -41,7 +41,7 @@ Rows linear(const F& f, const Rows& a) {
 }
 template <typename F, typename T>
 Dual<T> linear(const F& f, const Dual<T>& a) {
-  return {f(a.value), f(a.slope)};
+  return {f(a.value), f(a.derivative)};
 }
 
 inline Matrix times(double factor, const Matrix& a) {
@@ -54,14 +54,14 @@ inline Rows times(Complex factor, const Matrix& a) {
   return b;
 }
 inline Dual<Matrix> times(const Dual<double>& factor, const Matrix& a) {
-  return {factor.value * a, factor.slope * a};
+  return {factor.value * a, factor.derivative * a};
 }
 
 inline Complex entry(const Rows& rows, Eigen::Index i, Eigen::Index j) {
   return rows(i, j);
 }
 inline Dual<Complex> entry(const Dual<Rows>& rows, Eigen::Index i, Eigen::Index j) {
-  return {rows.value(i, j), rows.slope(i, j)};
+  return {rows.value(i, j), rows.derivative(i, j)};
 }
 
 inline Matrix identity_like(const Matrix& a) {
@@ -76,35 +76,38 @@ inline Dual<Matrix> identity_like(const Dual<Matrix>& a) {
 
 template <typename A, typename B>
 Dual<A> product(const Dual<A>& a, const Dual<B>& b) {
-  return {product(a.value, b.value), product(a.slope, b.value) + product(a.value, b.slope)};
+  return {product(a.value, b.value),
+          product(a.derivative, b.value) + product(a.value, b.derivative)};
 }
 inline Dual<Rows> product_transposed(const Dual<Rows>& a, const Dual<Rows>& b) {
   return {product_transposed(a.value, b.value),
-          product_transposed(a.slope, b.value) + product_transposed(a.value, b.slope)};
+          product_transposed(a.derivative, b.value) + product_transposed(a.value, b.derivative)};
 }
 inline Dual<Rows> scaled(const std::vector<Dual<Complex>>& factor, const Dual<Rows>& rows) {
   const auto parts = flat(factor);
   const auto value = std::span(parts).first(factor.size()),
-             slope = std::span(parts).last(factor.size());
-  return {scaled(value, rows.value), scaled(slope, rows.value) + scaled(value, rows.slope)};
+             derivative = std::span(parts).last(factor.size());
+  return {scaled(value, rows.value),
+          scaled(derivative, rows.value) + scaled(value, rows.derivative)};
 }
 
 template <>
 class FactorsOf<Dual<Matrix>> {
  public:
-  explicit FactorsOf(Dual<Matrix> a) : of_value_(std::move(a.value)), slope_(std::move(a.slope)) {}
+  explicit FactorsOf(Dual<Matrix> a)
+      : of_value_(std::move(a.value)), derivative_(std::move(a.derivative)) {}
   Dual<Matrix> before(const Dual<Matrix>& b) const {
     const Matrix value = of_value_.before(b.value);
-    return {value, of_value_.before(b.slope - product(slope_, value))};
+    return {value, of_value_.before(b.derivative - product(derivative_, value))};
   }
   Dual<Rows> after(const Dual<Rows>& rows) const {
     const Rows value = of_value_.after(rows.value);
-    return {value, of_value_.after(rows.slope - product(value, slope_))};
+    return {value, of_value_.after(rows.derivative - product(value, derivative_))};
   }
 
  private:
   FactorsOf<Matrix> of_value_;
-  Matrix slope_;
+  Matrix derivative_;
 };
 
 }  // namespace flatspeckle

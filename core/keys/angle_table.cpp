@@ -16,18 +16,19 @@ AngleTable::AngleTable(const std::string& key, const std::string& path) {
   angles_.assign(angles.begin(), angles.end());
   values_.assign(values.begin(), values.end());
   const auto refuse = [&](const char* accepted) { throw InputError(key, path, accepted); };
-  constexpr double rounding = 1e-4;  // pi as somebody wrote it
+  // tolerance of the last angle, because pi may be written with few digits
+  constexpr double rounding = 1e-4;
   if (angles_.size() < 2 || std::abs(angles_.front()) > rounding ||
       std::abs(angles_.back() - std::numbers::pi) > rounding)
     refuse("column angle must go from 0 to pi (radians), or angle_deg from 0 to 180");
   if (std::adjacent_find(angles_.begin(), angles_.end(), std::greater_equal<>()) != angles_.end())
-    refuse("column angle must rise");
+    refuse("column angle must increase");
   if (*std::min_element(values_.begin(), values_.end()) < 0)
     refuse("column value must not be negative");
   const double largest = *std::max_element(values_.begin(), values_.end());
   if (largest == 0) refuse("column value must not be 0 everywhere");
   if (!(largest > 1e-100 && largest < 1e100))
-    refuse("the largest of column value must be from 1e-100 to 1e100");
+    refuse("the maximum of column value must be from 1e-100 to 1e100");
   angles_.front() = 0;
   angles_.back() = std::numbers::pi;
 }

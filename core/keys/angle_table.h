@@ -5,17 +5,17 @@
 
 namespace flatspeckle {
 
-/// A function of an angle from 0 to pi, linear between its nodes.
+/// Function of an angle from 0 to pi, given by a table and interpolated linearly.
 class AngleTable {
  public:
-  /// Of a CSV file with columns angle (radians, rising from 0 to pi) and value (not negative, not
-  /// all 0). Throws InputError naming the key.
+  /// Reads a CSV file with columns angle (radians, increasing from 0 to pi) and value (not
+  /// negative, not all 0). Throws InputError; the message names the key.
   AngleTable(const std::string& key, const std::string& path);
 
   double operator()(double angle) const;
   const std::vector<double>& angles() const { return angles_; }
   const std::vector<double>& values() const { return values_; }
-  /// Every number, exactly.
+  /// Returns all angles and values as text that reads back as the same numbers.
   std::string text() const;
 
  private:

@@ -8,7 +8,8 @@
 
 namespace flatspeckle {
 
-/// The enumerator of a word that is one of them, which stand in the order of the enumerators.
+/// Returns the enumerator that belongs to a word: the words are listed in the order of the
+/// enumerators. Precondition: `words` contains the word.
 template <typename Choice>
 Choice chosen(const std::vector<std::string>& words, const std::string& word) {
   const auto found = std::ranges::find(words, word);

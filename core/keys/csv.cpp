@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::string_view degrees = "_deg";
 
-/// The numbers of a table. Decimal commas are read where all numbers agree on them.
+/// Parses the numbers of a table. Decimal commas are accepted if no number has a decimal point.
 class NumberReader {
  public:
   NumberReader(const std::filesystem::path& path, const TableText& text)
@@ -35,19 +35,20 @@ class NumberReader {
     return *value;
   }
 
-  /// Once all are read. Throws InputError where commas may stand before decimals or between
-  /// thousands.
+  /// To be called after all numbers are read. Throws InputError if it is not certain that commas in
+  /// the numbers are decimal commas: they may separate thousands, or other numbers have a decimal
+  /// point.
   void check() const {
     if (comma_ == 0) return;
     const std::string lines =
         path_ + ", line " + std::to_string(comma_) + ": \"" + with_comma_ + '"';
     if (point_ > 0)
-      throw InputError(lines + " has a comma, and a number of line " + std::to_string(point_) +
-                       " a decimal point: must be all the same");
+      throw InputError(lines + " has a decimal comma, but line " + std::to_string(point_) +
+                       " has a decimal point: use only one of the two");
     if (!surely_decimal_ && text_.separator() != ';')
       throw InputError(lines +
-                       ": the comma may stand before decimals or between thousands; must "
-                       "be written with a decimal point");
+                       ": the comma may be a decimal or a thousands separator; must be written "
+                       "with a decimal point");
   }
 
  private:
@@ -65,7 +66,7 @@ class NumberReader {
     return field;
   }
 
-  /// Whether a comma may separate thousands, as in -12,345.
+  /// Whether the comma in a number may separate thousands, as in -12,345.
   static bool may_divide_thousands(std::string_view field) {
     if (field.starts_with('-') || field.starts_with('+')) field.remove_prefix(1);
     const auto comma = field.find(',');
@@ -75,7 +76,9 @@ class NumberReader {
 
   std::string path_, with_comma_;
   const TableText& text_;
-  std::size_t comma_ = 0, point_ = 0;  ///< the first lines with a decimal comma, a point
+  /// Line numbers of the first line with a decimal comma and of the first line with a decimal
+  /// point; 0 if there is none.
+  std::size_t comma_ = 0, point_ = 0;
   bool surely_decimal_ = false;
 };
 
@@ -86,7 +89,7 @@ class CsvReader {
 
   Table read(const std::string& source) {
     const auto& lines = text_.lines();
-    if (lines.empty()) throw InputError(path_ + ": empty, expected a line of column names");
+    if (lines.empty()) throw InputError(path_ + ": is empty; expected a line of column names");
     read_names(lines.front());
     for (auto line = lines.begin() + 1; line != lines.end(); ++line) read_row(*line);
     numbers_.check();
@@ -108,7 +111,8 @@ class CsvReader {
     columns_.resize(names_.size());
   }
 
-  /// Spreadsheets also write rows without anything in them.
+  /// Appends the numbers of a line as a row. Lines with only empty fields, which spreadsheets also
+  /// write, are skipped.
   void read_row(const TableLine& line) {
     auto fields = text_.fields(line);
     if (width_ > 1 && std::ranges::count(fields, "") == std::ssize(fields)) return;
@@ -118,7 +122,7 @@ class CsvReader {
       text_.fail(line, "expected " + std::to_string(names_.size()) + " fields, found " +
                            std::to_string(fields.size()) +
                            (fields.size() >= 2 * names_.size() && text_.separator() == ','
-                                ? " (beside decimal commas, fields must be separated by ;)"
+                                ? " (with decimal commas, fields must be separated by ;)"
                                 : ""));
     for (std::size_t i = 0; i < fields.size(); ++i)
       columns_[i].push_back(numbers_.read(line, names_[i], fields[i], is_angle_(names_[i])));
@@ -141,7 +145,7 @@ class CsvReader {
   const AngleColumns& is_angle_;
   TableText text_;
   NumberReader numbers_;
-  std::size_t width_ = 0;  ///< fields of the line of names
+  std::size_t width_ = 0;  ///< number of fields in the line of column names
   std::vector<std::string> names_;
   std::vector<std::vector<double>> columns_;
 };
@@ -159,7 +163,7 @@ bool Table::has(const std::string& name) const {
 std::span<const double> Table::column(const std::string& name) const {
   const auto found = std::find(names_.begin(), names_.end(), name);
   if (found == names_.end())
-    throw InputError(source_ + ": no column \"" + name + "\" among " + joined(names_, ", "));
+    throw InputError(source_ + ": no column \"" + name + "\" among " + join_texts(names_, ", "));
   return columns_[static_cast<std::size_t>(found - names_.begin())];
 }
 
@@ -186,7 +190,8 @@ Table table_of(const std::string& key, const std::filesystem::path& path,
 
 void require_rows(const std::string& key, const std::filesystem::path& path, const Table& table) {
   if (table.rows() == 0)
-    throw InputError(key, path.string(), "must hold at least one row, has names of columns alone");
+    throw InputError(key, path.string(),
+                     "must have at least one row; it contains only column names");
 }
 
 }  // namespace
@@ -206,7 +211,7 @@ Table read_key_table(const std::string& key, const std::filesystem::path& path,
   };
   for (const std::string& name : table.names())
     if (std::ranges::find(columns, name) == columns.end())
-      refuse(": column \"" + name + "\": must be one of " + joined(columns, ", "));
+      refuse(": column \"" + name + "\": must be one of " + join_texts(columns, ", "));
   if (!may_be_empty) require_rows(key, path, table);
   for (const std::string& name : table.names())
     for (const double value : table.column(name))
@@ -222,12 +227,13 @@ std::vector<std::vector<double>> read_rows(const std::filesystem::path& path) {
   for (const TableLine& line : text.lines()) {
     auto& row = rows.emplace_back();
     auto fields = text.fields(line);
-    if (fields.back().empty()) fields.pop_back();  // a comma at the end
+    if (fields.back().empty()) fields.pop_back();  // the line ends with a comma
     for (const std::string& field : fields)
       row.push_back(numbers.read(line, "number " + std::to_string(row.size() + 1), field, false));
     if (row.size() != rows.front().size())
-      text.fail(line, "has " + std::to_string(row.size()) + " numbers, the first row " +
-                          std::to_string(rows.front().size()) + ": must have rows of one length");
+      text.fail(line, "has " + std::to_string(row.size()) + " numbers, but the first row has " +
+                          std::to_string(rows.front().size()) +
+                          ": all rows must have the same length");
   }
   numbers.check();
   return rows;

@@ -28,7 +28,7 @@ const std::string& text_of(const std::string& value) {
   return value;
 }
 
-// What a member holds, as texts; nothing where it is not set.
+// Returns the value of a key as texts; an empty list if the key is not set.
 template <typename Value>
 std::vector<std::string> texts_of(const Value& value) {
   const std::string text = text_of(value);
@@ -45,7 +45,7 @@ std::vector<std::string> texts_of(const std::vector<Value>& values) {
   return texts;
 }
 
-/// Reads texts into members.
+/// Parses texts and stores the values in the variable of a key, for each type of variable.
 class Setter {
  public:
   Setter(const std::string& name, Written kind, const std::vector<std::string>& texts)
@@ -91,7 +91,7 @@ class Setter {
   void read(const std::string& text, std::string& value) const {
     const auto is_odd = [](unsigned char c) { return std::iscntrl(c) || c == '"' || c == '\\'; };
     if (std::any_of(text.begin(), text.end(), is_odd))
-      throw InputError(name_, text, "must be without control characters, \" and \\");
+      throw InputError(name_, text, "must not contain control characters, \" or \\");
     value = text;
   }
 
@@ -105,7 +105,7 @@ bool fills(const KeyMember& member) {
   return (std::holds_alternative<Types*>(member) || ...);
 }
 
-/// 100000, not 1e+05.
+/// Returns a limit as text; integers as 100000, not 1e+05.
 std::string limit_text(double limit) {
   constexpr double longest = 1e9;
   const bool whole = limit == std::floor(limit) && std::abs(limit) < longest;
@@ -137,14 +137,14 @@ const void* Key::address() const {
 
 std::string Key::help() const {
   std::string text = help_;
-  if (!words_.empty()) text += ": " + joined(words_, ", ");
+  if (!words_.empty()) text += ": " + join_texts(words_, ", ");
   if (!unit_.empty()) text += " [" + unit_ + ']';
   if (!only_of_.empty()) text += " (" + only_of_ + ')';
   return text;
 }
 
 std::string Key::accepted() const {
-  if (!words_.empty()) return "must be one of " + joined(words_, " ");
+  if (!words_.empty()) return "must be one of " + join_texts(words_, " ");
   if (exactly_ > 0) return "must be " + shape_;
   if (each_ > 0) return "must be " + std::to_string(each_) + " numbers for each: " + shape_;
   if (is_switch()) return "must be true or false";
@@ -175,7 +175,7 @@ std::vector<std::string> Key::value() const {
 }
 
 std::string Key::shown() const {
-  return joined(value(), " ");
+  return join_texts(value(), " ");
 }
 
 std::string Key::line() const {
@@ -183,11 +183,13 @@ std::string Key::line() const {
   std::vector<std::string> texts = value();
   if (!bare)
     for (std::string& text : texts) text.insert(0, 1, '"').push_back('"');
-  const std::string all = joined(texts, ", ");
+  const std::string all = join_texts(texts, ", ");
   return name_ + " = " + (is_list() ? '[' + all + ']' : all);
 }
 
-void Key::set(const std::vector<std::string>& texts) const {
+void Key::set(const std::vector<std::string>& given) const {
+  std::vector<std::string> texts = given;
+  if (!former_.first.empty()) std::ranges::replace(texts, former_.first, former_.second);
   std::visit(Setter(name_, written_kind(unit_), texts), member_);
 }
 

@@ -12,50 +12,62 @@
 
 namespace flatspeckle {
 
-/// What a key fills: a number, a text, a list of either, or a switch. What is optional and has no
-/// value, an empty text and an empty list are not set.
+/// Pointer to the variable that a key sets: a number, a text, a list of numbers or texts, or a
+/// switch. An optional without a value, an empty text and an empty list count as not set.
 using KeyMember =
     std::variant<bool*, std::int64_t*, double*, std::string*, std::optional<std::int64_t>*,
                  std::optional<double>*, std::optional<std::string>*, std::vector<double>*,
                  std::vector<std::int64_t>*, std::vector<std::string>*>;
 
-/// The one row of a key: name, the member that it fills, what it accepts, and in words what it is.
-/// The member's value when the row is made is the default. Ranges hold for each number of a list.
+/// Definition of a key (a row of the schema): its name, the variable (member) that it sets, the
+/// accepted values and a description. The default is the value that the variable has when the
+/// definition is made. A range of accepted values applies to each number of a list.
 class Key {
  public:
   Key(std::string name, KeyMember member, std::string group, std::string help);
 
-  // What is accepted; without any of these a number must be finite, and a text is free.
+  // The following functions limit the accepted values. By default, any finite number or text is
+  // accepted.
   Key& positive() { return between(0, infinity); }
   Key& not_negative() { return from(0, infinity); }
-  /// Both included.
+  /// Accepts numbers from low to high, both included.
   Key& from(double low, double high) { return with(range_, {low, high, false, false}); }
-  /// Neither included.
+  /// Accepts numbers between low and high, both excluded.
   Key& between(double low, double high) { return with(range_, {low, high}); }
-  /// high included.
+  /// Accepts positive numbers up to high, included.
   Key& positive_to(double high) { return with(range_, {0, high, true, false}); }
-  /// Radians: who writes 45 means degrees.
+  /// Accepts angles in radians from -2 pi to 2 pi; 45, which is probably meant in degrees, is
+  /// rejected.
   Key& angle() { return from(-2 * std::numbers::pi, 2 * std::numbers::pi).unit("rad"); }
   Key& one_of(std::vector<std::string> words) { return with(words_, std::move(words)); }
-  /// What became of words that are accepted no more: ends the line that refuses a word.
+  /// Also accepts `old`, a former spelling of the accepted word `word`.
+  Key& formerly(std::string old, std::string word) {
+    return with(former_, {std::move(old), std::move(word)});
+  }
+  /// Sets a text that is appended to the error message for a word that is not accepted, for example
+  /// what replaces a word of earlier versions.
   Key& gone(std::string text) { return with(gone_, std::move(text)); }
-  /// So many numbers for each thing, in words.
+  /// Requires a list of items with this many numbers each; `what` describes the numbers of an item,
+  /// such as "x y z".
   Key& each_of(std::size_t numbers, std::string what) {
     return with(each_, numbers).with(shape_, std::move(what));
   }
-  /// Exactly so many, in words.
+  /// Requires a list of exactly this many numbers; `what` describes them, such as "first last".
   Key& exactly(std::size_t numbers, std::string what) {
     return with(exactly_, numbers).with(shape_, std::move(what));
   }
-  // What else is known of it.
+  // The following functions set further properties of the key.
   Key& unit(std::string text) { return with(unit_, std::move(text)); }
-  /// What it is a key of, where not everything reads it: "soft, hard, tm and te".
+  /// States in which cases the key applies, if not in all: "soft, hard, tm and te".
   Key& only_of(std::string what) { return with(only_of_, std::move(what)); }
-  /// How long or on what to run, not what: no part of a result's identity.
+  /// Marks a key that sets run time or computing resources, such as threads. It is not part of the
+  /// identity of a result.
   Key& effort() { return with(effort_, true); }
-  Key& no_file() { return with(in_files_, false); }  ///< on the command line alone
-  Key& swept() { return with(swept_, true); }        ///< a sweep may take many values
-  /// Names a file, which must be there: its content is asked for as well.
+  /// The key is accepted only on the command line, not in scene files.
+  Key& no_file() { return with(in_files_, false); }
+  Key& swept() { return with(swept_, true); }  ///< a sweep may vary the key
+  /// Marks a key whose value is the path of an input file, so that the content of the file is part
+  /// of the identity of the run.
   Key& file() { return with(file_, true); }
 
   const std::string& name() const { return name_; }
@@ -69,27 +81,30 @@ class Key {
   bool is_file() const { return file_; }
   bool is_list() const;
   bool is_switch() const { return std::holds_alternative<bool*>(member_); }
-  bool is_whole() const;  ///< whole numbers
+  bool is_whole() const;  ///< whether the values are whole numbers
   bool is_number() const;
   const void* address() const;
 
-  /// The line of --help: with unit, words and what it is a key of.
+  /// Returns the description for --help, with accepted words, unit and the cases in which the key
+  /// applies.
   std::string help() const;
-  /// "must be positive".
+  /// Returns the requirement, e.g. "must be positive".
   std::string accepted() const;
 
-  /// Numbers in the shortest form that reads back as the same one; nothing where it is not set.
+  /// Returns the value as texts, empty if not set. Numbers have the shortest form that reads back
+  /// as the same number.
   std::vector<std::string> value() const;
   const std::vector<std::string>& default_value() const { return default_; }
-  /// What is given is other than the default: a resolved scene, which names all, gives no more than
-  /// the one that it came from.
+  /// Whether the value differs from the default. Keys that are set to their default count as not
+  /// given, because a resolved scene (--print-config) contains them too.
   bool given() const { return value() != default_; }
-  /// "1 2 3", for messages.
+  /// Returns the value as one text for messages, such as "1 2 3".
   std::string shown() const;
-  /// "key = value" of a scene file.
+  /// Returns the line "key = value" of a scene file.
   std::string line() const;
 
-  /// Both throw InputError naming key, value and what is accepted.
+  /// Parses the texts and sets the variable. set() and check() throw InputError for values that are
+  /// not accepted; the message names the key, the value and the accepted values.
   void set(const std::vector<std::string>& texts) const;
   void check() const;
 
@@ -101,7 +116,7 @@ class Key {
     bool low_open = true, high_open = true;
 
     bool has(double value) const;
-    /// "must be positive", of whole numbers or any.
+    /// Returns the requirement, e.g. "must be positive". whole: for whole numbers.
     std::string text(bool whole) const;
   };
   std::string range() const;
@@ -114,6 +129,8 @@ class Key {
   void check(double value, const std::string& shown) const;
 
   std::string name_, group_, help_, unit_, only_of_, shape_, gone_;
+  /// Former spelling of an accepted word, and the word that replaces it.
+  std::pair<std::string, std::string> former_;
   KeyMember member_;
   std::vector<std::string> default_, words_;
   Range range_;

@@ -35,7 +35,8 @@ void Keys::require_set(const Key* key) {
                      " is not given: " + (key->is_file() ? key->help() : key->accepted()));
 }
 
-/// "luneburg, fisheye", of all rows of a name; empty where one of them is for all.
+/// Returns the cases in which a key applies, collected from all its definitions: "luneburg,
+/// fisheye". Empty if one of the definitions applies in all cases.
 std::string Keys::only_of(const std::string& name) const {
   std::string all;
   for (const Key& key : rows_) {
@@ -50,13 +51,12 @@ void Keys::refuse_unread() const {
   for (const Key& key : rows_) {
     if (!key.given() || read_.contains(key.name())) continue;
     const std::string of = disregarded_.contains(key.name()) ? "" : only_of(key.name());
-    throw InputError(
-        key.name(), key.shown(),
-        of.empty() ? "nothing here has use for it; leave it out" : "is a key of " + of + " only");
+    throw InputError(key.name(), key.shown(),
+                     of.empty() ? "is not used here; leave it out" : "is a key of " + of + " only");
   }
 }
 
-void Keys::join_reads(const Keys& others) const {
+void Keys::merge_reads(const Keys& others) const {
   for (const auto& [name, row] : others.read_) read_.try_emplace(name, find(name));
 }
 
@@ -76,7 +76,7 @@ std::vector<std::string> Keys::files() const {
   return files;
 }
 
-/// Of the rows of a name, the first that was.
+/// Whether the key of this name was first read through this definition.
 bool Keys::was_read(const Key& key) const {
   const auto row = read_.find(key.name());
   return row != read_.end() && row->second == &key;

@@ -12,19 +12,19 @@
 
 namespace flatspeckle {
 
-/// Keys of one call and a record of which were read: keys that are given and never read are
-/// rejected. Code that uses a struct's value reads it through the keys, so that the code that
-/// decides what is used is the only place that says so. A forgotten read is seen at the first use
-/// of its key; a condition in the row, if forgotten, would leave the key accepted and ignored.
-/// Several rows may share a name (each kind of a thing has its own row for what it needs): a given
-/// value goes to all of them and counts as read if one of them was.
+/// Keys of one call of the program. Each key sets a variable, and code reads the variable through
+/// this class, which records that the key was read. A key that the user gives but no code reads has
+/// no effect and is rejected. Several definitions (rows) may share a name, for example one for each
+/// kind of scatterer: a given value then sets the variables of all these definitions, and the key
+/// counts as read if one of the variables was read.
 class Keys {
  public:
   Keys() = default;
-  Keys(const Keys&) = delete;  // rows are bound to members
+  Keys(const Keys&) = delete;  // the keys contain pointers to variables
   Keys& operator=(const Keys&) = delete;
 
-  /// Of the rows that follow: their title in --help, and what they are keys of if not of all.
+  /// Sets the heading in --help of the keys that are added next, and in which cases these keys
+  /// apply, if not in all.
   void group(std::string title, std::string only_of = "") {
     group_ = std::move(title);
     only_of_ = std::move(only_of);
@@ -35,22 +35,25 @@ class Keys {
     return rows_.emplace_back(name, &member, group_, help).only_of(only_of_);
   }
   void remove(const std::string& name);
-  /// Fills every member of this name. Throws InputError.
+  /// Sets the variables of all definitions of the key of this name. Throws InputError for values
+  /// that are not accepted.
   void set(const std::string& name, const std::vector<std::string>& texts) const;
 
   const std::deque<Key>& rows() const { return rows_; }
-  /// nullptr where there is none.
+  /// Returns the first definition of the key of this name; nullptr if there is none.
   const Key* find(const std::string& name) const;
-  /// nullptr of a member that this subcommand leaves at its value.
+  /// Returns the definition of the key that sets the variable at this address; nullptr if there is
+  /// none.
   const Key* row_of(const void* member) const;
 
-  /// Value of a bound member, whose key then is read.
+  /// Returns the variable, after marking the key that sets it as read.
   template <typename Member>
   const Member& read(const Member& member) const {
     if (const Key* const key = row_of(&member)) read_.try_emplace(key->name(), key);
     return member;
   }
-  /// The same, where there must be one. Throws InputError.
+  /// Returns the value of an optional variable, after marking its key as read. Throws InputError if
+  /// the variable is not set.
   template <typename Value>
   const Value& required(const std::optional<Value>& member) const {
     require_set(row_of(&member));
@@ -62,7 +65,7 @@ class Keys {
     require_set(row_of(&member));
     return read(member);
   }
-  /// What was read but turned out to have no say counts as not read.
+  /// Marks a key as not read, because its value turned out to have no effect.
   void disregard(const auto& member) const {
     if (const Key* const key = row_of(&member); key != nullptr && read_.erase(key->name()) > 0)
       disregarded_.insert(key->name());
@@ -71,21 +74,24 @@ class Keys {
     const Key* const key = row_of(&member);
     return key != nullptr && key->given();
   }
-  /// Of a member with a row, for messages.
+  /// Returns the name of the key that sets the variable, for messages.
   const std::string& name(const auto& member) const { return row_of(&member)->name(); }
 
-  /// Throws InputError for the first value that its row does not accept.
+  /// Throws InputError for the first key whose value is not accepted.
   void check() const;
   /// Throws InputError for the first key that is given and was not read.
   void refuse_unread() const;
-  /// Counts as read what others have read of keys of the same names.
-  void join_reads(const Keys& others) const;
+  /// Marks as read all keys that were read under the same name in `others`.
+  void merge_reads(const Keys& others) const;
 
-  /// The lines of a scene file that makes the same again: what was read, less some keys.
+  /// Returns a scene file that reproduces this call: the lines of all keys that were read, except
+  /// `without`.
   std::string config(const std::set<std::string>& without = {}) const;
-  /// Those of them that change the result.
+  /// Returns the lines of config() for keys that change the result; keys marked by Key::effort() do
+  /// not.
   std::string identity() const;
-  /// Those that were read, by their names there.
+  /// Returns the paths of the input files: the values of all keys marked by Key::file() that were
+  /// read.
   std::vector<std::string> files() const;
 
  private:
@@ -96,11 +102,14 @@ class Keys {
   std::string group_, only_of_;
   std::deque<Key> rows_;
   mutable std::set<std::string> disregarded_;
-  mutable std::map<std::string, const Key*> read_;  ///< the row of each name that was
+  mutable std::map<std::string, const Key*>
+      /// For the name of each key that was read, the definition through which it was read.
+      read_;
 };
 
-/// A struct of values with keys of its own, given what differs from its defaults: how libraries
-/// read a struct. add_keys(keys, values) is found by the struct's name.
+/// Copy of a struct of values, together with keys that set its members, for library functions that
+/// read values through keys. Values that differ from the defaults count as given. The keys are
+/// added by the function add_keys(keys, values) in the namespace of the struct.
 template <typename Values>
 struct Keyed {
   explicit Keyed(const Values& from) {
@@ -112,7 +121,8 @@ struct Keyed {
   Keys keys;
 };
 
-/// What `make` makes of values, all of which it must read. Throws InputError.
+/// Returns make(keys, values). Throws InputError if `make` does not read a value that differs from
+/// its default.
 template <typename Values, typename Make>
 auto made_of(const Values& values, const Make& make) {
   const Keyed<Values> keyed(values);

@@ -6,16 +6,17 @@
 
 namespace flatspeckle {
 
-// The kinds of a thing, one of which a key chooses by its word: a tuple of structs of values, each
-// with a `word`.
+// The functions below process alternatives that the user selects by a word, such as kinds of light
+// source. `kinds` is a tuple of structs of values, each with its selecting word in the member
+// `word`.
 
-/// use(values) of each kind, in their order.
+/// Calls use(values) with each struct of the tuple, in order.
 template <class Kinds, class Use>
 void each_kind(Kinds&& kinds, const Use& use) {
   std::apply([&](auto&... kind) { (use(kind), ...); }, kinds);
 }
 
-/// use(values) of the kind of this word, where there is one.
+/// Calls use(values) with the struct that this word selects, if there is one.
 template <class Kinds, class Use>
 void with_kind(const Kinds& kinds, const std::string& word, const Use& use) {
   each_kind(kinds, [&](const auto& kind) {

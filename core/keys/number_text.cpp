@@ -15,7 +15,8 @@ namespace {
 template <typename Number>
 std::optional<Number> read_all(const char* from, const char* end) {
   Number value{};
-  if (end - from > 1 && from[0] == '+' && from[1] != '-') ++from;  // from_chars knows no plus
+  if (end - from > 1 && from[0] == '+' && from[1] != '-')
+    ++from;  // from_chars does not accept a plus sign
   const auto read = std::from_chars(from, end, value);
   if (read.ec == std::errc::result_out_of_range && read.ptr == end)
     if constexpr (std::is_same_v<Number, double>) return std::strtod(from, nullptr);
@@ -23,7 +24,7 @@ std::optional<Number> read_all(const char* from, const char* end) {
   return value;
 }
 
-/// Takes off what scene files may have between digits: 1_000.
+/// Removes underscores between digits, as in 1_000, which TOML allows in scene files.
 std::string without_underscores(const std::string& text) {
   const auto is_digit = [](unsigned char c) { return std::isdigit(c) != 0; };
   std::string all;
@@ -35,7 +36,7 @@ std::string without_underscores(const std::string& text) {
   return all;
 }
 
-/// Of digits: neither inf nor nan.
+/// Parses a number that is written with digits; does not accept inf and nan.
 std::optional<double> read_digits(std::string_view text) {
   const std::string digits(trimmed(text));
   if (digits.find_first_not_of("+-.eE0123456789") != digits.npos) return std::nullopt;
@@ -47,7 +48,8 @@ std::optional<Complex> read_complex(std::string_view text) {
   if (!text.ends_with('i') && !text.ends_with('j')) return read_digits(text);
   text.remove_suffix(1);
   std::size_t sign = text.find_last_of("+-");
-  if (sign != 0 && sign != text.npos && std::tolower(text[sign - 1]) == 'e')  // of an exponent
+  if (sign != 0 && sign != text.npos &&
+      std::tolower(text[sign - 1]) == 'e')  // this sign belongs to an exponent
     sign = text.find_last_of("+-", sign - 1);
   if (sign == text.npos) return std::nullopt;
   const auto size = trimmed(text.substr(sign + 1));
@@ -61,7 +63,8 @@ std::optional<Complex> read_complex(std::string_view text) {
 
 std::string number_text(double value) {
   char digits[32];
-  return {digits, std::to_chars(digits, digits + sizeof digits, value + 0.0).ptr};  // -0 is 0
+  // adding 0 turns -0 into 0
+  return {digits, std::to_chars(digits, digits + sizeof digits, value + 0.0).ptr};
 }
 
 std::string number_text(Complex value) {
@@ -73,10 +76,10 @@ std::string number_text(Complex value) {
 std::string number_text(const std::vector<double>& values) {
   std::vector<std::string> texts;
   for (const double value : values) texts.push_back(number_text(value));
-  return joined(texts, " ");
+  return join_texts(texts, " ");
 }
 
-std::string joined(const std::vector<std::string>& texts, const std::string& between) {
+std::string join_texts(const std::vector<std::string>& texts, const std::string& between) {
   std::string all;
   for (const std::string& text : texts) all += (&text == &texts.front() ? "" : between) + text;
   return all;

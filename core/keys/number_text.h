@@ -10,26 +10,29 @@
 
 namespace flatspeckle {
 
-/// Of numbers in keys and tables: products of a few, and of inverses of positive ones, stay numbers.
+/// Largest accepted magnitude of numbers in keys and tables. Products of a few such numbers do not
+/// overflow.
 constexpr double most_input = 1e50;
 
-// Numbers and lists as texts, in any locale.
+// The functions below convert numbers and lists to text and back, independent of the locale.
 
-/// The shortest that reads back as the same number: 20.0 and 2e1 are "20".
+/// Returns the shortest text that is parsed as exactly the same number; "20" for 20.0.
 std::string number_text(double value);
 std::string number_text(Complex value);
-/// "1 2 3", for messages.
+/// Returns the numbers as one text for messages, such as "1 2 3".
 std::string number_text(const std::vector<double>& values);
-std::string joined(const std::vector<std::string>& texts, const std::string& between);
+std::string join_texts(const std::vector<std::string>& texts, const std::string& between);
 
-/// Without the blanks around it.
+/// Returns the text without leading and trailing blanks.
 std::string_view trimmed(std::string_view text);
 
-/// The number that the whole text is, if it is one; inf and nan are.
+/// Parses a text that is a number, including inf and nan. Returns nullopt for any other text.
 std::optional<double> read_number(const std::string& text);
-/// The same of up to 18 digits; "1e6" is a whole number too.
+/// Parses a text that is an integer of up to 18 digits; "1e6" is also accepted. Returns nullopt for
+/// any other text.
 std::optional<std::int64_t> read_whole_number(const std::string& text);
-/// "1.5", "1.5+0.1i", "0.1 + 5i". Throws InputError.
+/// Parses a complex number such as "1.5", "1.5+0.1i" or "0.1 + 5i". Throws InputError for any other
+/// text.
 Complex parse_complex(const std::string& key, const std::string& text);
 
 }  // namespace flatspeckle

@@ -36,8 +36,8 @@ void append_utf8(std::string& text, unsigned unit) {
   add(0x80 | (unit & 0x3F));
 }
 
-/// UTF-16 as UTF-8; what needs two units, which no number or name of a column does, becomes a
-/// question mark.
+/// Converts UTF-16 to UTF-8; characters beyond 16 bits, which no number or column name needs,
+/// become question marks.
 std::string from_utf16(std::string_view bytes, bool big_endian) {
   std::string text;
   for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
@@ -49,7 +49,8 @@ std::string from_utf16(std::string_view bytes, bool big_endian) {
   return text;
 }
 
-/// By the byte order mark; without one, by where the first letter has its zero.
+/// Converts the bytes to UTF-8. The byte order mark determines their encoding or, if there is none,
+/// the position of the zero byte of the first letter.
 std::string decoded(const std::string& bytes) {
   const std::string_view all = bytes;
   if (all.starts_with("\xEF\xBB\xBF")) return bytes.substr(3);
@@ -68,8 +69,8 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
   text = replaced + text.substr(done);
 }
 
-/// The fields of a line, without the spaces around them; no value where quotation marks do not fit
-/// together.
+/// Splits a line into fields and removes spaces around them. Returns nullopt if quotation marks do
+/// not match.
 std::optional<std::vector<std::string>> split(std::string_view line, char separator) {
   enum class Quotes { none, open, closed } quotes = Quotes::none;
   std::vector<std::string> fields(1);
@@ -103,7 +104,7 @@ std::size_t count_of(std::string_view line, char separator) {
   return fields ? fields->size() : 0;
 }
 
-/// Whether a line has numbers, perhaps with decimal commas, and nothing else.
+/// Whether all fields of a line are numbers, possibly with decimal commas.
 bool are_numbers(std::vector<std::string> fields) {
   std::erase(fields, "");
   return !fields.empty() && std::ranges::all_of(fields, [](std::string field) {
@@ -122,7 +123,7 @@ TableText::TableText(const std::filesystem::path& path, bool named) : path_(path
   if (std::ranges::any_of(text, is_binary))
     throw InputError(path_ +
                      ": is not a text file; a table must be CSV, as spreadsheets export it");
-  replace_all(text, "\xE2\x88\x92", "-");  // the minus sign that is not a hyphen
+  replace_all(text, "\xE2\x88\x92", "-");  // the Unicode minus sign
   for (const char* space : {"\xC2\xA0", "\xE2\x80\xAF"}) replace_all(text, space, " ");
   replace_all(text, "\r\n", "\n");
   std::ranges::replace(text, '\r', '\n');
@@ -145,7 +146,8 @@ void TableText::split_lines(std::string_view text) {
   }
 }
 
-/// Excel's first line.
+/// If the first line is of the form "sep=;", as written by Excel, takes the separator from it and
+/// removes the line.
 void TableText::take_separator() {
   if (lines_.empty()) return;
   std::string first = lines_.front().text;
@@ -157,8 +159,9 @@ void TableText::take_separator() {
   lines_.erase(lines_.begin());
 }
 
-/// The first character that divides the first two lines into the same number of fields, or else the
-/// first line; the name of a column may have spaces.
+/// Chooses the separator: the first of several characters that splits the first two lines into the
+/// same number of fields, more than one. If there is none, chooses a character that splits the
+/// first line, but not a space if that line has column names, because names may contain spaces.
 void TableText::find_separator(bool named) {
   separator_ = ',';
   if (lines_.empty()) return;
@@ -172,7 +175,8 @@ void TableText::find_separator(bool named) {
     }
 }
 
-/// A file of numpy's has the names in a comment.
+/// If the first line contains numbers, takes the column names from the comment above it, as in
+/// files written by numpy.
 void TableText::take_names() {
   if (lines_.empty() || !are_numbers(fields(lines_.front()))) return;
   const TableLine numbers = lines_.front();
@@ -180,11 +184,11 @@ void TableText::take_names() {
   find_separator(true);
   const auto names = split(lines_.front().text, separator_);
   if (names && !are_numbers(*names) && names->size() == fields(numbers).size()) return;
-  fail(numbers, "must be a line of column names, is a line of numbers");
+  fail(numbers, "must be a line of column names, but contains numbers");
 }
 
 std::vector<std::string> TableText::fields(const TableLine& line) const {
-  // A tab before the first field or behind the last divides it from an empty one.
+  // A tab before the first field or after the last one delimits an empty field.
   const auto found = split(separator_ == '\t' ? line.text : trimmed(line.text), separator_);
   if (!found) fail(line, "quotation marks must be around whole fields, on one line");
   return *found;

@@ -8,7 +8,7 @@
 
 namespace flatspeckle {
 
-/// Throws InputError naming the file.
+/// Returns the content of a file. Throws InputError if the file cannot be read.
 std::string file_bytes(const std::filesystem::path& path);
 
 /// A line of a table and its number in the file.
@@ -17,22 +17,23 @@ struct TableLine {
   std::string text;
 };
 
-/// The text of a table, whichever program wrote it: UTF-8 or UTF-16, with or without a byte order
-/// mark; lines that end with LF, CRLF or CR; fields between commas, semicolons, tabs or spaces, in
-/// quotation marks or without; a first line sep=; that names the character between fields. Blank
-/// lines and comments, which begin with # or %, are left out.
+/// Text of a table as common programs write it: UTF-8 or UTF-16, with or without a byte order mark;
+/// lines that end with LF, CRLF or CR; fields separated by commas, semicolons, tabs or spaces,
+/// quoted or not; an optional first line sep=; that sets the separator. Blank lines and comments,
+/// which begin with # or %, are skipped.
 class TableText {
  public:
-  /// named: the first line has the names of the columns. Where numbers stand there, the comment
-  /// before them has the names. Throws InputError naming the file.
+  /// named: whether the columns have names. The names are in the first line or, if the first line
+  /// contains numbers, in the comment above the first line. Throws InputError; the message names
+  /// the file.
   TableText(const std::filesystem::path& path, bool named);
 
-  /// With the names first, if there are names.
+  /// Returns the lines of the table. If the columns have names, the names are the first line.
   const std::vector<TableLine>& lines() const { return lines_; }
-  /// Throws InputError where quotation marks do not fit together.
+  /// Splits a line into fields. Throws InputError for unmatched quotation marks.
   std::vector<std::string> fields(const TableLine& line) const;
   char separator() const { return separator_; }
-  /// Throws InputError naming file and line.
+  /// Throws InputError with a message that begins with file and line.
   [[noreturn]] void fail(const TableLine& line, const std::string& what) const;
 
  private:
@@ -43,7 +44,7 @@ class TableText {
 
   std::string path_;
   std::vector<TableLine> lines_;
-  TableLine comment_{0, ""};  ///< the last before the first line
+  TableLine comment_{0, ""};  ///< last comment above the first line of the table
   char separator_ = '\0';
 };
 

@@ -17,15 +17,15 @@ namespace {
 
 constexpr std::int64_t most_steps = 1'000'000;
 constexpr const char* range_form =
-    "must be first:last:count, or first:last:count:log of numbers with one sign; "
-    "0:1:11 is in steps of 0.1";
+    "must be first:last:count, or first:last:count:log with first and last of the same sign; "
+    "0:1:11 has steps of 0.1";
 
 std::optional<double> plain(std::string_view text) {
   return read_number(std::string(trimmed(text)));
 }
 
-/// What stands for a factor behind a number, longest first where one ends like another; where there
-/// is none, an empty text for 1.
+/// Returns the unit at the end of a number, and the factor by which the unit converts the number;
+/// an empty text and 1 if there is no unit. "mrad" is listed before "rad", with which it ends.
 std::pair<std::string_view, double> unit_of(std::string_view text, Written kind) {
   constexpr double pi = std::numbers::pi;
   constexpr std::array<std::pair<std::string_view, double>, 4> units = {
@@ -35,7 +35,7 @@ std::pair<std::string_view, double> unit_of(std::string_view text, Written kind)
   return {"", 1};
 }
 
-/// "2pi/3", "30deg", "0.1".
+/// Parses a number without sums, such as "2pi/3", "30deg" or "0.1".
 std::optional<double> term(std::string_view text, Written kind) {
   text = trimmed(text);
   double divisor = 1;
@@ -51,7 +51,8 @@ std::optional<double> term(std::string_view text, Written kind) {
   return factor ? std::optional(*factor * size / divisor) : std::nullopt;
 }
 
-/// Where the last sum or difference stands: no sign of a number and none of its exponent.
+/// Returns the position of the last + or - that adds or subtracts, as opposed to the sign of a
+/// number or of an exponent. Returns npos if there is none.
 std::size_t last_sign(std::string_view text) {
   for (std::size_t at = text.size(); at-- > 1;) {
     if (text[at] != '+' && text[at] != '-') continue;
@@ -81,7 +82,7 @@ Written written_kind(const std::string& unit) {
 std::optional<double> written_number(const std::string& text, Written kind) {
   std::string_view whole = trimmed(text);
   if (const auto number = read_number(std::string(whole))) return number;
-  std::vector<double> added;  // the last term first
+  std::vector<double> added;  // terms of a sum, the last one first
   for (auto sign = last_sign(whole); sign != whole.npos; sign = last_sign(whole)) {
     const auto value = term(whole.substr(sign + 1), kind);
     if (!value) return std::nullopt;
@@ -130,7 +131,7 @@ std::optional<NumberRange> written_range(const std::string& key, const std::stri
   const auto count = read_whole_number(std::string(trimmed(parts[2])));
   if (!first || !last || !count || !std::isfinite(*first) || !std::isfinite(*last)) throw refuse();
   if (*count < 2 || *count > most_steps)
-    throw InputError(key, text, "a range has from 2 to " + std::to_string(most_steps) + " values");
+    throw InputError(key, text, "a range must have 2 to " + std::to_string(most_steps) + " values");
   if (ratios && !(*first * *last > 0)) throw refuse();
   return NumberRange{*first, *last, static_cast<std::size_t>(*count), ratios};
 }

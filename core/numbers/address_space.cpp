@@ -24,7 +24,7 @@ double limit_of_address_space() {
   return known && limit.rlim_cur != RLIM_INFINITY ? static_cast<double>(limit.rlim_cur) : unlimited;
 }
 
-// They stay.
+// Starts this number of threads, which OpenMP then keeps for later parallel regions.
 void start_threads(int threads) {
   std::atomic<int> started = 0;
 #pragma omp parallel num_threads(threads)
@@ -57,7 +57,7 @@ void require_address_space_of_threads(int threads) {
   constexpr std::size_t of_thread = std::size_t{10} << 20, rest = std::size_t{32} << 20;
   if (!address_space_holds(rest + static_cast<std::size_t>(threads) * of_thread))
     throw InputError("threads: ulimit -v does not leave 10 MiB of address space for each of " +
-                     std::to_string(threads) + " threads and 32 MiB; fewer need less");
+                     std::to_string(threads) + " threads plus 32 MiB; use fewer threads");
   if (!address_space_is_limited()) return;
   mallopt(M_ARENA_MAX, 1);  // for each thread that allocates, glibc would map 128 MiB
   start_threads(threads);

@@ -6,27 +6,29 @@
 
 namespace flatspeckle {
 
-/// Whether there is a limit to it (`ulimit -v`).
+/// Whether the address space is limited (`ulimit -v`).
 bool address_space_is_limited();
 
-/// Bytes that the limit leaves to this process; infinite without one.
+/// Returns the number of bytes that this process can still map under the limit set by `ulimit -v`;
+/// infinite if there is no limit.
 double address_space_left();
 
-/// Whether `ulimit -v` leaves so many bytes. Asked before libraries that wait for ever, or end the
-/// program, where it does not.
+/// Whether this process can still map this number of bytes (see address_space_left()). To be
+/// checked before calls to libraries that hang or terminate the program if memory is missing.
 bool address_space_holds(std::size_t bytes);
 
-/// Starts so many threads for all that is parallel, where the address space is limited: OpenMP ends
-/// the program where it cannot start one later. Throws InputError where their stacks, and what each
-/// of them allocates, do not fit.
+/// If the address space is limited, starts all threads of OpenMP now, because OpenMP terminates the
+/// program if it cannot start a thread later. Throws InputError if the stacks and allocations of
+/// the threads do not fit into the limit.
 void require_address_space_of_threads(int threads);
 
-/// Bytes of memory that this machine has.
+/// Returns the physical memory of this machine in bytes.
 inline double physical_memory() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-/// Of them, those that this process may have: `ulimit -v` may leave fewer.
+/// Returns the bytes of memory that this process may use: the physical memory, or less if `ulimit
+/// -v` limits it.
 inline double usable_memory() {
   return std::min(physical_memory(), address_space_left());
 }

@@ -3,26 +3,28 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <math.h>  // j0, j1, y0, y1, j0l, j1l are no part of standard C++
+#include <math.h>  // j0, j1, y0, y1, j0l, j1l are not part of standard C++
 #include <utility>
 
 namespace flatspeckle {
 
 namespace {
 
-// Up to here neither J_n underflows nor H_n overflows.
+// Returns the highest order, at most `order`, up to which neither J_n(x) underflows nor H_n(x)
+// overflows.
 int plain_order(int order, double x) {
   return x < order ? std::max(1, static_cast<int>(x)) : order;
 }
 
-// Beyond the turning point n = |z| the unwanted solution falls by exp(-1.89 d^1.5 / sqrt|z|) over d
-// orders; this start makes it 1e-20.
+// Returns the order at which the downward recurrence starts. Over the d orders above the turning
+// point n = |z|, the error caused by the arbitrary start falls by exp(-1.89 d^1.5 / sqrt|z|); from
+// this order it falls by 1e-20.
 int downward_start(int order, long double size) {
   const double turning = std::max(static_cast<double>(order), static_cast<double>(size));
   return static_cast<int>(std::ceil(turning + 9 * std::cbrt(turning))) + 12;
 }
 
-// r_{n-1} = 1 / (2n/z - r_n), calling store(n, r_n) for first <= n <= last.
+// Evaluates r_{n-1} = 1 / (2n/z - r_n) downwards and calls store(n, r_n) for first <= n <= last.
 template <typename Number, typename Store>
 void ratios_downward(int first, int last, Number z, Store store) {
   const int start = downward_start(last, std::abs(z));
@@ -30,13 +32,13 @@ void ratios_downward(int first, int last, Number z, Store store) {
   Number ratio = 1.0L / (static_cast<long double>(start + 1) * two_over_z);
   for (int n = start - 1; n >= first; --n) {
     Number inverse = static_cast<long double>(n + 1) * two_over_z - ratio;
-    if (inverse == Number(0)) inverse = 1e-30L;  // a zero of J_n: any huge ratio will do
+    if (inverse == Number(0)) inverse = 1e-30L;  // at a zero of J_n, any huge ratio is correct
     ratio = 1.0L / inverse;
     if (n <= last) store(n, ratio);
   }
 }
 
-// From J_0 and J_1 to J_order; J_n stands at j[n * stride].
+// Computes J_2 .. J_order from J_0 and J_1, with J_n at j[n * stride].
 void continue_j(double x, int order, int stride, long double* j) {
   const long double two_over_x = 2 / static_cast<long double>(x);
   const int turning = x < order ? std::max(static_cast<int>(x), 1) : order;
@@ -46,7 +48,8 @@ void continue_j(double x, int order, int stride, long double* j) {
     j[(n + 1) * stride] = value;
   }
   if (turning >= order) return;
-  // Upwards is unstable beyond n = x, where J_n has no zeros: ratios take over.
+  // For n > x the upward recurrence is unstable. J_n has no zeros there, so that ratios J_{n+1} /
+  // J_n are used instead.
   ratios_downward(turning, order - 1, static_cast<long double>(x),
                   [&](int n, long double ratio) { j[(n + 1) * stride] = ratio; });
   for (int n = turning; n < order; ++n) j[(n + 1) * stride] *= j[n * stride];

@@ -8,29 +8,34 @@
 
 namespace flatspeckle {
 
-/// J_n(x) for n = 0 .. order at any order; x > 0. As accurate as bessel_j.
+/// Returns J_n(x), x > 0, for n = 0 .. order, without underflow at any order. The error is that of
+/// bessel_j().
 std::vector<ScaledReal> scaled_bessel_j(int order, double x);
 
-/// H_n(x) of the first kind for n = 0 .. order at any order; x > 0. As accurate as hankel.
+/// Returns the Hankel functions of the first kind H_n(x), x > 0, for n = 0 .. order, without
+/// overflow at any order. The error is that of hankel().
 std::vector<ScaledComplex> scaled_hankel(int order, double x);
 
-// Cylinder functions of integer order in extended range: neither H_n at n >> x overflows nor J_n
-// underflows. Real arguments are > 0.
+// Cylinder functions of integer order as long double, whose exponent range avoids overflow of H_n
+// and underflow of J_n at n >> x. Real arguments x must be positive.
 
-/// r_n = J_{n+1}(z) / J_n(z) for n = 0 .. order by downward recurrence from beyond |z|, in full
-/// extended precision; where J_n oscillates, up to 1e-19 |z| (1 + |r_n|^2). Holds for large |Im z|
-/// too, where J_n itself would overflow.
+/// Returns r_n = J_{n+1}(z) / J_n(z) for n = 0 .. order by downward recurrence that begins at an
+/// order above |z|. The results are accurate to long double; at orders below |z|, where J_n
+/// oscillates, the error is up to 1e-19 |z| (1 + |r_n|^2). Valid also for large |Im z|, where J_n
+/// itself would overflow.
 std::vector<ExtendedComplex> bessel_ratios(int order, ExtendedComplex z);
 
-/// J_n(x) for n = 0 .. order in full extended precision: relative to |J_n| beyond n = x, to |H_n|
-/// below.
+/// Returns J_n(x) for n = 0 .. order to the precision of long double. This is the error relative to
+/// |J_n| for n > x and relative to |H_n| for n < x.
 std::vector<long double> bessel_j(int order, double x);
 
-/// H_n(x) of the first kind for n = 0 .. h.size() - 1; relative error about 1e-15 of |H_n|.
+/// Computes the Hankel functions of the first kind H_n(x) for n = 0 .. h.size() - 1, with a
+/// relative error of about 1e-15.
 void hankel(double x, std::span<ExtendedComplex> h);
 std::vector<ExtendedComplex> hankel(int order, double x);
 
-/// C_n'(x) = (n / x) C_n(x) - C_{n+1}(x) of J or H, from values[n] and values[n + 1].
+/// Returns the derivative C_n'(x) = (n / x) C_n(x) - C_{n+1}(x), where C is J or H, from values[n]
+/// = C_n(x) and values[n + 1].
 template <typename Values>
 auto cylinder_derivative(const Values& values, int n, long double x) {
   return (static_cast<long double>(n) / x) * values[n] - values[n + 1];

@@ -10,14 +10,14 @@
 namespace flatspeckle {
 
 std::size_t threads_of_blas() {
-  // mapped for each thread that calls; where it cannot be, OpenBLAS tries again for ever. rest:
-  // what others may take before it is.
+  // buffer: bytes that OpenBLAS maps for each thread that calls it; if mapping fails, OpenBLAS
+  // retries forever. rest: bytes left for other allocations.
   constexpr std::size_t buffer = std::size_t{128} << 20, rest = std::size_t{16} << 20;
   const auto threads =
       static_cast<std::size_t>(omp_in_parallel() ? omp_get_num_threads() : omp_get_max_threads());
   if (!address_space_holds(threads * buffer + rest))
     throw InputError("BLAS needs 128 MiB of address space for each of " + std::to_string(threads) +
-                     " threads, which ulimit -v does not leave; fewer threads need less");
+                     " threads, which ulimit -v does not leave; use fewer threads");
   return threads;
 }
 

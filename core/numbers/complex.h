@@ -6,11 +6,12 @@ namespace flatspeckle {
 
 using Complex = std::complex<double>;
 
-/// Wide exponent range (1e-4932 .. 1e4932 on x86-64): holds T_n and H_n where double over- or
-/// underflows.
+/// Complex number with a wide exponent range (1e-4932 .. 1e4932 on x86-64), for elements T_n of
+/// T-matrices and Hankel functions H_n beyond the range of double.
 using ExtendedComplex = std::complex<long double>;
 
-/// a b and a conj(b) without the language's care for infinite operands, which costs a branch.
+/// Returns the product a b. Unlike operator*, it does not treat infinite operands specially, and
+/// therefore needs no branch. product_with_conjugate() returns a conj(b), also without a branch.
 template <typename Real>
 std::complex<Real> product(std::complex<Real> a, std::complex<Real> b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};

@@ -32,7 +32,8 @@ struct LineTransform::Plan {
   fftw_plan plan;
 };
 
-// All lines begin at multiples of 16 bytes, as this one does; more FFTW does not ask.
+// The plan is made for this line and used for others; FFTW requires that they have the same
+// alignment. All of them begin at multiples of 16 bytes.
 LineTransform::LineTransform(std::size_t size, Direction direction) {
   std::vector<Complex> line(size);
   const std::lock_guard lock(fourier_planning());
@@ -61,7 +62,7 @@ void transform_even(std::vector<Complex>& values, std::size_t rows, std::size_t 
 }
 
 std::size_t transform_size(double least) {
-  constexpr double most = 1e18;  // far beyond what any memory holds
+  constexpr double most = 1e18;  // larger than any memory
   const auto needed = static_cast<std::uint64_t>(std::ceil(std::clamp(least, 2.0, most)));
   std::uint64_t best = std::bit_ceil(needed);
   for (std::uint64_t fives = 1; fives < best; fives *= 5)

@@ -9,12 +9,13 @@
 
 namespace flatspeckle {
 
-/// Held while FFTW plans, or forgets a plan: it does neither for two threads at a time.
+/// Returns the mutex to hold while FFTW creates or destroys a plan, which is not thread-safe.
 std::mutex& fourier_planning();
 
-/// In-place transform of one contiguous line, sum_j x_j exp(-+ 2 pi i j m / size), without factor.
-/// Plans are estimated, not timed, so that a result does not depend on the machine's mood. Safe to
-/// make and to use from several threads.
+/// In-place Fourier transform of a contiguous array x of `size` numbers: X_m = sum_j x_j exp(-+ 2
+/// pi i j m / size), with - for forward, without a normalising factor. FFTW chooses the algorithm
+/// by estimates, not by timing, so that results are reproducible. Construction and use are
+/// thread-safe.
 class LineTransform {
  public:
   enum class Direction { forward, backward };
@@ -26,11 +27,13 @@ class LineTransform {
   std::shared_ptr<const Plan> plan_;
 };
 
-/// Transform of an even function on a periodic grid of rows x columns, given and returned on its
-/// first (rows / 2 + 1) x (columns / 2 + 1) points.
+/// Computes the Fourier transform of a function on a periodic grid of rows x columns that is even
+/// in both coordinates. Function and transform are stored on the first (rows / 2 + 1) x (columns /
+/// 2 + 1) points of the grid.
 void transform_even(std::vector<Complex>& values, std::size_t rows, std::size_t columns);
 
-/// Smallest even 2^a 3^b 5^c from `least` on.
+/// Returns the smallest even number of the form 2^a 3^b 5^c that is at least `least`: a fast
+/// transform size.
 std::size_t transform_size(double least);
 
 }  // namespace flatspeckle

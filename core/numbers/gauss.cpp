@@ -8,8 +8,8 @@ namespace flatspeckle {
 
 namespace {
 
-/// Golub and Welsch (1969) for the weight (1 + x)^beta on [-1, 1], mapped to [0, 1]; `total`: of
-/// the weights.
+/// Returns the Gauss rule with n nodes for the weight function (1 + x)^beta on [-1, 1] (Golub and
+/// Welsch 1969), with the nodes mapped to [0, 1]. total: sum of the weights of the mapped rule.
 QuadratureRule gauss(int n, double beta, double total) {
   Eigen::VectorXd diagonal(n), beside(std::max(n - 1, 1));
   for (int j = 0; j < n; ++j) {

@@ -1,7 +1,8 @@
 #include "core/numbers/hankel_array.h"
 
-// Loops of straight-line arithmetic over a few lanes, which the compiler vectorises; libm is called
-// only beyond phase_end. No -ffast-math: the reduction of the phase and -inf rely on its absence.
+// The functions below contain loops without branches over a few arguments (lanes), which the
+// compiler vectorises. libm is called only for x above phase_end. Do not compile with -ffast-math,
+// which would break the reduction of the phase and the result -inf.
 
 #include <algorithm>
 #include <bit>
@@ -9,7 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <math.h>  // j0l, j1l, y0l, y1l are no part of standard C++
+#include <math.h>  // j0l, j1l, y0l, y1l are not part of standard C++
 #include <numbers>
 #include <utility>
 
@@ -22,8 +23,9 @@ namespace {
 
 constexpr long double pi = std::numbers::pi_v<long double>;
 
-// Interpolates in the Chebyshev nodes of [-1, 1]. As powers of t this is as stable as in Chebyshev
-// polynomials where their coefficients fall faster than (1 + sqrt 2)^-m, as all do here.
+// Returns the polynomial that interpolates the function at the Chebyshev nodes of [-1, 1]. Powers
+// of t are as stable as Chebyshev polynomials if the Chebyshev coefficients fall faster than (1 +
+// sqrt 2)^-m, as they do here.
 template <int degree, typename Function>
 Polynomial<degree> interpolate(Function function) {
   constexpr int nodes = degree + 1;
@@ -83,8 +85,8 @@ struct Hankel {
 using Limits = std::numeric_limits<double>;
 using Fits = std::array<HankelFit, 2>;
 
-// c[last] u^k + c[last - 2] u^(k-1) + .. by Horner's rule, written out: a loop inside a loop would
-// not vectorise, and neither would a call.
+// Evaluates c[last] u^k + c[last - 2] u^(k-1) + ... by Horner's rule. The loop is unrolled by
+// templates, because loops that contain loops or calls are not vectorised.
 template <std::size_t last, std::size_t size, std::size_t... m>
 [[gnu::always_inline]] inline double every_second(const std::array<double, size>& c, double u,
                                                   std::index_sequence<m...>) {
@@ -93,7 +95,8 @@ template <std::size_t last, std::size_t size, std::size_t... m>
   return value;
 }
 
-// Even and odd powers apart: two short chains of operations take less time than a long one.
+// Evaluates the polynomial c at t. Even and odd powers are summed separately, because two short
+// dependency chains are faster than a long one.
 template <std::size_t size>
 [[gnu::always_inline]] inline double evaluate(const std::array<double, size>& c, double t) {
   constexpr std::size_t odd = size - 1 - size % 2, even = size - 2 + size % 2;
@@ -101,7 +104,8 @@ template <std::size_t size>
          t * every_second<odd>(c, t * t, std::make_index_sequence<odd / 2>());
 }
 
-// cos(r) (first = 1) and sin(r) / r (first = 2) in r^2
+// Returns the Taylor coefficients, in powers of r^2, of cos(r) if first = 1, and of sin(r) / r if
+// first = 2.
 template <int degree>
 constexpr Polynomial<degree> taylor(int first) {
   Polynomial<degree> c{1};
@@ -109,27 +113,30 @@ constexpr Polynomial<degree> taylor(int first) {
     c[k] = -c[k - 1] / ((first + 2 * k - 2.0) * (first + 2 * k - 1.0));
   return c;
 }
-// to |r| = pi/2
+// Taylor series that are accurate to rounding for |r| <= pi/2.
 constexpr auto cosine_series = taylor<11>(1);
 constexpr auto sine_series = taylor<10>(2);
 
-// atanh(f) / f in f^2, to f^2 = 0.03
+// Taylor series of atanh(f) / f in powers of f^2, accurate to rounding for f^2 <= 0.03.
 constexpr auto atanh_series = [] {
   Polynomial<10> c{};
   for (int k = 0; k <= 10; ++k) c[k] = 1.0 / (2 * k + 1);
   return c;
 }();
 
-// pi in three parts; a whole number below 2^23 times one of the first two is exact.
+// pi as a sum of three parts. The product of an integer below 2^23 with the first or second part is
+// exact.
 constexpr double pi_high = 0x1.921fb54p+1;
 constexpr double pi_middle = 0x1.10b4611p-29;
 constexpr double pi_low = 0x1.4c4c6628b80dcp-58;
 constexpr double phase_end = 0x1p23;
 
-// Added, it leaves a number rounded in the lowest bits.
+// If this constant is added to a number, the lowest bits of the sum contain the number rounded to
+// an integer.
 constexpr double integer_bias = 0x1.8p52;
 
-// What the orders share above the border: the fit's variable and the parts of e^{ix} / sqrt(x).
+// Quantities for x above HankelFit::border that H_0 and H_1 have in common: the variable t of the
+// fit, and the real and imaginary parts of e^{ix} / sqrt(x).
 struct Outer {
   Lanes t, cosine, sine;
 };
@@ -166,7 +173,8 @@ void evaluate_outer(const HankelFit& fit, const Outer& outer, Hankel& h) {
   }
 }
 
-// (2/pi) ln(x/2): x/2 = 2^e m with m in [1/sqrt 2, sqrt 2), ln m = 2 atanh((m-1)/(m+1)).
+// Computes (2/pi) ln(x/2) from x/2 = 2^e m with m in [1/sqrt 2, sqrt 2), and ln m = 2
+// atanh((m-1)/(m+1)).
 void scaled_logarithms(const double* x, Lanes& out) {
   constexpr auto least = std::bit_cast<std::uint64_t>(std::numbers::sqrt2 / 2);
   constexpr auto one = std::bit_cast<std::uint64_t>(1.0);
@@ -196,7 +204,8 @@ void evaluate_inner(const HankelFit& fit, const double* x, const Lanes& logarith
   }
 }
 
-// A loop of its own: a choice between computed values would become a branch.
+// Replaces H_n by the result of the inner fit for arguments below the border. This is a loop of its
+// own, because in the loops that compute the fits the compiler would make it a branch.
 void replace_inside(const double* x, const Hankel& inner, Hankel& h) {
 #pragma omp simd
   for (std::size_t i = 0; i < lanes; ++i) {
@@ -206,7 +215,8 @@ void replace_inside(const double* x, const Hankel& inner, Hankel& h) {
   }
 }
 
-// H_0 and, with two orders, H_1. A piece that no lane lies in is left out.
+// Computes H_0 and, if orders = 2, H_1. A piece of the fit (below or above the border) is skipped
+// if no argument is in it.
 template <int orders>
 void seeds(const Fits& fits, const double* x, Hankel (&h)[orders]) {
   double least = x[0], greatest = least;
@@ -232,10 +242,12 @@ void seeds(const Fits& fits, const double* x, Hankel (&h)[orders]) {
   replace_inside(x, inner, h[orders - 1]);
 }
 
-// before <- H_{n+1} = (2n/x) H_n - H_{n-1}; upwards the error stays small beside |H_n|. The bound
-// on Y_{n-1} makes -inf of what would be inf - inf.
+// Replaces `before`, which contains H_{n-1}, by H_{n+1} = (2n/x) H_n - H_{n-1}. In this upward
+// recurrence, the error remains small relative to |H_n|. Y_{n-1} is bounded, so that Y_{n+1}
+// becomes -inf instead of inf - inf.
 void recur(int n, const double* x, const Hankel& h, Hankel& before) {
-  // J_n |Y_n| is about 1 / (pi n) there: J_n does not show in |H_n|.
+  // If Y_n is below this value, J_n is set to 0. It is negligible in |H_n| then, because J_n |Y_n|
+  // is about 1 / (pi n).
   constexpr double hidden = -1e8;
 #pragma omp simd
   for (std::size_t i = 0; i < lanes; ++i) {
@@ -264,8 +276,8 @@ void store(const Hankel& h, std::size_t n, Complex* out) {
   for (std::size_t i = 0; i < lanes; ++i) out[i] = {h.re.at[i], h.im.at[i]};
 }
 
-// body(arguments, place of the first, number) for groups of `lanes` arguments; what the last group
-// lacks repeats its first.
+// Calls body(arguments, index of the first argument, number of arguments) for groups of `lanes`
+// arguments. The last group is filled up with copies of its first argument.
 template <typename Body>
 void for_groups(std::span<const double> x, Body body) {
   std::size_t first = 0;

@@ -1,16 +1,17 @@
 #pragma once
 
 #include <cmath>
+
 #include "core/numbers/complex.h"
 
 namespace flatspeckle {
 
-/// log sinh(a), a > 0, without overflow.
+/// Returns log sinh(a), a > 0, without overflow.
 inline double log_sinh(double a) {
   return a + std::log(-std::expm1(-2 * a) / 2);
 }
 
-/// log sinh(a) of a complex a, Re a >= 0, without overflow.
+/// Returns log sinh(a) for complex a with Re a >= 0, without overflow.
 inline Complex log_sinh(Complex a) {
   return a.real() < 1 ? std::log(std::sinh(a)) : a + std::log((1.0 - std::exp(-2.0 * a)) / 2.0);
 }

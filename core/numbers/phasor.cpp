@@ -1,5 +1,5 @@
-// Compiled with -ffast-math, which lets the compiler call vector versions of sin, cos and exp; each
-// in a loop of its own, or they do not vectorise.
+// This file is compiled with -ffast-math, so that the compiler uses vector versions of sin, cos and
+// exp. It does so only if each function is called in a loop of its own.
 #include "core/numbers/phasor.h"
 
 #include <algorithm>

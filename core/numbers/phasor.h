@@ -6,12 +6,12 @@
 
 namespace flatspeckle {
 
-/// out[j] = exp(log_magnitude[j] + i phase[j]) for arrays of one length, vectorised (4e-16
-/// accurate). All arguments must be finite.
+/// Computes out[j] = exp(log_magnitude[j] + i phase[j]) for arrays of equal length, vectorised,
+/// with a relative error of 4e-16. All arguments must be finite.
 void damped_phasors(std::span<const double> phase, std::span<const double> log_magnitude,
                     std::span<Complex> out);
 
-/// out[j] = exp(log_magnitude[j]), likewise.
+/// Computes out[j] = exp(log_magnitude[j]) for arrays of equal length, vectorised.
 void damping(std::span<const double> log_magnitude, std::span<double> out);
 
 }  // namespace flatspeckle

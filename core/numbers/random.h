@@ -8,9 +8,9 @@
 
 namespace flatspeckle {
 
-/// Addressed random numbers (Random123, Threefry4x64-20): the key is (seed, stream), the counter is
-/// (draw block, batch). The numbers of a batch depend on these alone, never on threads or on what
-/// was drawn before.
+/// Counter-based random numbers (Random123, Threefry4x64-20 [salmon2011]): the key of the generator
+/// is (seed, stream), and its counter is (index of the block of four numbers, batch). The random
+/// numbers of a batch depend only on seed, stream and batch, never on threads or other batches.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::uint64_t stream, std::uint64_t batch)
@@ -21,12 +21,15 @@ class RandomStream {
     return block_.v[used_++];
   }
 
-  /// The next uniform() is u, in (0, 1): of numbers that are drawn evenly for many streams.
+  /// Makes the next call of uniform() return u, in (0, 1), before the stream continues; used for
+  /// numbers that are stratified over many streams.
   void put_back(double u) { block_.v[--used_] = static_cast<std::uint64_t>(u * 0x1p53) << 11; }
 
-  /// Uniform in the open interval (0, 1), so that log(u), log(1 - u) and 1/u are finite.
+  /// Returns a random number u, uniformly distributed in the open interval (0, 1), so that log(u),
+  /// log(1 - u) and 1/u are finite.
   double uniform() { return uniform(bits()); }
-  /// Odd multiples of 2^-54, rounded above 1/2: 1 - 2^-54 to 1, but for the bound.
+  /// Converts random bits to a number in (0, 1): an odd multiple of 2^-54, rounded to double if it
+  /// is above 1/2. The minimum is taken because 1 - 2^-54 would be rounded to 1.
   static double uniform(std::uint64_t bits) {
     return std::min((static_cast<double>(bits >> 11) + 0.5) * 0x1p-53, 1 - 0x1p-53);
   }
@@ -45,7 +48,7 @@ class RandomStream {
   std::size_t used_ = 4;
 };
 
-/// Streams of one seed; each use of randomness has its own.
+/// Independent random streams of one seed, one for each purpose.
 enum class Stream : std::uint64_t {
   placement = 1,
   light_paths = 2,

@@ -8,13 +8,14 @@
 
 namespace flatspeckle {
 
-/// value * 2^exponent, for what leaves even the range of long double: H_n and T_n of orders in the
-/// thousands. The exponent stays 0 until the value leaves 2^-4096 .. 2^4096, so that ordinary
-/// numbers cost little more than themselves. Number: long double or ExtendedComplex.
+/// Number value * 2^exponent, for numbers beyond the range of long double, such as Hankel functions
+/// of orders in the thousands. The exponent is 0 for numbers within 2^-4096 .. 2^4096, so that
+/// arithmetic with them takes little more time than with long double. Number: long double or
+/// ExtendedComplex.
 template <typename Number>
 class Scaled {
  public:
-  using value_type = long double;  // as std::complex has
+  using value_type = long double;  // std::complex has a member type of this name too
 
   Scaled(Number value = 0, long exponent = 0) : value_(value), exponent_(exponent) {
     const long double size = magnitude(value_);
@@ -25,7 +26,8 @@ class Scaled {
   const Number& value() const { return value_; }
   long exponent() const { return exponent_; }
 
-  /// 0 or infinite where it is out of range.
+  /// Converts to a floating-point or complex type; the result is 0 or infinite if the number is out
+  /// of range.
   template <typename Plain>
   explicit operator Plain() const {
     return static_cast<Plain>(exponent_ == 0 ? value_ : times_power(value_, exponent_));
@@ -34,7 +36,7 @@ class Scaled {
   Scaled& operator*=(const Number& factor) { return *this = {factor * value_, exponent_}; }
   Scaled operator-() const { return {-value_, exponent_}; }
 
-  /// The value that goes with another exponent.
+  /// Returns the value for which value * 2^exponent, with the given exponent, is this number.
   Number value_at(long exponent) const {
     return exponent == exponent_ ? value_ : times_power(value_, exponent_ - exponent);
   }
@@ -95,10 +97,10 @@ template <typename Number>
 ScaledReal abs(const Scaled<Number>& a) {
   return {std::abs(a.value()), a.exponent()};
 }
-inline ScaledReal sqrt(const ScaledReal& a) {  // exponents are even
+inline ScaledReal sqrt(const ScaledReal& a) {  // exponents are even, so that exponent / 2 is exact
   return {std::sqrt(a.value()), a.exponent() / 2};
 }
-/// Of a number >= 0; -infinity for 0.
+/// Returns log2 of a number >= 0; -infinity for 0.
 inline double log2(const ScaledReal& a) {
   return static_cast<double>(std::log2(a.value())) + static_cast<double>(a.exponent());
 }

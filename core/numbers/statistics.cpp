@@ -11,11 +11,13 @@ namespace flatspeckle {
 
 namespace {
 
-/// Of each entry of theta, times the control's mean; 0 where it is left alone.
+/// Returns, for each entry of theta, the coefficient by which the mean of the control variate is
+/// subtracted; 0 if the control variate is not used for the entry.
 std::vector<double> coefficients(const GroupedSums& sums, const Estimator& theta,
                                  std::size_t control) {
-  // of the variance: ten times what chance shows
-  const double worthwhile = 10 / static_cast<double>(sums.groups());
+  // Least fraction of the variance that the control variate must explain: ten times the mean
+  // fraction for a variable that is independent of theta.
+  const double least_fraction = 10 / static_cast<double>(sums.groups());
   const double samples = sums.total_samples();
   const std::vector<Complex> total = sums.total(), mean = theta(samples, total);
   const double control_mean = total[control].real() / samples;
@@ -34,8 +36,8 @@ std::vector<double> coefficients(const GroupedSums& sums, const Estimator& theta
     }
   }
   for (std::size_t i = 0; i < mean.size(); ++i) {
-    const bool is_worth_it = shared[i] * shared[i] > worthwhile * square[i] * control_square;
-    shared[i] = is_worth_it ? shared[i] / control_square : 0;
+    const bool is_correlated = shared[i] * shared[i] > least_fraction * square[i] * control_square;
+    shared[i] = is_correlated ? shared[i] / control_square : 0;
   }
   return shared;
 }
@@ -45,7 +47,8 @@ std::size_t most_groups(std::size_t size) {
   return std::clamp(most_bytes / (sizeof(Complex) * std::max<std::size_t>(size, 1)), fewest, most);
 }
 
-constexpr double rounding = 1e-13;  ///< relative: deviations below it say nothing
+/// Relative size below which deviations are regarded as rounding errors.
+constexpr double rounding = 1e-13;
 
 bool is_rare(double sum_dd, double sum_d4, std::size_t groups, double few) {
   constexpr double many = 216;
@@ -59,7 +62,8 @@ std::uint64_t is_carried_by_few(const Estimate& estimate, std::size_t i, double 
   return !rounded && is_rare(sum_dd, sum_d4, groups, few) ? 1 : 0;
 }
 
-/// For values whose squares are below all numbers: a power of two, so that they keep their digits.
+/// Returns a power of two by which values of this size are multiplied before they are squared, so
+/// that squares of small values do not underflow; 1 for other sizes.
 double lift(double size) {
   constexpr double small = 1e-100;
   constexpr int most = 1000;
@@ -121,13 +125,14 @@ std::vector<Complex> GroupedSums::total() const {
 }
 
 void GroupedSums::restore(State state) {
-  constexpr std::uint64_t most_batches = std::uint64_t{1} << 53;  // numbers that a double counts
+  constexpr std::uint64_t most_batches = std::uint64_t{1}
+                                         << 53;  // largest count that a double holds exactly
   const std::size_t groups = std::min<std::uint64_t>(state.batches, most_groups_);
   if (state.samples.size() != groups || state.sums.size() != groups * size_)
     throw InputError("the checkpoint's sums have another shape than this scene's");
   if (state.batches > most_batches ||
       !std::ranges::all_of(state.samples, [](double samples) { return samples > 0; }))
-    throw InputError("the checkpoint's samples are not those of its batches");
+    throw InputError("the checkpoint's samples do not match its batches");
   batches_ = state.batches;
   samples_ = std::move(state.samples);
   sums_.assign(state.sums.begin(), state.sums.end());
@@ -179,8 +184,9 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta, double few) 
     estimate.error.assign(size, std::numeric_limits<double>::infinity());
     return estimate;
   }
-  // With h = samples / group_samples the pseudo-values are theta + (h-1)(theta - theta_without) and
-  // weigh 1/(h-1); sums of their deviations d from theta suffice.
+  // With h = samples / group_samples, the pseudo-value of a group is theta + (h-1)(theta -
+  // theta_without), and its weight is 1/(h-1). Only sums over the deviations d of the pseudo-values
+  // from theta are needed.
   double sum_w = 0;
   std::vector<Complex> sum_d(size), sum_mean(size);
   std::vector<double> sum_dd(size), sum_d4(size), lifted(size);
@@ -214,7 +220,7 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta, double few) 
 
 namespace {
 
-/// parts >= 1.
+/// Returns the `of.count` sums of consecutive entries that EntrySums defines; of.parts >= 1.
 std::vector<Complex> added_up(std::span<const Complex> sums, const EntrySums& of) {
   std::vector<Complex> values(of.count);
   for (std::size_t i = 0; i < of.count; ++i)
@@ -233,7 +239,8 @@ Estimate jackknife(const GroupedSums& sums, const EntrySums& of, double few) {
     estimate.error.assign(of.count, std::numeric_limits<double>::infinity());
     return estimate;
   }
-  // the pseudo-values of jackknife() are the groups' means, and their mean is theta
+  // for means, the pseudo-value of a group in jackknife() is the mean of the group, and the mean of
+  // all pseudo-values is theta
   std::vector<double> lifted(of.count), sum_dd(of.count), sum_d4(of.count);
   for (std::size_t i = 0; i < of.count; ++i) lifted[i] = lift(std::abs(estimate.value[i]));
   for (std::size_t group = 0; group < groups; ++group) {
@@ -259,7 +266,8 @@ Estimate jackknife(const GroupedSums& sums, const EntrySums& of, double few) {
 }
 
 bool varies(const GroupedSums& sums) {
-  constexpr double same = 1e-11;  // relative: batches add up many equal numbers
+  // bound on the relative rounding error of sums of many equal numbers
+  constexpr double same = 1e-11;
   if (sums.groups() < 2) return false;
   const auto first = sums.group_sums(0);
   for (std::size_t group = 1; group < sums.groups(); ++group) {

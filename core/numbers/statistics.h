@@ -9,36 +9,39 @@
 
 namespace flatspeckle {
 
-/// Sums of numbered batches, kept in a fixed number of groups so that the error of *any* function
-/// of the sums (a mean, a covariance with its mean removed, a ratio, a half-width) follows from
-/// leaving one group out at a time. Batch b belongs to group b mod groups.
+/// Sums over numbered batches of samples. Batch b is added to group b mod (number of groups). From
+/// the sums of the groups, jackknife() estimates the standard error of any function of the total
+/// sums, such as a ratio or a half-width, by leaving out one group at a time.
 class GroupedSums {
  public:
   GroupedSums() = default;
-  /// size: complex sums per batch. The number of groups is 256, or less where memory asks for it.
+  /// size: number of complex sums of a batch. There are 256 groups, or fewer if the size is so
+  /// large that memory must be limited.
   explicit GroupedSums(std::size_t size);
 
-  /// Adds batch number batches(): numbers must come in order, which makes the sums reproducible.
+  /// Adds the sums of the next batch, whose number is batches(). Batches are added in the order of
+  /// their numbers, so that rounding errors are reproducible.
   void add(double samples, std::span<const Complex> sums);
 
   std::size_t size() const { return size_; }
   std::uint64_t batches() const { return batches_; }
-  /// Groups that hold at least one batch.
+  /// Returns the number of groups that contain at least one batch.
   std::size_t groups() const { return samples_.size(); }
   double group_samples(std::size_t group) const { return samples_[group]; }
   std::span<const Complex> group_sums(std::size_t group) const;
   double total_samples() const;
   std::vector<Complex> total() const;
 
-  /// The whole state, for checkpoints: sums are [group][entry] over groups().
+  /// Complete content of a GroupedSums, for checkpoints. samples has one value per group; sums is
+  /// [group][entry].
   struct State {
     std::uint64_t batches = 0;
     std::vector<double> samples;
     std::vector<Complex> sums;
   };
   State state() const { return {batches_, samples_, sums_}; }
-  /// Throws InputError if the shapes do not belong to a GroupedSums of this size, or the samples
-  /// not to the batches.
+  /// Replaces the content by a stored state. Throws InputError if the state has another number of
+  /// sums per batch, or if its numbers of samples and batches contradict each other.
   void restore(State state);
 
  private:
@@ -48,69 +51,75 @@ class GroupedSums {
   std::vector<Complex> sums_;
 };
 
-/// An estimate per entry: value and standard error. For complex values the error is that of the
-/// distance in the complex plane, sqrt(var Re + var Im).
+/// Estimates of several quantities (entries): values and standard errors. The error of a complex
+/// value is sqrt(var Re + var Im), the RMS distance in the complex plane.
 struct Estimate {
   std::vector<Complex> value;
   std::vector<double> error;
-  /// 1 where a few of the batches carry the error, so that it is likely too small (jackknife).
-  /// Empty: nowhere.
+  /// 1 for each entry that is undersampled: a few batches dominate its standard error, which is
+  /// probably too small (see jackknife()). Empty if no entry is undersampled.
   std::vector<std::uint64_t> rare = {};
 };
 
-/// Standard errors beyond which a normal value lies with a probability of about 1e-5, where its
-/// error is taken from this number of groups, two or more: Student's quantile, within a fifth.
+/// Returns the deviation, in standard errors, that a normally distributed value exceeds with a
+/// probability of about 1e-5 if its standard error is estimated from this number of groups (at
+/// least 2). This is the quantile of Student's distribution, approximated to within 20 %.
 double outlier_errors(std::size_t groups);
 
 std::vector<double> real_parts(std::span<const Complex> values);
-/// Entries [first, first + count).
+/// Returns the entries first .. first + count - 1.
 Estimate part(const Estimate& all, std::size_t first, std::size_t count);
-/// Adds the entries of `more` at the end.
+/// Appends the entries of `more` to `all`.
 void append(Estimate& all, const Estimate& more);
 
-/// What is estimated, as a function of summed samples: theta(samples, sums) -> values.
+/// Function theta(samples, sums) that computes the quantities to be estimated from the number of
+/// samples and the sums over them.
 using Estimator =
     std::function<std::vector<Complex>(double samples, std::span<const Complex> sums)>;
 
-/// The simplest of them: sums / samples.
+/// Estimator of the means: returns sums / samples.
 std::vector<Complex> sample_mean(double samples, std::span<const Complex> sums);
 
-/// Value of theta on all groups and its delete-one-group jackknife error for groups of unequal size
-/// (Busing, Meijer and van der Leeden 1999, eqs. 6-7). With fewer than two groups the error is
-/// infinite.
+/// Returns theta for the sums over all groups, and its standard error by the delete-one-group
+/// jackknife for groups of unequal size (Busing, Meijer and van der Leeden [busing1999], eqs. 6-7).
+/// With fewer than two groups the error is infinite.
 ///
-/// Rare: with d the deviations of the groups, (sum d^2)^2 / sum d^4 says how many of them make up
-/// the error. It is a third of the groups where they are normal, and 1 where one outweighs all
-/// others; rare is less than 24, and less than a ninth of the groups.
+/// Marks undersampled entries (Estimate::rare) by an effective number of groups that dominate the
+/// error: (sum d^2)^2 / sum d^4, where d are the deviations of the groups from their mean. It is a
+/// third of the number of groups for normally distributed d, and 1 if one group outweighs all
+/// others. An entry is marked if it is below 24 and below a ninth of the number of groups.
 Estimate jackknife(const GroupedSums& sums, const Estimator& theta);
 
-/// Whether the mean of any sum differs between groups by more than rounding. Where none does, no
-/// standard error can be taken from them: nothing that varies was sampled.
+/// Whether the mean of at least one of the sums differs between groups by more than rounding
+/// errors. Otherwise no standard error can be estimated, because the samples have no variance.
 bool varies(const GroupedSums& sums);
 
-/// RMS error relative to the RMS magnitude; 0 where every value and error is 0.
+/// Returns the RMS of the errors of all entries divided by the RMS of their magnitudes; 0 if all
+/// errors are 0.
 double relative_error(const Estimate& estimate);
 
-/// Means of sums of entries: that of number i adds up `parts` entries from i stride on.
+/// Defines `count` means for jackknife(): value i is the sum of the entries i * stride .. i *
+/// stride + parts - 1, divided by the number of samples.
 struct EntrySums {
   std::size_t count, stride = 1, parts = 1;
 };
 
-/// An error that fewer of 256 groups than this make up is carried by a few of them
-/// (Estimate::rare); of fewer groups in all so many fewer.
+/// Effective number of groups, defined at jackknife(), below which an entry counts as undersampled
+/// (Estimate::rare). If there are fewer than 216 groups, this limit is reduced in proportion.
 constexpr double few_groups = 24;
 
-/// jackknife() that marks what fewer than `few` groups of 256 make up.
+/// Returns theta and its jackknife error, with `few` instead of few_groups as the limit for
+/// undersampled entries.
 Estimate jackknife(const GroupedSums& sums, const Estimator& theta, double few);
 
-/// jackknife() of these sums / samples. They are linear: leaving a group out moves them in
-/// proportion to how far the group's own mean is off, so that nothing is left out one at a time.
+/// Computes the jackknife for the means that `of` defines. This is faster than with an Estimator,
+/// because means are linear in the sums: their errors follow directly from the means of the groups.
 Estimate jackknife(const GroupedSums& sums, const EntrySums& of, double few = few_groups);
 
-/// jackknife() of a theta that is linear in the sums, from which what it shares with the sum number
-/// `control`, known to be 0 on average, is taken away (control variate, by regression over the
-/// groups). The regression's own bias is of the order of one over the samples. Only where it is
-/// worth it: where groups are many, and the control tells clearly of the variance.
+/// Computes the jackknife of a theta that is linear in the sums, with a control variate: the sum of
+/// index `control`, whose expectation is 0. Its coefficients follow from a regression over the
+/// groups, whose bias is of the order of 1 / samples. The control variate is used only if there are
+/// at least 32 groups and it clearly reduces the variance.
 Estimate controlled_jackknife(const GroupedSums& sums, const Estimator& theta, std::size_t control,
                               double few = few_groups);
 

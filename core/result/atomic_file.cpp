@@ -23,7 +23,8 @@ fs::path folder_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-/// Returns the name of a temporary file up to the number of its process.
+/// Returns the beginning of the names of temporary files for `path`, which end with a process
+/// number.
 std::string temporary_name(const fs::path& path) {
   return '.' + path.filename().string() + ".tmp-";
 }
@@ -36,7 +37,8 @@ int create(const fs::path& path) {
   return ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
 }
 
-/// Of a file that is there; the superuser is asked to mind it too.
+/// Whether an existing file is write-protected by its permissions, which are respected even for the
+/// superuser.
 bool is_protected(const fs::path& path) {
   constexpr fs::perms write =
       fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write;
@@ -45,11 +47,12 @@ bool is_protected(const fs::path& path) {
          ::access(path.c_str(), W_OK) != 0;
 }
 
-/// The new name itself survives a power failure only once its folder is on the disk.
+/// Writes a folder to the disk, which is necessary for a new file name in it to survive a power
+/// failure.
 bool sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return false;
-  // Some file systems cannot sync folders and say EINVAL: nothing more can be done there.
+  // Some file systems cannot do this and report EINVAL, which is ignored.
   const bool synced = ::fsync(descriptor) == 0 || errno == EINVAL;
   ::close(descriptor);
   return synced;
@@ -82,13 +85,13 @@ void check_writable(const fs::path& given) {
   if (!given.has_filename())
     throw InputError("cannot write \"" + given.string() + "\": no file name");
   const fs::path path = link_target(given);
-  std::error_code unknown;  // leaves it to the attempt below to complain
+  std::error_code unknown;  // ignored, because the attempt to write below reports errors
   if (fs::exists(path, unknown) && !fs::is_regular_file(path, unknown))
     throw InputError("cannot write " + path.string() + ": not a regular file");
   if (fs::exists(path, unknown) && is_protected(path))
     throw IoError("cannot write " + path.string() + ": it is write-protected");
   const fs::path temporary = temporary_beside(path);
-  const EndsLater whole;
+  const DelayedTermination whole;
   const int descriptor = create(temporary);
   if (descriptor < 0) {
     const std::string message = "cannot write " + path.string() + ": " + reason();
@@ -132,7 +135,8 @@ void FileBeside::append(std::span<const std::byte> bytes) {
 
 void FileBeside::reserve(std::uintmax_t bytes) {
   const int error = ::posix_fallocate(descriptor_, 0, static_cast<::off_t>(bytes));
-  // Some file systems cannot reserve: a full disk then shows later.
+  // Some file systems cannot reserve space; a full disk is then detected later, when data is
+  // written.
   if (error != 0 && error != EOPNOTSUPP && error != EINVAL) fail(error);
 }
 
@@ -142,10 +146,10 @@ void FileBeside::truncate(std::uintmax_t bytes) {
 
 void FileBeside::put_in_place(Durable durable) {
   const bool sync = durable == Durable::yes;
-  const EndsLater whole;
+  const DelayedTermination whole;
   if ((sync && ::fsync(descriptor_) != 0) || ::rename(temporary_.c_str(), path_.c_str()) != 0)
     fail(errno);
-  // From here on it is no longer ours to remove.
+  // The file now has its final name, and the destructor must not remove it.
   if (::close(std::exchange(descriptor_, -1)) != 0 || (sync && !sync_folder(folder_of(path_))))
     fail(errno);
 }

@@ -9,28 +9,29 @@
 
 namespace flatspeckle {
 
-/// Returns where symbolic links lead from there, the path itself where it is none. Throws
-/// InputError for a loop of them.
+/// Follows symbolic links and returns the final target; returns the path itself if it is not a
+/// link. Throws InputError for a loop of links.
 std::filesystem::path link_target(std::filesystem::path path);
 
-/// Makes sure, before long work, that a file can be put at `path`; leaves nothing behind. Throws
-/// InputError where the folder is missing or something that is no file is there, IoError where the
-/// folder is closed to us, the file is write-protected or the disk is full.
+/// Checks that a file can be written to `path`, so that errors are found before long work; leaves
+/// no file behind. Throws InputError if the folder is missing or `path` is not a regular file,
+/// IoError if the folder is not writable, the file is write-protected or the disk is full.
 void check_writable(const std::filesystem::path& path);
 
-/// Removes the temporary files that killed processes have left beside `path`. For the process that
-/// holds the lock of `path` alone.
+/// Removes temporary files for `path` (see FileBeside) that killed processes have left. Only the
+/// process that holds the lock of `path` may call this.
 void remove_temporary_files(const std::filesystem::path& path);
 
-/// Whether a file that is in place must survive a failure of the machine, which takes some
-/// milliseconds of waiting for the disk, or only that of this process.
+/// Whether a written file must survive a crash of the machine (yes), which requires some
+/// milliseconds of waiting for the disk, or only a crash of this process (no).
 enum class Durable { yes, no };
 
-/// A file that grows beside `path` under a temporary name (.name.tmp-PID), and is removed again
-/// unless it was put in place. Symbolic links are followed.
+/// File that is written under a temporary name (.name.tmp-PID) in the folder of `path`.
+/// put_in_place() renames it to `path`; otherwise the destructor removes it. Symbolic links are
+/// followed.
 class FileBeside {
  public:
-  /// Makes an empty one. Throws IoError.
+  /// Creates an empty file under the temporary name. Throws IoError.
   explicit FileBeside(std::filesystem::path path);
   FileBeside(const FileBeside&) = delete;
   FileBeside& operator=(const FileBeside&) = delete;
@@ -38,13 +39,14 @@ class FileBeside {
 
   const std::filesystem::path& name() const { return temporary_; }
   void write(std::span<const std::byte> bytes);
-  /// Writes at the end, after what was written by name.
+  /// Appends bytes to the file, also if another library (HDF5) has written to it under its
+  /// temporary name.
   void append(std::span<const std::byte> bytes);
-  /// Makes sure that so many bytes have room on the disk, or throws IoError.
+  /// Reserves this number of bytes on the disk for the file. Throws IoError if the disk is full.
   void reserve(std::uintmax_t bytes);
-  /// Ends the file there, giving back what was reserved beyond.
+  /// Truncates the file to this length and releases the space that was reserved beyond it.
   void truncate(std::uintmax_t bytes);
-  /// Puts it at `path`, replacing what is there. Throws IoError.
+  /// Renames the file to `path`, replacing any existing file. Throws IoError.
   void put_in_place(Durable durable = Durable::yes);
 
  private:
@@ -55,9 +57,8 @@ class FileBeside {
   int descriptor_;
 };
 
-/// Puts `bytes` at `path` as a whole or not at all, also when the machine stops in between: written
-/// by way of a FileBeside. Throws IoError, having removed the temporary file and left what was at
-/// `path` before.
+/// Writes `bytes` to the file `path` through a FileBeside, so that the file is either complete or
+/// unchanged, even if the machine crashes. Throws IoError; an existing file at `path` is then kept.
 void replace_file(const std::filesystem::path& path, std::span<const std::byte> bytes,
                   Durable durable = Durable::yes);
 

@@ -10,7 +10,8 @@ namespace flatspeckle {
 
 namespace {
 
-/// A scalar number: differs from point to point, as values do.
+/// Whether an attribute is a scalar number. Such attributes differ between the points of a sweep,
+/// and are therefore stored with the values, not with the layout.
 bool is_value(const Attribute& attribute) {
   constexpr std::size_t numbers = 4;  // bool, int64, uint64, double
   return attribute.index() < numbers;
@@ -21,12 +22,12 @@ void put_variant(ByteWriter& bytes, const Variant& value) {
   std::visit([&](const auto& held) { bytes.put(held); }, value);
 }
 
-/// The alternative of that number, with its value if it is told.
+/// Returns a variant that holds the alternative of this index, with its default value.
 template <typename Variant, std::size_t... number>
 Variant of_index(std::size_t index, std::index_sequence<number...>) {
   Variant made;
   if (!((index == number && (made.template emplace<number>(), true)) || ...))
-    throw InputError("a result in bytes has values of an unknown kind");
+    throw InputError("a stored result is damaged: values of an unknown kind");
   return made;
 }
 template <typename Variant>
@@ -64,7 +65,7 @@ CollectedDataset dataset_of(ByteReader& bytes) {
   bytes.get(set.units);
   bytes.get(set.long_name);
   set.values = of_index<CollectedDataset::Held>(bytes.get<std::uint64_t>());
-  const auto count = bytes.believable(bytes.get<std::uint64_t>());
+  const auto count = bytes.checked_count(bytes.get<std::uint64_t>());
   std::visit([&](auto& held) { held.resize(count); }, set.values);
   return set;
 }

@@ -7,9 +7,9 @@ namespace flatspeckle {
 
 class ResultFile;
 
-/// What a dataset holds: an axis (numbers: one that only counts, 0, 1, ...), values, or estimates,
-/// whose standard errors stand beside them under the name with _error, or invariants, whose limits
-/// do so under the name with _limit.
+/// Kind of a dataset: an axis (`scale`, or `numbers` for an axis with the values 0, 1, ...),
+/// values, estimates (whose standard errors are in a dataset NAME_error), or invariants (whose
+/// limits are in a dataset NAME_limit).
 enum class Data {
   scale,
   numbers,
@@ -22,36 +22,36 @@ enum class Data {
   invariant
 };
 
-/// As docs/format.md calls it: float64, complex, uint64, texts.
+/// Returns the name of the type in docs/format.md: float64, complex, uint64 or texts.
 std::string type_name(Data data);
 bool has_error(Data data);
 
-/// All there is to say of a dataset but its values. Axes are the names of scales, with a space
-/// between two: of those in the dataset's own group, where the file has them there, or the root.
-/// Unit "1" says that the values are numbers; none, that they have several units.
+/// Metadata of a dataset. Its axes are names of datasets (scales), separated by spaces; a scale is
+/// searched in the group of the dataset and then in the root. The unit "1" means that the values
+/// are dimensionless, and an empty unit that they have different units.
 ///
-/// A word in capitals, as an axis or a unit, is a role: what it stands for depends on the scene and
-/// is said by ResultFile::bind.
+/// If an axis or a unit is a word in capitals (a role), it stands for names that depend on the
+/// scene and are set by ResultFile::bind().
 struct DatasetRow {
   std::string path;
   Data data;
   std::string axes, unit, long_name;
 };
 
-/// An attribute of the root (object empty), or of a dataset or group. type as docs/format.md calls
-/// it: bool, int64, uint64, float64, text, texts.
+/// Metadata of an attribute. object: the dataset or group to which the attribute belongs; empty for
+/// the root. type: bool, int64, uint64, float64, text or texts (docs/format.md).
 struct AttributeRow {
   std::string object, name, type, meaning;
 };
 
-/// What a word in capitals may stand for.
+/// A word in capitals that is used as an axis or unit (see DatasetRow), and its possible meanings.
 struct Role {
   std::string word;
   std::vector<std::string> meanings;
 };
 
-/// What one kind of result has in its file. A table stands beside the code that makes the values;
-/// docs/format.md shows it under its name.
+/// Datasets and attributes that one kind of result may contain. Each table is defined next to the
+/// code that computes the values, and is printed in docs/format.md.
 struct DatasetTable {
   std::string name;
   std::vector<DatasetRow> rows;
@@ -60,7 +60,8 @@ struct DatasetTable {
 };
 
 bool has_row(const DatasetTable& table, const std::string& path);
-/// Throws std::logic_error where there is none.
+/// Returns the metadata of the dataset `path` in the table. Throws std::logic_error if the table
+/// does not contain it.
 const DatasetRow& row_of(const DatasetTable& table, const std::string& path);
 
 }  // namespace flatspeckle

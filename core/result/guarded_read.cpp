@@ -20,19 +20,20 @@ namespace flatspeckle {
 
 namespace {
 
-struct Seal {
+struct ChecksumRecord {
   std::array<char, 4> word;
   std::uint32_t checksum;
   std::uint64_t length;
 };
-static_assert(sizeof(Seal) == 16);
+static_assert(sizeof(ChecksumRecord) == 16);
 
-Seal seal_of(uLong checksum, std::size_t length) {
+ChecksumRecord record_of(uLong checksum, std::size_t length) {
   return {{'s', 'e', 'a', 'l'}, static_cast<std::uint32_t>(checksum), length};
 }
 
-/// Returns the seal of the next bytes; nullopt where there are fewer than `length`.
-std::optional<Seal> seal_of(std::istream& file, std::size_t length) {
+/// Returns the checksum record of the next `length` bytes of the file; nullopt if the file ends
+/// before.
+std::optional<ChecksumRecord> record_of(std::istream& file, std::size_t length) {
   std::array<char, 1 << 16> part;
   uLong checksum = 0;
   for (std::size_t left = length; left > 0;) {
@@ -41,15 +42,15 @@ std::optional<Seal> seal_of(std::istream& file, std::size_t length) {
     checksum = crc32_z(checksum, reinterpret_cast<const unsigned char*>(part.data()), count);
     left -= count;
   }
-  return seal_of(checksum, length);
+  return record_of(checksum, length);
 }
 
-std::vector<std::byte> bytes_of(const Seal& seal) {
-  const auto* first = reinterpret_cast<const std::byte*>(&seal);
-  return {first, first + sizeof seal};
+std::vector<std::byte> bytes_of(const ChecksumRecord& record) {
+  const auto* first = reinterpret_cast<const std::byte*>(&record);
+  return {first, first + sizeof record};
 }
 
-/// Ends this process: by 0 if `read` returned or threw.
+/// Calls `read` and exits this process, with status 0 even if `read` throws an exception.
 [[noreturn]] void read_and_exit(const std::function<void()>& read) {
   constexpr std::array signals{SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGINT, SIGTERM};
   for (const int signal : signals) std::signal(signal, SIG_DFL);
@@ -67,40 +68,40 @@ std::vector<std::byte> bytes_of(const Seal& seal) {
 
 }  // namespace
 
-void seal(std::vector<std::byte>& bytes) {
+void append_checksum(std::vector<std::byte>& bytes) {
   const auto* first = reinterpret_cast<const unsigned char*>(bytes.data());
-  const auto end = bytes_of(seal_of(crc32_z(0, first, bytes.size()), bytes.size()));
+  const auto end = bytes_of(record_of(crc32_z(0, first, bytes.size()), bytes.size()));
   bytes.insert(bytes.end(), end.begin(), end.end());
 }
 
-std::vector<std::byte> seal_of_file(const std::filesystem::path& path) {
+std::vector<std::byte> checksum_of_file(const std::filesystem::path& path) {
   std::error_code none;
   std::ifstream file(path, std::ios::binary);
-  const auto seal = seal_of(file, std::filesystem::file_size(path, none));
-  if (none || !seal) throw IoError("reading " + path.string() + " failed");
-  return bytes_of(*seal);
+  const auto record = record_of(file, std::filesystem::file_size(path, none));
+  if (none || !record) throw IoError("reading " + path.string() + " failed");
+  return bytes_of(*record);
 }
 
-bool is_sealed(const std::filesystem::path& path) {
+bool is_checksummed(const std::filesystem::path& path) {
   std::error_code none;
   const auto size = std::filesystem::file_size(path, none);
-  if (none || size < sizeof(Seal)) return false;
+  if (none || size < sizeof(ChecksumRecord)) return false;
   std::ifstream file(path, std::ios::binary);
-  const auto expected = seal_of(file, size - sizeof(Seal));
-  Seal found{};
+  const auto expected = record_of(file, size - sizeof(ChecksumRecord));
+  ChecksumRecord found{};
   return expected && file.read(reinterpret_cast<char*>(&found), sizeof found) &&
          std::memcmp(&*expected, &found, sizeof found) == 0;
 }
 
 void read_in_child(const std::filesystem::path& path, const std::function<void()>& read) {
   const pid_t child = fork();
-  if (child < 0) return;  // then read it unguarded
+  if (child < 0) return;  // no child process: the file is then read without this protection
   if (child == 0) read_and_exit(read);
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
-    throw InputError(path.string() + ": is damaged: HDF5 comes to no end with it");
+    throw InputError(path.string() + ": is damaged: HDF5 cannot read it");
 }
 
 }  // namespace flatspeckle

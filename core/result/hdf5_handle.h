@@ -1,6 +1,7 @@
 #pragma once
 
-// Inside of the result files: the only place that knows HDF5's header.
+// Helpers for the code that reads and writes result files. Only this header includes the header of
+// HDF5.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -17,7 +18,7 @@
 
 namespace flatspeckle {
 
-/// An HDF5 identifier that is closed at the end of its scope.
+/// Owner of an HDF5 identifier, which the destructor closes.
 class Hdf5Handle {
  public:
   using Closer = herr_t (*)(hid_t);
@@ -36,7 +37,8 @@ class Hdf5Handle {
   Closer close_;
 };
 
-/// Calls into HDF5 for one file: a failure becomes one line naming the file.
+/// Checks the results of HDF5 calls for one file: if a call has failed, throws an exception of type
+/// Error whose message names the file.
 template <typename Error>
 class Hdf5Calls {
  public:
@@ -57,20 +59,21 @@ class Hdf5Calls {
   std::string what_;
 };
 
-/// HDF5 crashes where it has no memory for itself. Throws std::bad_alloc where it would not have
-/// some and these bytes.
+/// Throws std::bad_alloc if there is not enough memory for these bytes and HDF5 itself, because
+/// HDF5 would crash.
 inline void require_hdf5_memory(std::size_t bytes = 0) {
   constexpr std::size_t own = std::size_t{8} << 20;
   if (!address_space_holds(own + bytes)) throw std::bad_alloc();
 }
 
-/// HDF5 would print a page about every failure; ours become exceptions. Holds for one thread.
+/// Turns off the error messages that HDF5 prints in this thread. Failures are reported by
+/// exceptions instead.
 inline void silence_hdf5() {
   require_hdf5_memory();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-/// The HDF5 type of a value, in memory and in files.
+/// Returns the HDF5 type that represents a C++ type, in memory and in files.
 template <typename Value>
 Hdf5Handle hdf5_type() {
   hid_t type = -1;
@@ -100,7 +103,8 @@ bool all_finite(std::span<const Number> values) {
   });
 }
 
-/// Also where groups on the way to `name` are missing, which H5Lexists alone calls a failure.
+/// Whether `name` exists in the file. If a group in the path `name` is missing, returns false,
+/// whereas H5Lexists reports a failure.
 inline bool exists(hid_t file, const std::string& name) {
   for (std::size_t slash = name.find('/', 1); slash != std::string::npos;
        slash = name.find('/', slash + 1))

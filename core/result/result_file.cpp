@@ -24,7 +24,7 @@ namespace flatspeckle {
 
 namespace {
 
-/// Takes each alternative of a variant to that of these functions which is made for it.
+/// Overload set of functions, for std::visit of a variant.
 template <typename... Functions>
 struct Either : Functions... {
   using Functions::operator()...;
@@ -36,7 +36,8 @@ std::size_t product(const std::vector<hsize_t>& extents) {
   return std::accumulate(extents.begin(), extents.end(), std::size_t{1}, std::multiplies<>());
 }
 
-/// Values as HDF5 takes them: one after the other, texts by pointers.
+/// Values in the memory layout that HDF5 requires: contiguous numbers, or contiguous pointers to
+/// texts.
 struct Raw {
   Hdf5Handle type;
   std::size_t count, value_bytes;
@@ -45,7 +46,8 @@ struct Raw {
   std::vector<const char*> texts = {};
 };
 
-/// Throws std::logic_error naming what they are the values of, if one is not finite.
+/// Converts numbers to Raw. Throws std::logic_error, which contains `name`, if a number is not
+/// finite.
 template <typename Number>
 Raw raw(const std::string& name, std::span<const Number> numbers) {
   if (!all_finite(numbers)) throw std::logic_error(name + ": a value is not finite");
@@ -62,7 +64,8 @@ Raw raw(const std::string& name, const Values& values) {
   return std::visit([&](const auto& given) { return raw(name, given); }, values);
 }
 
-/// Chunks of at most 1 MiB, shaped by halving the longest axis.
+/// Returns the shape of the chunks for a dataset of this shape. The longest axis is halved until a
+/// chunk has at most 1 MiB.
 std::vector<hsize_t> chunk_shape(std::vector<hsize_t> shape, std::size_t value_bytes) {
   constexpr hsize_t most_bytes = hsize_t{1} << 20;
   while (value_bytes * product(shape) > most_bytes) {
@@ -72,7 +75,7 @@ std::vector<hsize_t> chunk_shape(std::vector<hsize_t> shape, std::size_t value_b
   return shape;
 }
 
-/// Writes into the HDF5 file of one ResultFile.
+/// Writes one dataset or attribute, `name`, into the HDF5 file of a ResultFile.
 class Writer {
  public:
   Writer(const Hdf5Handle* file, const std::string& path, const std::string& name)
@@ -101,7 +104,7 @@ class Writer {
     std::visit(Either{list, scalar}, value);
   }
 
-  /// Of values like these, which are none.
+  /// Creates a dataset for values of the type of `none`, without writing values.
   void begin(const Raw& none, const std::vector<Axis>& axes,
              const std::vector<std::size_t>& chunk) const {
     const auto shape = shape_of(axes);
@@ -112,7 +115,9 @@ class Writer {
     make_scale(create(none.type, {count}, storage(none, {count}, {chunk})));
   }
 
-  /// Opened and closed each time, so that no chunk waits in HDF5's cache for a full disk.
+  /// Writes a block of values of the dataset. The dataset is opened and closed for each block, so
+  /// that HDF5 does not keep chunks in its cache, which it could no longer write if the disk became
+  /// full.
   void block(const Raw& block, const std::vector<std::size_t>& start,
              const std::vector<std::size_t>& count) const {
     const Hdf5Handle set = call_.handle(H5Dopen2(file_, name_.c_str(), H5P_DEFAULT), H5Dclose);
@@ -131,7 +136,7 @@ class Writer {
     call_.check(H5Dflush(set.get()));
   }
 
-  /// Throws std::logic_error where there is one already.
+  /// Creates and writes a dataset. Throws std::logic_error if the dataset exists.
   Hdf5Handle values(const Raw& raw, const std::vector<hsize_t>& shape) const {
     if (product(shape) != raw.count)
       throw std::logic_error(name_ + ": the number of values does not fit the axes");
@@ -140,7 +145,7 @@ class Writer {
     return set;
   }
 
-  /// Attached to those of the axes that have scales.
+  /// Writes a dataset and attaches the dimension scales of its axes.
   void dataset(const Raw& raw, const std::vector<Axis>& axes) const {
     attach(values(raw, shape_of(axes)), axes);
   }
@@ -180,7 +185,8 @@ class Writer {
     return links;
   }
 
-  /// Small sets gain nothing from filters, which do not reach texts: HDF5 keeps these apart.
+  /// Returns the storage layout of a dataset. Only large datasets of numbers are compressed: HDF5
+  /// stores texts separately from the dataset, where compression has no effect on them.
   Hdf5Handle storage(const Raw& raw, std::vector<hsize_t> shape,
                      const std::vector<std::size_t>& chunk) const {
     constexpr std::size_t small = 4096;
@@ -189,7 +195,7 @@ class Writer {
     return compressed(chunk_shape(shape, raw.value_bytes));
   }
 
-  /// No time stamps: the same results make the same bytes.
+  /// Returns a storage layout without time stamps, so that equal results give equal files.
   Hdf5Handle untimed() const {
     Hdf5Handle layout = call_.handle(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     call_.check(H5Pset_obj_track_times(layout.get(), false));
@@ -261,7 +267,7 @@ class Writer {
   hid_t file_ = -1;
 };
 
-/// What values take in a file.
+/// Returns the number of bytes that values need in a file.
 std::size_t bytes_of(const Values& values) {
   const auto of_numbers = [](const auto& numbers) { return numbers.size_bytes(); };
   const auto of_texts = [](std::span<const std::string> texts) {
@@ -272,7 +278,7 @@ std::size_t bytes_of(const Values& values) {
   return std::visit(Either{of_texts, of_numbers}, values);
 }
 
-/// A copy, all finite.
+/// Returns a copy of the values. Throws std::logic_error if one is not finite.
 CollectedDataset::Held held(const std::string& name, const Values& values) {
   return std::visit(
       [&]<typename Value>(std::span<const Value> given) -> CollectedDataset::Held {
@@ -283,15 +289,16 @@ CollectedDataset::Held held(const std::string& name, const Values& values) {
       values);
 }
 
-/// All that HDF5 can lack for a file in memory.
+/// Exception for a failure of HDF5 with a file in memory, whose only possible cause is a lack of
+/// memory.
 struct NoMemory : std::bad_alloc {
   explicit NoMemory(const std::string& /*what*/) {}
 };
 
-/// An empty HDF5 file in memory: a full disk can then only show where we write it ourselves, in
-/// commit(), and not while HDF5 closes its objects.
+/// Creates an empty HDF5 file in memory. Its bytes are written to the disk by commit() without
+/// HDF5, because HDF5 may crash if the disk is full.
 std::unique_ptr<Hdf5Handle> file_in_memory() {
-  static std::atomic<unsigned> number{0};  // HDF5 tells open files apart by their names
+  static std::atomic<unsigned> number{0};  // HDF5 distinguishes open files by name
   const Hdf5Calls<NoMemory> call("");
   const Hdf5Handle access = call.handle(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   constexpr std::size_t increment = std::size_t{1} << 20;
@@ -301,7 +308,7 @@ std::unique_ptr<Hdf5Handle> file_in_memory() {
       call.handle(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose));
 }
 
-/// What HDF5 may write of its own with a dataset or attribute.
+/// Upper bound for the bytes that HDF5 writes in addition to the values of a dataset or attribute.
 constexpr std::size_t overhead = std::size_t{1} << 20;
 
 std::unique_ptr<Hdf5Handle> file_on_disk(FileBeside& place) {
@@ -317,7 +324,7 @@ ResultFile::ResultFile(std::filesystem::path path, Storage storage) : path_(std:
   silence_hdf5();
   if (storage == Storage::disk) beside_ = std::make_unique<FileBeside>(path_);
   file_ = beside_ ? file_on_disk(*beside_) : file_in_memory();
-  make_room(0);
+  reserve_space(0);
 }
 
 ResultFile::ResultFile(CollectedResult& collected) : collected_(&collected) {}
@@ -326,9 +333,10 @@ ResultFile::ResultFile(ResultFile&&) noexcept = default;
 ResultFile& ResultFile::operator=(ResultFile&&) noexcept = default;
 ResultFile::~ResultFile() = default;
 
-// HDF5 does not survive a full disk or memory, not even until its file is closed: room is made
-// before. A file in memory grows by copies.
-void ResultFile::make_room(std::size_t bytes) {
+// Reserves space before each write, because HDF5 may crash after a write has failed for lack of
+// disk space or memory, at the latest when it closes the file. A file in memory is copied when it
+// grows, for which twice its size is needed.
+void ResultFile::reserve_space(std::size_t bytes) {
   if (!file_) return;
   if (!beside_) return require_hdf5_memory(2 * bytes);
   hsize_t size = 0;
@@ -345,7 +353,7 @@ bool ResultFile::has(const std::string& name) const {
 
 const std::vector<Axis>& ResultFile::bound(const std::string& role) const {
   const auto found = roles_.find(role);
-  if (found == roles_.end()) throw std::logic_error(role + ": stands for nothing here");
+  if (found == roles_.end()) throw std::logic_error(role + ": this role is not bound");
   return found->second;
 }
 
@@ -355,7 +363,7 @@ void ResultFile::attribute(const std::string& object, const std::string& name,
     collected_->attributes.push_back({object, name, value});
     return;
   }
-  make_room(0);
+  reserve_space(0);
   Writer(file_.get(), path_.string(), object).attribute(name, value);
 }
 
@@ -363,7 +371,7 @@ void ResultFile::scale(const std::string& name, std::span<const double> values,
                        const std::string& units, const std::string& long_name) {
   if (collected_ != nullptr)
     return collected_->add({name, true, {}, units, long_name, held(name, values)});
-  make_room(values.size_bytes());
+  reserve_space(values.size_bytes());
   const Writer writer(file_.get(), path_.string(), name);
   writer.scale(values);
   writer.describe(units, long_name);
@@ -380,7 +388,7 @@ void ResultFile::scale(const std::string& name, std::size_t count,
   };
   make(0);
   if (count <= at_once) return scale(name, values, units, long_name);
-  make_room(0);
+  reserve_space(0);
   const Writer writer(file_.get(), path_.string(), name);
   writer.begin_scale(raw(name, std::span<const double>()), count, at_once);
   writer.describe(units, long_name);
@@ -395,7 +403,7 @@ void ResultFile::dataset(const std::string& name, const Values& values,
                          const std::string& long_name) {
   if (collected_ != nullptr)
     return collected_->add({name, false, axes, units, long_name, held(name, values)});
-  make_room(bytes_of(values));
+  reserve_space(bytes_of(values));
   const Writer writer(file_.get(), path_.string(), name);
   writer.dataset(raw(name, values), axes);
   writer.describe(units, long_name);
@@ -406,7 +414,7 @@ void ResultFile::begin_dataset(const std::string& name, const Values& none,
                                const std::string& units, const std::string& long_name) {
   if (collected_ != nullptr)
     return collected_->begin({name, false, axes, units, long_name, held(name, none)});
-  make_room(0);
+  reserve_space(0);
   const Writer writer(file_.get(), path_.string(), name);
   writer.begin(raw(name, none), axes, chunk);
   writer.describe(units, long_name);
@@ -416,7 +424,7 @@ void ResultFile::write_block(const std::string& name, const Values& values,
                              const std::vector<std::size_t>& start,
                              const std::vector<std::size_t>& count) {
   if (collected_ != nullptr) return collected_->put_block(name, values, start, count);
-  make_room(bytes_of(values));
+  reserve_space(bytes_of(values));
   Writer(file_.get(), path_.string(), name).block(raw(name, values), start, count);
 }
 
@@ -424,25 +432,25 @@ bool ResultFile::keeps_invariants() const {
   return std::ranges::all_of(invariants_, [](const auto& each) { return each.second.holds(); });
 }
 
-void ResultFile::commit(bool is_sealed, Durable durable) {
+void ResultFile::commit(bool is_checksummed, Durable durable) {
   if (!beside_) {
     auto bytes = image();
-    if (is_sealed) seal(bytes);
+    if (is_checksummed) append_checksum(bytes);
     return replace_file(path_, bytes, durable);
   }
   if (!file_) throw std::logic_error(path_.string() + ": finished twice");
-  make_room(0);
+  reserve_space(0);
   const Hdf5Calls<IoError> call("HDF5 cannot finish " + path_.string());
   call.check(H5Fflush(file_->get(), H5F_SCOPE_GLOBAL));
   hsize_t size = 0;
   call.check(H5Fget_filesize(file_->get(), &size));
   file_.reset();
   beside_->truncate(size);
-  if (is_sealed) beside_->append(seal_of_file(beside_->name()));
+  if (is_checksummed) beside_->append(checksum_of_file(beside_->name()));
   beside_->put_in_place(durable);
 }
 
-/// The bytes of a file in memory, which is closed.
+/// Closes the HDF5 file in memory and returns its bytes.
 std::vector<std::byte> ResultFile::image() {
   if (!file_) throw std::logic_error(path_.string() + ": finished twice");
   const Hdf5Calls<IoError> call("HDF5 cannot finish " + path_.string());
@@ -459,11 +467,12 @@ void check_result_path(const std::filesystem::path& path) {
   std::error_code none;
   if (const auto size = std::filesystem::file_size(path, none); none || size == 0) return;
   if (access(path.c_str(), R_OK) != 0)
-    throw IoError("cannot read what stands at " + path.string() + ": " + std::strerror(errno));
+    throw IoError("cannot read the file at " + path.string() + ": " + std::strerror(errno));
   silence_hdf5();
   if (H5Fis_hdf5(path.c_str()) <= 0)
-    throw InputError("cannot write " + path.string() +
-                     ": what is there is no result of this program, and is kept");
+    throw InputError(
+        "cannot write " + path.string() +
+        ": a file exists there that is not a result of this program; name another file");
 }
 
 }  // namespace flatspeckle

@@ -12,9 +12,10 @@ namespace flatspeckle {
 
 namespace {
 
-/// By the alternative of Values, as type_name.
+/// Names, as in type_name(), of the types that Values can contain, in the order of the variant.
 constexpr const char* value_types[] = {"float64", "complex", "uint64", "texts"};
-/// By that of Attribute, as AttributeRow has it.
+/// Names, as in AttributeRow::type, of the types that Attribute can contain, in the order of the
+/// variant.
 constexpr const char* attribute_types[] = {"bool", "int64",    "uint64", "float64",
                                            "text", "float64s", "texts"};
 
@@ -81,11 +82,11 @@ void ResultGroup::put(const std::string& path, const Values& values, std::span<c
   const auto few = std::count(rare.begin(), rare.end(), std::uint64_t{1});
   if (few == 0) return;
   write({path + "_rare", Data::count, found.axes, "1",
-         "1 where a few batches carry the standard error: " + found.long_name},
+         "1 where a few batches dominate the standard error: " + found.long_name},
         rare);
   const bool is_nothing =
       std::all_of(errors.begin(), errors.end(), [](double e) { return e == 0; });
-  if (is_nothing) return;  // no path at all carries it
+  if (is_nothing) return;  // all values are 0, because no path has contributed
   file_.note_rare(prefix_ + path + ": " + std::to_string(few) + " of " +
                   std::to_string(rare.size()));
 }
@@ -99,7 +100,7 @@ void ResultGroup::put(const std::string& path, const Estimate& estimate) const {
 
 void ResultGroup::check(const std::string& path, std::span<const Invariant> invariants) const {
   const DatasetRow& found = row(path);
-  if (found.data != Data::invariant) throw std::logic_error(path + ": its row is no invariant");
+  if (found.data != Data::invariant) throw std::logic_error(path + ": its row is not an invariant");
   std::vector<double> off, limits;
   const Invariant* worst = &invariants.front();
   for (const Invariant& each : invariants) {
@@ -115,7 +116,8 @@ void ResultGroup::check(const std::string& path, std::span<const Invariant> inva
 }
 
 void ResultGroup::number(const std::string& path, std::size_t count) const {
-  if (row(path).data != Data::numbers) throw std::logic_error(path + ": its row is no count");
+  if (row(path).data != Data::numbers)
+    throw std::logic_error(path + ": its row is not a numbering");
   file_.scale(
       prefix_ + path, count, [](std::size_t i) { return static_cast<double>(i); }, unit(row(path)),
       row(path).long_name);
@@ -144,7 +146,7 @@ void ResultGroup::attribute(const std::string& object, const std::string& name,
 void ResultGroup::write(const DatasetRow& row, const Values& values) const {
   const std::string name = prefix_ + row.path;
   if (value_types[values.index()] != type_name(row.data))
-    throw std::logic_error(name + ": its row wants " + type_name(row.data));
+    throw std::logic_error(name + ": its row requires " + type_name(row.data));
   if (row.data == Data::scale || row.data == Data::numbers)
     file_.scale(name, std::get<0>(values), unit(row), row.long_name);
   else if (!is_finite(values))

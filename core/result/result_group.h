@@ -14,14 +14,14 @@
 
 namespace flatspeckle {
 
-/// The root of a result file or one of its groups, and the table of what may be written there:
-/// units, long names, axes and companions come from its rows. Datasets and attributes with a value
-/// that is not finite are left out and noted (ResultFile::undefined), that the rest of a finished
-/// run is not lost. Throws std::logic_error for a name without a row, for values that are not what
-/// the row says, and as ResultFile does.
+/// Writer for the root of a result file or one of its groups. A DatasetTable lists the datasets and
+/// attributes that may be written, with their types, units, long names and axes. Those with a value
+/// that is not finite are not written but recorded (ResultFile::undefined()), so that the rest of
+/// the result is not lost. Throws std::logic_error for names that are not in the table and for
+/// values of another type, and the exceptions of ResultFile.
 class ResultGroup {
  public:
-  /// group: its name, or empty for the root. The table must live as long.
+  /// group: name of the group; empty for the root. The table must outlive this object.
   ResultGroup(ResultFile& file, const DatasetTable& table, const std::string& group = "");
 
   void put(const std::string& path, const Values& values) const;
@@ -29,30 +29,31 @@ class ResultGroup {
   void put(const std::string& path, std::uint64_t scalar) const {
     put(path, std::span(&scalar, 1));
   }
-  /// rare: see Estimate; written, as path_rare, only where a value is.
+  /// Writes values, and their standard errors as PATH_error. rare: marks of undersampled values
+  /// (see Estimate); written as PATH_rare if any of them is 1.
   void put(const std::string& path, const Values& values, std::span<const double> errors,
            std::span<const std::uint64_t> rare = {}) const;
   void put(const std::string& path, double scalar, double error) const {
     put(path, std::span<const double>(&scalar, 1), std::span<const double>(&error, 1));
   }
-  /// Of an estimate that is real: the real parts.
+  /// Writes an estimate; only its real parts if the table defines the dataset as real.
   void put(const std::string& path, const Estimate& estimate) const;
-  /// Writes an invariant, or one of each thing along an axis, with its limit. Where one fails, the
-  /// result has not converged.
+  /// Writes invariants, and their limits as PATH_limit. If one of them exceeds its limit, the
+  /// result counts as not converged.
   void check(const std::string& path, std::span<const Invariant> invariants) const;
   void check(const std::string& path, const Invariant& invariant) const {
     check(path, std::span(&invariant, 1));
   }
-  /// An axis 0, 1, ..., count - 1.
+  /// Writes an axis with the values 0, 1, ..., count - 1.
   void number(const std::string& path, std::size_t count) const;
-  /// For blocks that follow (ResultFile::write_block).
+  /// Creates a complex dataset, whose values are then written by ResultFile::write_block().
   void begin(const std::string& path, const std::vector<std::size_t>& chunk) const;
 
-  /// What is known of a dataset.
+  /// Returns the metadata of a dataset from the table.
   const DatasetRow& row(const std::string& path) const { return row_of(table_, path); }
 
   void attribute(const std::string& object, const std::string& name, const Attribute& value) const;
-  /// Of the root.
+  /// Writes an attribute of this group or, if `group` was empty, of the root.
   void attribute(const std::string& name, const Attribute& value) const {
     attribute("", name, value);
   }
@@ -67,8 +68,9 @@ class ResultGroup {
   std::string prefix_;
 };
 
-/// A value of each thing, as put() takes them: texts, numbers, or (of whole numbers and
-/// enumerators) counts. value: a member or function of a thing.
+/// Returns the list of value(thing) for all things, as a vector that put() accepts: of texts, of
+/// doubles, or of std::uint64_t for integers and enumerators. value: a member of the things, or a
+/// function.
 template <class Things, class Value>
 auto column(const Things& things, const Value& value) {
   using Given = std::decay_t<std::invoke_result_t<const Value&, decltype(*things.begin())>>;

@@ -16,7 +16,7 @@ namespace flatspeckle {
 
 namespace {
 
-/// Reads from the HDF5 file of one ResultReader.
+/// Reads one dataset or attribute, `name`, from the HDF5 file of a ResultReader.
 class Reader {
  public:
   Reader(const Hdf5Handle& file, const std::string& path, const std::string& name)
@@ -88,9 +88,10 @@ class Reader {
   }
 
  private:
-  /// How many numbers a dataset holds. What is not stored HDF5 would make up, gigabytes of it.
+  /// Returns the number of values of a dataset. Throws InputError if the file cannot contain that
+  /// many, because HDF5 would fill memory with default values for the missing ones.
   std::size_t size(hid_t set, std::size_t number_bytes) const {
-    constexpr double most_shrinkage = 1100;  // deflate's is 1032
+    constexpr double most_shrinkage = 1100;  // deflate, the compression of HDF5, reaches 1032
     hsize_t file_bytes = 0;
     call_.check(H5Fget_filesize(file_, &file_bytes));
     const auto stored = static_cast<double>(std::min(H5Dget_storage_size(set), file_bytes));
@@ -98,7 +99,7 @@ class Reader {
     const auto extents = shape(set);
     for (const hsize_t extent : extents) bytes *= static_cast<double>(extent);
     if (bytes > most_shrinkage * stored)
-      throw InputError(path_ + ": " + name_ + " is larger than what the file stores of it");
+      throw InputError(path_ + ": " + name_ + " declares more values than the file contains");
     return std::accumulate(extents.begin(), extents.end(), std::size_t{1}, std::multiplies<>());
   }
 
@@ -109,14 +110,16 @@ class Reader {
     return static_cast<std::size_t>(count);
   }
 
-  /// Result files hold nothing else (ResultFile), and nothing goes on with it.
+  /// Throws InputError if a number is not finite: ResultFile never writes such numbers, and no
+  /// caller can use them.
   template <typename Number>
   void require_finite(const std::vector<Number>& values) const {
     if (!all_finite<Number>(values))
-      throw InputError(path_ + ": " + name_ + " holds a number that is not finite");
+      throw InputError(path_ + ": " + name_ + " contains a number that is not finite");
   }
 
-  /// HDF5 itself would turn 1.5 into the integer 1 and a foreign compound into zeros.
+  /// Throws InputError if the stored type is not that of Number. HDF5 itself would convert 1.5 to
+  /// the integer 1, and unknown compound types to zeros.
   template <typename Number>
   void require_type(hid_t stored) const {
     const H5T_class_t type = H5Tget_class(stored);

@@ -11,8 +11,8 @@ namespace flatspeckle {
 
 class Hdf5Handle;
 
-/// Reads result files. Whatever is missing, of another type, truncated or damaged throws
-/// InputError, naming the file.
+/// Reader of a result file. Throws InputError, which names the file, if the requested content is
+/// missing, of another type, truncated or damaged.
 class ResultReader {
  public:
   explicit ResultReader(std::filesystem::path path);
@@ -22,21 +22,23 @@ class ResultReader {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Is there a group or dataset of this name?
+  /// Whether the file contains a group or dataset of this name.
   bool has(const std::string& name) const;
   bool has_attribute(const std::string& object, const std::string& name) const;
 
-  /// Names of what is in a group, in alphabetical order; none where there is no such group.
+  /// Returns the names of the datasets and groups in a group, in alphabetical order; an empty list
+  /// if the group does not exist.
   std::vector<std::string> members(const std::string& group) const;
 
-  /// Extents of a dataset; empty for a scalar.
+  /// Returns the length of each axis of a dataset; an empty list for a scalar.
   std::vector<std::size_t> shape(const std::string& name) const;
 
-  /// Number: double or Complex. Row-major order.
+  /// Returns the values of a dataset in row-major order. Number: double or Complex.
   template <typename Number>
   std::vector<Number> dataset(const std::string& name) const;
 
-  /// Value: bool, std::uint64_t, double, std::vector<double> or std::string.
+  /// Returns the value of an attribute. Value: bool, std::uint64_t, double, std::vector<double> or
+  /// std::string.
   template <typename Value>
   Value attribute(const std::string& object, const std::string& name) const;
 

@@ -11,7 +11,7 @@ namespace flatspeckle {
 
 namespace {
 
-/// The rows that have a finite error.
+/// Returns the trace without the rows whose error is infinite or NaN.
 Trace finite_rows(const Trace& trace) {
   Trace finite;
   for (std::size_t row = 0; row < trace.relative_error.size(); ++row)
@@ -28,15 +28,15 @@ const DatasetTable trace_table{
     {{"trace/checkpoint", Data::numbers, "", "1", "number of the checkpoint"},
      {"trace/wall_s", Data::real, "trace/checkpoint", "s", "elapsed time"},
      {"trace/cpu_s", Data::real, "trace/checkpoint", "s", "processor time, all threads"},
-     {"trace/samples", Data::real, "trace/checkpoint", "1", "samples"},
+     {"trace/samples", Data::real, "trace/checkpoint", "1", "number of samples"},
      {"trace/relative_error", Data::real, "trace/checkpoint", "1",
       "RMS standard error relative to the RMS magnitude"}}};
 
 const DatasetTable state_table{
     .name = "state",
-    .rows = {{"group_samples", Data::real, "GROUPS", "1", "samples of each group"},
+    .rows = {{"group_samples", Data::real, "GROUPS", "1", "number of samples of each group"},
              {"group_sums", Data::complex, "GROUPS SUMS", "", "sums of each group"}},
-    .attributes = {{"", "batches", "uint64", "what is done"},
+    .attributes = {{"", "batches", "uint64", "number of merged batches"},
                    {"", "wall_s", "float64", "elapsed time so far"},
                    {"", "cpu_s", "float64", "processor time so far"}},
     .roles = {{"GROUPS", {"no scale"}}, {"SUMS", {"no scale"}}}};
@@ -57,7 +57,7 @@ Trace read_trace(const ResultReader& file, const std::string& group) {
     if ((trace.*values).size() != trace.wall_s.size())
       throw InputError(file.path().string() + ": " + place + ": columns of different lengths");
   }
-  constexpr double most = 1e18;  // an integer holds it
+  constexpr double most = 1e18;  // numbers of samples below this fit into a 64-bit integer
   for (const double samples : trace.samples)
     if (!(samples >= 0 && samples < most))
       throw InputError(file.path().string() + ": " + place + "samples", samples,

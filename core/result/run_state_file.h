@@ -12,23 +12,28 @@ namespace flatspeckle {
 
 extern const DatasetTable trace_table, state_table;
 
-/// Into a group (empty: the root). Rows without a finite error (fewer than two groups of batches)
-/// are left out.
+/// Writes the trace of a run (its error against run time) into a group, or into the root if `group`
+/// is empty. Rows whose error is not finite, because there were too few batches to estimate it, are
+/// left out.
 void write_trace(ResultFile& file, const std::string& group, const Trace& trace);
 
-/// The trace that write_trace wrote. Throws InputError.
+/// Reads a trace that write_trace() has written. Throws InputError.
 Trace read_trace(const ResultReader& file, const std::string& group);
 
-/// A run that can go on: the sums bit for bit, the times, and the trace as write_trace leaves it.
+/// Writes the state from which a run can be resumed: the sums without rounding, the times, and the
+/// trace as in write_trace().
 void write_state(ResultFile& file, const std::string& group, const RunState& state);
 
-/// The run that write_state wrote, for batches of `size` sums. Throws InputError if the group is
-/// not such a run or is one of another size.
+/// Reads a state that write_state() has written. size: number of sums of a batch. Throws InputError
+/// if the group does not contain a state, or if the batches of the state have another number of
+/// sums.
 RunState read_state(const ResultReader& file, const std::string& group, std::size_t size);
 
-/// The same as bytes, with the whole trace, for a journal.
+/// Converts the state of a run, including all rows of its trace, to bytes that can be stored in a
+/// Journal.
 std::vector<std::byte> bytes_of(const RunState& state);
-/// Throws InputError where the bytes are no run of batches of `size` sums.
+/// Converts bytes of bytes_of() back to a state. Throws InputError if the bytes are not a state
+/// whose batches have `size` sums.
 RunState state_of(std::span<const std::byte> record, std::size_t size);
 
 }  // namespace flatspeckle

@@ -4,11 +4,11 @@
 
 namespace flatspeckle {
 
-/// "0.1.0".
+/// Returns the version of the program, e.g. "0.1.0".
 std::string version();
 
-/// Commit of the checkout that was built, with "+changes" where tracked files differed from it;
-/// "unknown" when built outside a checkout.
+/// Returns the git commit from which the program was built, with "+changes" if tracked files had
+/// been changed; "unknown" if the program was built outside a git checkout.
 std::string git_commit();
 
 }  // namespace flatspeckle

@@ -17,14 +17,15 @@ namespace flatspeckle {
 
 namespace {
 
-/// A rank begins with one greeting; then each of its threads asks again and again, with the batch
-/// that it has done, if any.
+/// Message from another rank to rank 0. A rank first sends one greeting with its number of threads.
+/// Then each of its threads repeatedly requests a batch; each request except the first contains the
+/// result of the previous batch.
 struct Request {
   enum Kind : std::uint32_t { greeting, first, delivery, interrupted } kind = first;
   std::uint32_t threads = 0;
   std::uint64_t run = 0, number = 0;
   double cpu_s = 0;
-  // sums follow, of a delivery
+  // a delivery also contains the sums of the batch, after these members
 };
 
 struct Reply {
@@ -39,11 +40,12 @@ Bytes message_of(const Request& request, const std::vector<Complex>& sums = {}) 
   return message.take();
 }
 
-Reply asked(const Request& request, const std::vector<Complex>& sums = {}) {
-  return ByteReader(ask(message_of(request, sums))).get<Reply>();
+Reply reply_to(const Request& request, const std::vector<Complex>& sums = {}) {
+  return ByteReader(query_rank_0(message_of(request, sums))).get<Reply>();
 }
 
-/// The jobs that this rank works on, made when first needed.
+/// Cache of the jobs of the runs on which this rank works. A job is created when it is first
+/// needed; the oldest ones are discarded.
 class Jobs {
  public:
   explicit Jobs(const RunList& runs) : runs_(runs) {}
@@ -70,15 +72,16 @@ class Jobs {
   std::vector<std::size_t> order_;
 };
 
-/// One thread of another rank.
+/// Requests, computes and delivers batches in one thread of a rank other than 0, until the pool has
+/// ended.
 void work_remotely(Jobs& jobs) {
   using Offer = BatchPool::Offer;
   double cpu_before = thread_cpu_seconds();
-  auto reply = asked({});
+  auto reply = reply_to({});
   while (reply.offer != Offer::none) {
     if (reply.offer == Offer::later) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      reply = asked({});
+      reply = reply_to({});
       continue;
     }
     std::vector<Complex> sums;
@@ -87,13 +90,13 @@ void work_remotely(Jobs& jobs) {
       sums.resize(job->size);
       job->run(reply.number, sums);
     } catch (const Interrupted&) {
-      reply = asked({Request::interrupted});
+      reply = reply_to({Request::interrupted});
       continue;
     }
     const double cpu_now = thread_cpu_seconds();
     const Request done{Request::delivery, 0, reply.run, reply.number, cpu_now - cpu_before};
     cpu_before = cpu_now;
-    reply = asked(done, sums);
+    reply = reply_to(done, sums);
   }
 }
 
@@ -137,7 +140,7 @@ void RankServer::take_in(BatchPool* pool, int rank, const Bytes& message) {
 
 void work_for_rank_0(const RunList& runs, int threads) {
   Jobs jobs(runs);
-  ask(message_of({Request::greeting, static_cast<std::uint32_t>(threads)}));
+  query_rank_0(message_of({Request::greeting, static_cast<std::uint32_t>(threads)}));
 #pragma omp parallel num_threads(threads)
   try {
     work_remotely(jobs);
@@ -154,7 +157,7 @@ BatchPool::BatchPool(const RunList& runs, const PoolOptions& options, int worker
       other_ranks_(options.server == nullptr ? 0 : static_cast<std::size_t>(ranks().size - 1)),
       progress_(options.label, options.unit) {}
 
-void BatchPool::look_for_end() {
+void BatchPool::check_for_end() {
   if (stopped_) return;
   if (interrupted())
     stopped_ = StopReason::interrupted;
@@ -174,8 +177,10 @@ BatchPool::Use BatchPool::use_of(const Run& run, int rank) {
   return run.ranks.empty() ? Use::nobodys : Use::others;
 }
 
-/// A batch that its run needs whatever the error turns out to be, best of a run that this rank has
-/// worked on, since making its job takes time; at worst one that is used as `worst` says.
+/// Returns a run whose next batch is certainly needed, whatever its error turns out to be;
+/// runs_.end() if there is none. Prefers runs on which this rank has worked (Use::own) to runs on
+/// which no rank has worked (nobodys) and to others, because creating a job takes time. worst:
+/// least preferred Use that is accepted.
 BatchPool::Runs::iterator BatchPool::with_certain_batch(int rank, Use worst) {
   auto found = runs_.end();
   for (auto run = runs_.begin(); run != runs_.end(); ++run) {
@@ -188,7 +193,8 @@ BatchPool::Runs::iterator BatchPool::with_certain_batch(int rank, Use worst) {
   return found;
 }
 
-/// The run that is likely to need most: its batch may turn out not to be needed.
+/// Returns the run that probably needs the most work; runs_.end() if there is none. Its next batch
+/// may turn out to be unnecessary.
 BatchPool::Runs::iterator BatchPool::with_any_batch() {
   auto found = runs_.end();
   for (auto run = runs_.begin(); run != runs_.end(); ++run) {
@@ -204,7 +210,8 @@ BatchPool::Batch BatchPool::hand_out(Runs::iterator found, int rank) {
   return {number, run->next++, run->job};
 }
 
-/// Whether other ranks soon want a run that nobody works on.
+/// Whether another run should be opened now, so that for each other rank a run is open on which no
+/// rank works yet.
 bool BatchPool::should_open() const {
   const auto in_stock = std::count_if(
       runs_.begin(), runs_.end(), [](const auto& entry) { return entry.second->ranks.empty(); });
@@ -219,7 +226,7 @@ std::optional<BatchPool::Batch> BatchPool::take() {
   constexpr int here = 0;
   std::unique_lock lock(mutex_);
   while (!error_) {
-    look_for_end();
+    check_for_end();
     const bool fresh = !stopped_ && next_run_ < list_.count;
     const auto certain = with_certain_batch(here, fresh ? Use::nobodys : Use::others);
     if (fresh && (certain == runs_.end() || should_open())) {
@@ -237,7 +244,7 @@ std::optional<BatchPool::Batch> BatchPool::take() {
 BatchPool::Offer BatchPool::offer(int rank, Batch& batch) {
   const std::lock_guard lock(mutex_);
   if (error_) return Offer::none;
-  look_for_end();
+  check_for_end();
   const bool fresh = !stopped_ && next_run_ < list_.count;
   auto run = with_certain_batch(rank, fresh ? Use::nobodys : Use::others);
   if (run == runs_.end() && !fresh) run = with_any_batch();
@@ -280,7 +287,7 @@ void BatchPool::deliver(const Batch& batch, std::vector<Complex> sums, double cp
   std::unique_lock lock(mutex_);
   cpu_s_ += cpu_s;
   const auto found = runs_.find(batch.run);
-  if (found == runs_.end()) return;  // ended without it
+  if (found == runs_.end()) return;  // the run has ended and does not need this batch
   const std::shared_ptr<Run> run = found->second;
   run->waiting.emplace(batch.number, Sums{std::move(sums), cpu_s});
   if (!run->merging) merge(batch.run, *run, lock);
@@ -324,7 +331,7 @@ void BatchPool::end(std::size_t number, const Run& run, std::unique_lock<std::mu
   lock.unlock();
   if (list_.ended) list_.ended(number, reason);
   lock.lock();
-  ++ended_;  // but where a signal has cut that off
+  ++ended_;  // not executed if RunList::ended() has thrown Interrupted after a signal
 }
 
 void BatchPool::show_progress() {
@@ -368,7 +375,8 @@ Progress::Figures BatchPool::figures() const {
   return figures;
 }
 
-/// Runs that have not begun are taken to cost as much as the others do on the mean.
+/// Returns the expected time, in seconds, until all runs have ended. Runs that have not begun are
+/// assumed to need the mean time of the other runs.
 double BatchPool::seconds_left() const {
   double left = 0, whole = ended_cpu_s_;
   for (const auto& [number, run] : runs_) {

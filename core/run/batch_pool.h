@@ -14,10 +14,11 @@
 
 namespace flatspeckle {
 
-/// The batches of many runs, handed out to threads and taken back in any order.
+/// Scheduler of the batches of many runs. Threads take batches from it and deliver the results,
+/// which it accepts in any order.
 class BatchPool {
  public:
-  /// workers: threads that will ask for batches.
+  /// workers: number of threads that will request batches.
   BatchPool(const RunList& runs, const PoolOptions& options, int workers);
 
   struct Batch {
@@ -25,27 +26,31 @@ class BatchPool {
     std::uint64_t number = 0;
     std::shared_ptr<const BatchJob> job;
   };
-  /// The next batch, for a thread that also opens runs when their turn comes; waits while there is
-  /// none. Nothing once all is over.
+  /// Returns the next batch to be computed by the calling thread of this process, which may first
+  /// have to open a run. Waits while no batch is available. Returns nullopt when the pool has
+  /// ended.
   std::optional<Batch> take();
 
-  /// The same for a thread of another rank, which must ask again later where none is to be had now.
+  /// Answer to a thread of another rank that requests a batch: a batch, `later` if none is
+  /// available now and the thread must request one again, or `none` if the pool has ended.
   enum class Offer { batch, later, none };
   Offer offer(int rank, Batch& batch);
 
-  /// cpu_s: what the thread has spent since its last delivery. Merges what can be merged.
+  /// Accepts the sums of a finished batch, and merges all finished batches whose predecessors are
+  /// merged. cpu_s: processor time that the thread has used since its last delivery.
   void deliver(const Batch& batch, std::vector<Complex> sums, double cpu_s);
 
-  /// A thread has given up its batch, for a signal came: the runs end as interrupted.
+  /// Ends the pool as interrupted. To be called after a thread has abandoned its batch because of a
+  /// signal.
   void interrupt();
 
-  /// A thread threw: no more batches are handed out, and finish() throws this.
+  /// Ends the pool because a thread has thrown the exception `error`, which finish() rethrows.
   void fail(std::exception_ptr error);
 
-  /// Shows how the work gets on, where that is due.
+  /// Prints the progress if the last progress line is old enough (Progress::due()).
   void show_progress();
 
-  /// After the last delivery.
+  /// Ends the pool and returns its outcome. To be called after the last delivery.
   PoolEnd finish();
 
  private:
@@ -53,8 +58,9 @@ class BatchPool {
     std::vector<Complex> values;
     double cpu_s;
   };
-  /// What is known of a run between its first and last batch. The merger and the state belong to
-  /// the one thread that has set `merging`, all else to who holds the lock.
+  /// State of a run from its first to its last batch. `merger` and the RunState may be used only by
+  /// the thread that has set `merging`; all other members only by a thread that has locked the
+  /// mutex.
   struct Run {
     std::shared_ptr<const BatchJob> job;
     std::unique_ptr<RunMerger> merger;
@@ -62,11 +68,12 @@ class BatchPool {
     std::map<std::uint64_t, Sums> waiting;
     bool merging = false;
     double cpu_s = 0, cpu_s_left = 0;
-    std::set<int> ranks;  ///< that have had a batch of it, and so its job
+    /// Ranks that have received batches of the run, and therefore have made its job.
+    std::set<int> ranks;
   };
   using Runs = std::map<std::size_t, std::shared_ptr<Run>>;
 
-  void look_for_end();
+  void check_for_end();
   bool may_take(const Run& run) const;
   enum class Use { own, nobodys, others };
   static Use use_of(const Run& run, int rank);
@@ -92,32 +99,37 @@ class BatchPool {
   std::condition_variable changed_;
   Runs runs_;
   std::size_t next_run_ = 0, opening_ = 0, ended_ = 0;
-  std::size_t idle_ = 0;  ///< that needed no work
+  std::size_t idle_ = 0;  ///< number of runs that needed no work, such as finished runs
   double cpu_s_ = 0, ended_cpu_s_ = 0, first_samples_ = 0, new_samples_ = 0;
   double last_error_ = std::numeric_limits<double>::infinity();
   std::optional<StopReason> stopped_;
   std::exception_ptr error_;
 };
 
-/// Rank 0's side of a pool that all ranks work on: it alone opens runs, merges and writes; the
-/// others only compute the batches that it hands out.
+/// Server on rank 0 for a pool whose batches are computed by all ranks (MPI processes). Only rank 0
+/// opens runs, merges batches and writes results; the other ranks only compute batches that rank 0
+/// sends them.
 class RankServer {
  public:
-  /// Hands batches of the pool to the threads of the other ranks until it is over and each of them
-  /// has been told so. For a thread of its own, beside those that work here.
+  /// Sends batches of the pool to the threads of the other ranks, until the pool has ended and all
+  /// these threads have been notified. Call it in a separate thread, not in one that computes
+  /// batches.
   void serve(BatchPool& pool) { serve(&pool); }
-  /// Tells all that it is over, where no pool comes (any more).
+  /// Notifies all threads of the other ranks that there is no pool to work for, or no further one.
   void dismiss() { serve(nullptr); }
 
  private:
   void serve(BatchPool* pool);
   void take_in(BatchPool* pool, int rank, const std::vector<std::byte>& message);
 
-  int threads_ = 0;        ///< of other ranks that have not been told
-  int silent_ranks_ = -1;  ///< that have not said how many threads they have; -1: not counted
+  /// Number of threads of the other ranks that have not been notified that the pool has ended.
+  int threads_ = 0;
+  /// Number of ranks that have not yet sent their number of threads; -1 before serve() counts them.
+  int silent_ranks_ = -1;
 };
 
-/// On every other rank: works on batches that rank 0 hands out, until all is over.
+/// Computes batches that rank 0 sends, until the pool has ended. To be called by every rank except
+/// rank 0.
 void work_for_rank_0(const RunList& runs, int threads);
 
 }  // namespace flatspeckle

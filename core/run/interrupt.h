@@ -5,16 +5,19 @@
 
 namespace flatspeckle {
 
-/// After this, SIGINT, SIGTERM, SIGHUP and SIGXCPU (processor time runs out) end the program at
-/// once with exit status 130, and neither a closed pipe nor a limit on the size of files ends it:
-/// writing fails. SIGUSR1, by which batch systems warn before they end a program, is ignored.
+/// Makes SIGINT, SIGTERM, SIGHUP and SIGXCPU (processor time exceeded) end the program at once with
+/// exit status 130. Writing to a closed pipe or beyond a limit on file sizes fails, but does not
+/// end the program. SIGUSR1, which batch systems send shortly before they end a program, is
+/// ignored.
 void set_signals();
 
-/// After this, SIGINT, SIGTERM, SIGHUP, SIGXCPU and SIGUSR1 set a flag that ends runs after the
-/// batches in hand; a second signal ends the program at once, but SIGXCPU.
+/// Makes SIGINT, SIGTERM, SIGHUP, SIGXCPU and SIGUSR1 set the flag that interrupted() returns, so
+/// that runs end after their current batches. A second signal, except SIGXCPU, ends the program at
+/// once.
 void catch_interrupts();
 
-/// A file that is removed, too, where the program ends with 130 while this lives.
+/// Registers a file to be removed if a signal ends the program (exit status 130) during the
+/// lifetime of this object.
 class RemovedIfEnded {
  public:
   explicit RemovedIfEnded(const std::string& path);
@@ -26,23 +29,25 @@ class RemovedIfEnded {
   std::size_t place_;
 };
 
-/// While one lives, the end at once waits: what is on the disk and what RemovedIfEnded knows of it
-/// change together.
-class EndsLater {
+/// During the lifetime of this object, signals do not end the program at once but only afterwards,
+/// so that a file and its registration by RemovedIfEnded can be changed together.
+class DelayedTermination {
  public:
-  EndsLater();
-  EndsLater(const EndsLater&) = delete;
-  EndsLater& operator=(const EndsLater&) = delete;
-  ~EndsLater();
+  DelayedTermination();
+  DelayedTermination(const DelayedTermination&) = delete;
+  DelayedTermination& operator=(const DelayedTermination&) = delete;
+  ~DelayedTermination();
 };
 
-/// After this no signal ends the program at once: its result is there, and the end near.
-void result_is_there();
+/// Makes the program ignore signals that would end it at once. To be called at the end, when the
+/// result is already written.
+void ignore_termination_signals();
 
-/// Whether a signal has come since catch_interrupts().
+/// Whether a signal has arrived since catch_interrupts().
 bool interrupted();
 
-/// What a long batch throws where it stops half-way, for a signal has come: that batch is lost.
+/// Exception of work that stops early because of a signal, such as a long batch, whose result is
+/// then lost.
 struct Interrupted {};
 inline void stop_if_interrupted() {
   if (interrupted()) throw Interrupted{};

@@ -8,9 +8,10 @@
 
 namespace flatspeckle {
 
-/// body(i) for i = 0 .. count - 1 over the threads of OpenMP, or in order on this thread within
-/// a parallel region, also one of a single thread. Indices are handed out one by one. The first
-/// exception is thrown again here, and what has not begun by then is left out.
+/// Calls body(i) for i = 0 .. count - 1, distributed over the threads of OpenMP. Within a parallel
+/// region of OpenMP, even one with a single thread, all calls are made in order by the calling
+/// thread. Each thread takes the next index when it is free. The first exception thrown by body is
+/// rethrown to the caller; calls that have not begun by then are skipped.
 template <typename Body>
 void parallel_for(std::size_t count, const Body& body) {
   std::exception_ptr failure;
@@ -27,10 +28,11 @@ void parallel_for(std::size_t count, const Body& body) {
   if (failure) std::rethrow_exception(failure);
 }
 
-/// The same, in order on this thread unless that is `worthwhile`.
+/// Calls body(i) for i = 0 .. count - 1, in parallel as the function above if use_threads is true,
+/// otherwise in order on the calling thread.
 template <typename Body>
-void parallel_for(std::size_t count, bool worthwhile, const Body& body) {
-  if (worthwhile) return parallel_for(count, body);
+void parallel_for(std::size_t count, bool use_threads, const Body& body) {
+  if (use_threads) return parallel_for(count, body);
   for (std::size_t i = 0; i < count; ++i) body(i);
 }
 

@@ -10,7 +10,7 @@ namespace flatspeckle {
 
 namespace {
 
-/// "34 s", "12 min", "5.2 h", "3.1 d".
+/// Returns a duration, given in seconds, as text such as "34 s", "12 min", "5.2 h" or "3.1 d".
 std::string duration(double seconds) {
   struct Unit {
     double length, most;
@@ -56,7 +56,7 @@ void Progress::update(double wall_s, const Figures& figures) {
   next_ = wall_s + (terminal_ ? 0.2 : std::clamp(0.02 * wall_s, 10.0, 600.0));
   if (unit_.empty()) {
     begin_line();
-    std::fprintf(stderr, "solving for %s%s", duration(wall_s).c_str(), terminal_ ? "" : "\n");
+    std::fprintf(stderr, "solving, %s so far%s", duration(wall_s).c_str(), terminal_ ? "" : "\n");
     return;
   }
   show(figures);

@@ -5,23 +5,27 @@
 
 namespace flatspeckle {
 
-/// Says on standard error how long work gets on: a line that renews itself on a terminal; elsewhere
-/// a line every ten seconds at first, then ever more rarely. Silent without a label.
+/// Prints progress on standard error. On a terminal, a single line is updated; otherwise a new line
+/// is printed, at first every ten seconds and later at longer intervals. If the label is empty,
+/// nothing is printed.
 class Progress {
  public:
-  /// unit: what the samples are called; empty where there is nothing to count.
+  /// unit: name of what is counted, such as "samples"; empty if nothing is counted.
   explicit Progress(std::string label, std::string unit = "samples");
 
   struct Figures {
-    std::string done;  ///< of the parts, as "3 of 40 points"; empty where there is one
+    /// Text about the finished parts of the work, such as "3 of 40 points"; empty if the work has
+    /// one part.
+    std::string done;
     double samples = 0, rate = 0;
-    double error = std::numeric_limits<double>::infinity();  ///< relative; infinite: not known
+    /// Relative error of the result so far; infinite if unknown.
+    double error = std::numeric_limits<double>::infinity();
     double seconds_left = std::numeric_limits<double>::infinity();
   };
-  /// Whether it is time for another line, `wall_s` seconds after the start.
+  /// Whether a progress line should be printed now, `wall_s` seconds after the start of the work.
   bool due(double wall_s) const;
   void update(double wall_s, const Figures& figures);
-  /// Leaves the end standing on its own line.
+  /// Prints the final figures on a new line that stays.
   void finish(double wall_s, const Figures& figures);
 
  private:

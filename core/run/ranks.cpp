@@ -27,7 +27,7 @@ int number_in_environment(const char* first, const char* second, int otherwise) 
 }  // namespace
 
 Ranks launched_ranks() {
-  // of Open MPI, and of those that speak PMI (MPICH, srun)
+  // environment variables that Open MPI sets, and those of launchers that use PMI (MPICH, srun)
   return {.rank = number_in_environment("OMPI_COMM_WORLD_RANK", "PMI_RANK", 0),
           .size = number_in_environment("OMPI_COMM_WORLD_SIZE", "PMI_SIZE", 1)};
 }
@@ -40,7 +40,8 @@ const Ranks& ranks() {
 
 namespace {
 
-/// Processes on this machine that may use one of our cores.
+/// Returns the number of MPI processes on this machine that may run on a core on which this process
+/// may run.
 int count_sharers() {
   MPI_Comm machine;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
@@ -74,8 +75,9 @@ void send(int to, std::span<const std::byte> bytes) {
 
 }  // namespace
 
-void join_ranks() {
-  if (launched_ranks().size < 2) return;  // joining alone would start a launcher
+void initialize_ranks() {
+  // A single process must not initialise MPI, which would start a launcher.
+  if (launched_ranks().size < 2) return;
   int threads = MPI_THREAD_SINGLE;
   MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &threads);
   MPI_Comm_rank(MPI_COMM_WORLD, &world.rank);
@@ -105,7 +107,7 @@ void answer(int rank, std::span<const std::byte> bytes) {
   send(rank, bytes);
 }
 
-Bytes ask(std::span<const std::byte> bytes) {
+Bytes query_rank_0(std::span<const std::byte> bytes) {
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   send(0, bytes);
@@ -116,11 +118,11 @@ Bytes ask(std::span<const std::byte> bytes) {
 
 #else
 
-void join_ranks() {
+void initialize_ranks() {
   if (launched_ranks().size > 1)
     throw InputError("started as " + std::to_string(launched_ranks().size) +
                      " processes, but this program was built without MPI "
-                     "(-DFLATSPECKLE_MPI=ON); --shard i/n needs none");
+                     "(-DFLATSPECKLE_MPI=ON); --shard i/n works without MPI");
 }
 
 void leave_ranks() {}
@@ -129,7 +131,7 @@ std::optional<Message> next_message() {
   return std::nullopt;
 }
 void answer(int, std::span<const std::byte>) {}
-Bytes ask(std::span<const std::byte>) {
+Bytes query_rank_0(std::span<const std::byte>) {
   return {};
 }
 

@@ -7,30 +7,35 @@
 
 namespace flatspeckle {
 
-/// The processes that a launcher of MPI (mpirun) has started together, of which this is one. Only
-/// core/run/ranks.cpp knows MPI; without it, or started alone, there is one rank.
+/// Position of this process among the processes that an MPI launcher (mpirun) has started together.
+/// If the program was built without MPI or started without a launcher, there is one process, with
+/// rank 0. Only core/run/ranks.cpp uses MPI.
 struct Ranks {
   int rank = 0, size = 1;
-  int sharers = 1;  ///< of the cores that this process may use, itself included
+  /// Number of processes that run on the same processor cores as this one, including this one.
+  int sharers = 1;
 };
 
-/// What the launcher's environment says of this process, before it has joined the others.
+/// Returns rank and number of processes from environment variables of the launcher; can be called
+/// before initialize_ranks().
 Ranks launched_ranks();
 
-/// Joins the others. Throws InputError where there are others but this program knows no MPI.
-void join_ranks();
-/// All leave together.
+/// Initialises MPI if the launcher has started several processes. Throws InputError if the program
+/// was built without MPI.
+void initialize_ranks();
+/// Finalises MPI; all processes must call this function.
 void leave_ranks();
-/// Ends all processes at once with this exit status, where there are several.
+/// Ends all processes at once with this exit status. If there is only one process, does nothing.
 void abort_ranks(int status);
 
-/// This process among those that it has joined.
+/// Returns the rank of this process and the number of processes, once initialize_ranks() was
+/// called.
 const Ranks& ranks();
 
 using Bytes = std::vector<std::byte>;
 
-/// Of rank 0: a message that has come in, if there is one, and the answer to it. One thread at a
-/// time.
+/// Message that another rank has sent to rank 0. On rank 0, next_message() returns the next message
+/// that has arrived, if any, and answer() replies to it; neither is thread-safe.
 struct Message {
   int from = 0;
   Bytes bytes;
@@ -38,7 +43,8 @@ struct Message {
 std::optional<Message> next_message();
 void answer(int rank, std::span<const std::byte> bytes);
 
-/// Of any other rank: sends a message to rank 0 and waits for the answer. For any thread.
-Bytes ask(std::span<const std::byte> bytes);
+/// Sends a message to rank 0, waits for the answer and returns it; to be called on other ranks.
+/// Thread-safe.
+Bytes query_rank_0(std::span<const std::byte> bytes);
 
 }  // namespace flatspeckle

@@ -8,8 +8,10 @@ namespace flatspeckle {
 
 namespace {
 
-/// Batches at which the error is looked at: 8, 10, 12, ... growing by a seventh each time. They
-/// depend on nothing but the number of batches, so a run that stops at a target is reproducible.
+/// Returns the next checkpoint after this number of batches. Checkpoints, at which the error is
+/// compared with the target, are at 8, 10, 12, ... batches; each is a seventh, at least two, above
+/// the previous one. They do not depend on time, so that the number of batches of a run is
+/// reproducible.
 std::uint64_t checkpoint_after(std::uint64_t batches) {
   std::uint64_t next = 8;
   while (next <= batches) next += std::max<std::uint64_t>(2, next / 7);
@@ -28,7 +30,7 @@ std::uint64_t batch_limit(const StopRule& stop, double samples_per_batch) {
 
 }  // namespace
 
-bool asks_more(const StopRule& stop, const BatchJob& job, const Trace& trace) {
+bool requires_more(const StopRule& stop, const BatchJob& job, const Trace& trace) {
   if (trace.samples.empty()) return true;
   const double batches = std::round(trace.samples.back() / job.samples_per_batch);
   const bool enough_samples =
@@ -53,8 +55,8 @@ RunMerger::RunMerger(const BatchJob& job, const StopRule& stop, RunState& state)
   if (!ended_) drop_odd_row();
 }
 
-/// The row that settle() added when the run stopped between checkpoints: a run that is resumed has
-/// the same trace as one that never stopped.
+/// Removes the last row of the trace if settle() has added it between checkpoints when the run
+/// stopped. A resumed run then has the same trace as a run that never stopped.
 void RunMerger::drop_odd_row() {
   Trace& trace = state_.trace;
   if (trace.samples.empty()) return;
@@ -74,13 +76,14 @@ void RunMerger::add(std::span<const Complex> sums, double cpu_s) {
   if (state_.sums.batches() == next_checkpoint_) {
     record_error();
     next_checkpoint_ = checkpoint_after(next_checkpoint_);
-    if (is_in_vain()) ended_ = StopReason::samples;
+    if (cannot_converge()) ended_ = StopReason::samples;
   }
   decide();
 }
 
-/// Where many batches found nothing, and nothing but an error of it would end the run.
-bool RunMerger::is_in_vain() const {
+/// Whether the run would never end, because a target error is its only stop criterion, and no error
+/// can be estimated from many batches, all of them equal.
+bool RunMerger::cannot_converge() const {
   constexpr std::uint64_t many = 16 * trusted_batches;
   return state_.sums.batches() >= many && std::isinf(error()) && !stop_.seconds && !stop_.samples;
 }
@@ -123,9 +126,9 @@ void RunMerger::settle() {
   if (state_.trace.samples.empty() || state_.trace.samples.back() != samples_) record_error();
 }
 
-/// Infinite where no spread has been seen that the error could be taken from.
+/// Returns the relative error; infinite if it cannot be estimated because all batches are equal.
 double RunMerger::relative_error() const {
-  constexpr double none = 1e-10;  // no sampling gets there
+  constexpr double none = 1e-10;  // random sampling cannot attain an error as small as this
   const double error = job_.relative_error(state_.sums);
   const bool is_blind = error < none && found_nothing(job_, state_.sums);
   return is_blind ? std::numeric_limits<double>::infinity() : error;

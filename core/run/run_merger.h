@@ -5,37 +5,41 @@
 
 namespace flatspeckle {
 
-/// Merges the batches of one run, which come in number order, notes how its error falls, and
-/// decides when there are enough of them. That depends on their numbers alone. One thread at a
-/// time.
+/// Adds the batches of one run to its sums in the order of their numbers, records the error of the
+/// run at checkpoints (certain numbers of batches), and decides when the run has enough batches.
+/// This decision depends only on the batches that are already added. Not thread-safe.
 class RunMerger {
  public:
-  /// Goes on from what `state` holds.
+  /// Continues the run from the batches that `state` already contains.
   RunMerger(const BatchJob& job, const StopRule& stop, RunState& state);
 
-  /// Batch number state.sums.batches(). cpu_s: what it cost.
+  /// Adds the sums of the next batch, whose number is state.sums.batches(). cpu_s: processor time
+  /// of the batch.
   void add(std::span<const Complex> sums, double cpu_s);
 
-  /// Set once there are enough batches.
+  /// Returns why the run has ended; nullopt if it needs more batches.
   const std::optional<StopReason>& ended() const { return ended_; }
-  /// No batch from this number on is ever merged.
+  /// Returns the largest number of batches that the run may have.
   std::uint64_t limit() const { return limit_; }
-  /// Batches below this number are merged in any case.
+  /// Returns the number of batches that the run needs at least, whatever their errors turn out to
+  /// be.
   std::uint64_t certain() const;
-  /// Relative, at the last checkpoint; infinite before.
+  /// Returns the relative error of the run at the last checkpoint; infinite before the first
+  /// checkpoint.
   double error() const;
-  /// CPU seconds until the end, guessed from what has been merged; infinite where nothing tells.
+  /// Returns the processor time, in seconds, that the run probably still needs, extrapolated from
+  /// its batches so far; infinite if unknown.
   double cpu_s_left() const;
 
   double seconds_since_saved() const { return clock_.seconds() - saved_; }
-  /// Brings the time of the state up to date.
+  /// Sets the run time in the state to the present, and records that the state was saved now.
   void note_saved();
-  /// Brings time and trace of the state up to date.
+  /// Sets the run time in the state to the present, and adds the present error to its trace.
   void settle();
 
  private:
   void decide();
-  bool is_in_vain() const;
+  bool cannot_converge() const;
   double relative_error() const;
   void record_error();
   void drop_odd_row();
@@ -50,10 +54,10 @@ class RunMerger {
   std::optional<StopReason> ended_;
 };
 
-/// Whether a run that ended with this trace would not have by this rule.
-bool asks_more(const StopRule& stop, const BatchJob& job, const Trace& trace);
+/// Whether a run that has ended with this trace needs more batches to fulfil this stop rule.
+bool requires_more(const StopRule& stop, const BatchJob& job, const Trace& trace);
 
-/// A run of one batch alone would say nothing about its error.
+/// Least number of batches of a run; from a single batch no error can be estimated.
 constexpr std::uint64_t fewest_batches = 2;
 
 }  // namespace flatspeckle

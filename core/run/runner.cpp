@@ -36,7 +36,8 @@ void work(BatchPool& pool) {
   }
 }
 
-/// Shows how a pool gets on, however long its batches are.
+/// Prints the progress of a pool at regular times from a thread of its own, also during long
+/// batches.
 class ProgressWatch {
  public:
   explicit ProgressWatch(BatchPool& pool)
@@ -53,7 +54,8 @@ class ProgressWatch {
 
   std::mutex mutex_;
   std::condition_variable_any ended_;
-  std::jthread thread_;  // last: ends before what it uses
+  // declared last, so that the thread ends before the members that it uses are destroyed
+  std::jthread thread_;
 };
 
 }  // namespace

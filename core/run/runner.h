@@ -12,48 +12,52 @@
 
 namespace flatspeckle {
 
-/// A target error is believed from here on: fewer batches miss the tail of rare strong paths.
+/// Least number of batches before a run may stop because its target error is reached. With fewer
+/// batches the estimated error is unreliable, because rare paths of high weight may be missing.
 inline constexpr std::uint64_t trusted_batches = 256;
 
-/// Random work cut into numbered batches: each a pure function (scene, seed, number) -> sums.
+/// Random sampling divided into numbered batches. The sums of a batch depend only on scene, seed
+/// and number of the batch.
 struct BatchJob {
-  std::size_t size = 0;  ///< complex sums per batch
+  std::size_t size = 0;  ///< number of complex sums that a batch computes
   double samples_per_batch = 1;
-  /// Adds batch `number` to `sums` (zeroed). Called from several threads at once. A long one looks
-  /// whether it is to stop (interrupt.h).
+  /// Computes the batch of this number and writes its sums to `sums`, which are 0 before. Must be
+  /// thread-safe. Long batches should call stop_if_interrupted().
   std::function<void(std::uint64_t number, std::span<Complex> sums)> run;
-  /// Relative error of what has been merged so far; steers the target and fills the trace. Unknown
-  /// unless it is asked for, as of runs that stop at a number of samples.
+  /// Returns the relative error of the result of the batches so far, which is compared with the
+  /// target error and recorded in the trace. By default it is infinite (unknown).
   std::function<double(const GroupedSums&)> relative_error = [](const GroupedSums&) {
     return std::numeric_limits<double>::infinity();
   };
-  /// Batches share their work, a solution without chance: a thread that took the second would wait
-  /// for the first, and their number says nothing.
+  /// Whether all batches use one deterministic solution, computed by the first batch. Batches are
+  /// then computed one after the other, and their number has no meaning.
   bool one_by_one = false;
-  /// Whether nothing is sampled: batches are equal by construction, and errors of 0 are right.
+  /// Whether the job contains no random sampling, so that equal batches and standard errors of 0
+  /// are correct.
   bool deterministic = false;
-  /// Less where there is no such tail.
+  /// Least number of batches before a run may stop because its target error is reached; can be
+  /// smaller for jobs without rare paths of high weight.
   std::uint64_t trusted_batches = flatspeckle::trusted_batches;
 };
 
-/// Whether the batches of a job that samples are all the same to rounding: what it samples has
-/// reached none of its sums, and standard errors of 0 say nothing.
+/// Whether the job samples at random but all its batches are equal up to rounding. Then no sample
+/// has contributed to the sums, and standard errors of 0 are meaningless.
 bool found_nothing(const BatchJob& job, const GroupedSums& sums);
 
-/// When to stop; any that is set may. At least one must be. Samples are rounded up to whole
-/// batches, of which there are always two.
+/// Criteria that stop a run, as soon as one of them is fulfilled; at least one must be set. The
+/// number of samples is rounded up to whole batches, at least two.
 struct StopRule {
   std::optional<std::uint64_t> samples;
   std::optional<double> seconds;
   std::optional<double> target_error;
 };
 
-/// Error against run time, one row per checkpoint. Times are this run's plus those of the runs that
-/// it resumes; CPU seconds are those of all threads.
+/// Error of a run as a function of run time, one row per checkpoint. If the run was resumed, the
+/// times include those before the interruption. CPU seconds are summed over all threads.
 struct Trace {
   std::vector<double> wall_s, cpu_s, samples, relative_error;
 };
-/// All of them, by name.
+/// A column of a Trace: its name in result files, and the member that contains it.
 struct TraceColumn {
   const char* name;
   std::vector<double> Trace::*values;
@@ -65,7 +69,8 @@ inline constexpr TraceColumn trace_columns[] = {{"wall_s", &Trace::wall_s},
 
 enum class StopReason { samples, seconds, target_error, interrupted };
 
-/// Merged batches and how the error fell; everything that is needed to go on later.
+/// State from which a run can be resumed: the sums of its batches, its times, and the trace of its
+/// error.
 struct RunState {
   GroupedSums sums;
   Trace trace;
@@ -75,63 +80,72 @@ struct RunState {
 struct RunOptions {
   StopRule stop;
   int threads = 0;    ///< 0: as many as there are cores
-  std::string label;  ///< shown with the progress; empty: silent
-  /// Called about once a minute with what could be resumed.
+  std::string label;  ///< name of the run in the progress line; if empty, no progress is shown
+  /// Function that is called about once a minute to save the state of the run.
   std::function<void(const RunState&)> checkpoint;
 };
 
-/// Runs batches over threads and merges them in number order, so that the result depends on the
-/// number of batches alone. Goes on from `state` where that holds batches already. SIGINT and
-/// SIGTERM end it after the batches in hand.
+/// Computes the batches of a run in parallel threads and adds them in the order of their numbers,
+/// so that the result depends only on the number of batches. Continues the run from the batches in
+/// `state`. SIGINT and SIGTERM end the run after the current batches.
 StopReason run_batches(const BatchJob& job, const RunOptions& options, RunState& state);
 
-/// Runs batches as run_batches() does, for work that needs all of them: throws Interrupted where a
-/// signal ends it before.
+/// Computes a run like run_batches(), but throws Interrupted if a signal ends the run early; for
+/// work that needs all batches.
 void run_to_end(const BatchJob& job, const RunOptions& options, RunState& state);
 
-/// One of many runs, once its turn has come.
+/// One run of a RunList, as returned by RunList::open().
 struct OpenRun {
   BatchJob job;
-  StopRule stop;              ///< `seconds` is not looked at
-  RunState* state = nullptr;  ///< goes on from what it holds; must live until the run has ended
+  StopRule stop;  ///< `seconds` is ignored
+  /// State from which the run continues and which it updates; must exist until the run has ended.
+  RunState* state = nullptr;
 };
 
-/// Runs that are worked on as one pool, so that no thread is idle while there is anything to do:
-/// begun in the order of their numbers, forgotten one by one as they end.
+/// Many runs that are computed together (as a pool), so that no thread is idle while one of the
+/// runs has work. Runs are opened in the order of their numbers, and each is released when it ends.
 struct RunList {
   std::size_t count = 0;
-  /// Any thread calls these, for different runs at once. What they throw ends the pool.
-  /// Nothing where the run needs no work.
+  /// Opens the run of this number; returns nullopt if it needs no work. This and the following
+  /// functions may be called by several threads at once for different runs; an exception ends the
+  /// pool.
   std::function<std::optional<OpenRun>(std::size_t run)> open;
   std::function<void(std::size_t run, StopReason)> ended;
-  /// Called once in a while, while the state stands still, to save what could be resumed.
+  /// Called from time to time to save the state of the run, which does not change during the call.
   std::function<void(std::size_t run)> checkpoint;
-  /// The job alone, for other processes; only needed with a server.
+  /// Returns the job of a run, for other processes; needed only if PoolOptions::server is set.
   std::function<BatchJob(std::size_t run)> job = {};
 };
 
 class RankServer;
 
 struct PoolOptions {
-  std::optional<double> seconds;         ///< for all together; every begun run gets two batches
-  int threads = 0;                       ///< 0: as many as there are cores
-  std::string label, run_name = "runs";  ///< for the progress; silent without a label
-  RankServer* server = nullptr;          ///< to other ranks, where they work too
-  double seconds_between_saves = 60;     ///< of each run, by its checkpoint()
-  std::string unit = "samples";          ///< for the progress; empty: they are not worth counting
+  /// Time limit for all runs together. Runs that have begun before the limit are given at least two
+  /// batches.
+  std::optional<double> seconds;
+  int threads = 0;  ///< 0: as many as there are cores
+  /// Name of the work, and name of its runs, in the progress line. If the label is empty, no
+  /// progress is shown.
+  std::string label, run_name = "runs";
+  /// Server that sends batches to other MPI processes; nullptr if there is only one process.
+  RankServer* server = nullptr;
+  double seconds_between_saves = 60;  ///< seconds between calls of RunList::checkpoint() for a run
+  /// Name of the samples in the progress line; if empty, the number of samples is not shown.
+  std::string unit = "samples";
 };
 
-/// reason: samples where all runs have ended, else why they have not.
+/// Outcome of a pool. reason: StopReason::samples if all runs have ended, otherwise the reason why
+/// the pool was stopped before.
 struct PoolEnd {
   StopReason reason = StopReason::samples;
   double wall_s = 0, cpu_s = 0;
 };
 
-/// What a run's state holds at its end depends on its own job and stop rule alone. Runs that have
-/// not ended when the pool does can go on from their states later.
+/// Computes all runs of the list. The final state of a run depends only on its own job and stop
+/// rule. If the pool is stopped early, the other runs can be resumed from their states.
 PoolEnd run_pool(const RunList& runs, const PoolOptions& options);
 
-/// Cores that this process may use.
+/// Returns the number of cores that this process may use.
 int default_threads();
 
 }  // namespace flatspeckle

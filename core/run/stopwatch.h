@@ -11,17 +11,17 @@ inline double cpu_seconds(clockid_t clock) {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
-/// CPU seconds of the calling thread. Exact, where the clock of the whole process knows of other
-/// threads only what the scheduler last wrote down.
+/// Returns the CPU seconds of the calling thread. This time is exact, whereas process_cpu_seconds()
+/// counts the time of other running threads only up to their last update by the scheduler.
 inline double thread_cpu_seconds() {
   return cpu_seconds(CLOCK_THREAD_CPUTIME_ID);
 }
-/// Of all threads, since the program began.
+/// Returns the CPU seconds of all threads since the program began.
 inline double process_cpu_seconds() {
   return cpu_seconds(CLOCK_PROCESS_CPUTIME_ID);
 }
 
-/// Wall-clock seconds since construction, plus an offset.
+/// Clock that measures wall-clock seconds since its construction, plus an offset.
 class Stopwatch {
  public:
   explicit Stopwatch(double offset = 0) : offset_(offset) {}

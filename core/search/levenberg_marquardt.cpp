@@ -15,7 +15,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Normal equations, in which what a bound holds back has no say.
+/// Normal equations of a step. Parameters at a bound that would move beyond it are kept fixed.
 struct NormalEquations {
   MatrixXd matrix;
   VectorXd descent;
@@ -92,12 +92,13 @@ LeastSquaresFit levenberg_marquardt(const BoundedLeastSquares& problem, const Ve
 
 namespace {
 
-constexpr double step = 1e-3;  ///< of differences, over the distance of the bounds
+/// Step of finite differences, relative to the distance of the bounds.
+constexpr double step = 1e-3;
 
 }  // namespace
 
-std::optional<Invariant> check_slope(const BoundedLeastSquares& problem,
-                                     const LeastSquaresFit& fit) {
+std::optional<Invariant> check_derivative(const BoundedLeastSquares& problem,
+                                          const LeastSquaresFit& fit) {
   const VectorXd range = problem.upper - problem.lower;
   Index i = 0;
   (fit.jacobian * range.asDiagonal()).colwise().norm().maxCoeff(&i);
@@ -108,22 +109,24 @@ std::optional<Invariant> check_slope(const BoundedLeastSquares& problem,
   if (!(size > 0) || below[i] < problem.lower[i] || above[i] > problem.upper[i])
     return std::nullopt;
   const VectorXd low = problem.residuals(below), high = problem.residuals(above);
-  constexpr double rounding = 1e-3;  // of residuals, and of differences of higher order
+  // Allowed relative difference due to rounding errors of the residuals and their higher
+  // derivatives.
+  constexpr double rounding = 1e-3;
   const double bent = (high + low - 2 * fit.residuals).norm() / (2 * width);
   return Invariant{(fit.jacobian.col(i) - (high - low) / (2 * width)).norm() / size,
                    rounding + 2 * bent / size};
 }
 
 MatrixXd jacobian(const BoundedLeastSquares& problem, const VectorXd& at, const VectorXd& here) {
-  MatrixXd slopes(here.size(), at.size());
+  MatrixXd derivatives(here.size(), at.size());
   for (Index i = 0; i < at.size(); ++i) {
     const double range = problem.upper[i] - problem.lower[i],
                  sign = 2 * at[i] > problem.lower[i] + problem.upper[i] ? -1 : 1;
     VectorXd next = at;
     next[i] += sign * step * range;
-    slopes.col(i) = (problem.residuals(next) - here) / (next[i] - at[i]);
+    derivatives.col(i) = (problem.residuals(next) - here) / (next[i] - at[i]);
   }
-  return slopes;
+  return derivatives;
 }
 
 std::vector<VectorXd> best_starts(const BoundedLeastSquares& problem,
@@ -165,7 +168,8 @@ Information information_of(const BoundedLeastSquares& problem, const MatrixXd& f
   Information found;
   found.worst = combinations.col(0);
   found.best = combinations.col(last);
-  constexpr double nothing = 1e-12;  // known to a million times the distance of the bounds
+  // corresponds to an error of a million times the distance of the bounds
+  constexpr double nothing = 1e-12;
   const double least = std::max(nothing, known[last] * std::numeric_limits<double>::epsilon());
   const bool all_known = known[0] > least;
   found.condition = all_known ? known[last] / known[0] : std::numeric_limits<double>::infinity();

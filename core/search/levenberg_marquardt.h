@@ -10,20 +10,21 @@
 
 namespace flatspeckle {
 
-/// A least-squares problem within bounds. Residuals are in standard errors.
+/// A least-squares problem: minimise the sum of the squares of residuals(parameters), with bounds
+/// of the parameters. Residuals are in units of the standard errors.
 struct BoundedLeastSquares {
   std::function<Eigen::VectorXd(const Eigen::VectorXd&)> residuals;
-  /// Derivatives of the residuals, [residual][parameter], at a point of known residuals; asked for
-  /// at accepted points alone.
+  /// Returns the derivatives of the residuals as a matrix [residual][parameter]. It is given the
+  /// parameters and the residuals there, and is called only for accepted parameters.
   std::function<Eigen::MatrixXd(const Eigen::VectorXd&, const Eigen::VectorXd& residuals)> jacobian;
   Eigen::VectorXd lower, upper;
 };
 
 struct LeastSquaresFit {
-  /// An accepted point.
+  /// Parameters that the search has accepted, and chi^2 there.
   struct Step {
     Eigen::VectorXd parameters;
-    double chi_squared, cpu_s;  ///< of this process, so far
+    double chi_squared, cpu_s;  ///< cpu_s: processor seconds that this process had used by then
   };
   Eigen::VectorXd parameters, residuals;
   Eigen::MatrixXd jacobian;
@@ -34,56 +35,64 @@ struct LeastSquaresFit {
   double chi_squared() const { return residuals.squaredNorm(); }
 };
 
-/// Levenberg's and Marquardt's steps, cut off at the bounds; a parameter that its bound holds back
-/// takes no part in a step. Converged: the last step has lessened chi^2 by less than `tolerance`,
-/// or the next one would be shorter than its root, in standard errors.
+/// Minimises chi^2 by Levenberg-Marquardt steps that are clipped at the bounds. A parameter at a
+/// bound that would move beyond it is kept fixed in that step. The search has converged if the last
+/// step has reduced chi^2 by less than `tolerance`, or if the next step is shorter than
+/// sqrt(tolerance) standard errors.
 LeastSquaresFit levenberg_marquardt(const BoundedLeastSquares& problem,
                                     const Eigen::VectorXd& start, int most_iterations = 60,
                                     double tolerance = 1e-6);
 
-/// The step from a point of known residuals and jacobian; what a bound holds back takes no part.
+/// Returns the damped Gauss-Newton step from the parameters of `at`, whose residuals and Jacobian
+/// are known. Parameters at a bound that would move beyond it are kept fixed.
 Eigen::VectorXd damped_step(const BoundedLeastSquares& problem, const LeastSquaresFit& at,
                             double damping);
 
-/// Derivatives by coordinates, in differences towards the middle, for a bound may be the end of
-/// what can be computed. residuals: at a point; here: those of `at`.
+/// Returns the Jacobian of the residuals by one-sided finite differences. Each difference is taken
+/// towards the middle of the bounds, because the model may not be defined beyond them. here:
+/// residuals at the parameters `at`.
 Eigen::MatrixXd jacobian(const BoundedLeastSquares& problem, const Eigen::VectorXd& at,
                          const Eigen::VectorXd& here);
 
-/// Compares the jacobian of a fit with central differences of the residuals, by the parameter that
-/// these determine best; the limit follows from the curvature there. Returns nullopt beside a
-/// bound.
-std::optional<Invariant> check_slope(const BoundedLeastSquares& problem,
-                                     const LeastSquaresFit& fit);
+/// Checks one column of the Jacobian of a fit, that of the parameter which the residuals determine
+/// best, against central finite differences. The limit of the invariant follows from the curvature
+/// of the residuals. Returns nullopt if the parameter is too close to a bound.
+std::optional<Invariant> check_derivative(const BoundedLeastSquares& problem,
+                                          const LeastSquaresFit& fit);
 
-/// Of all starts, those of the least chi^2.
+/// Returns the `most` start points of least chi^2, or all if there are fewer.
 std::vector<Eigen::VectorXd> best_starts(const BoundedLeastSquares& problem,
                                          const std::vector<Eigen::VectorXd>& starts,
                                          std::size_t most);
 
-/// The least chi^2 of all starts, of those that converged if any did.
+/// Fits from each start point, and returns the fit of least chi^2 among the converged fits, or
+/// among all fits if none has converged.
 LeastSquaresFit best_fit(const BoundedLeastSquares& problem,
                          const std::vector<Eigen::VectorXd>& starts, int most_iterations = 60,
                          double tolerance = 1e-6);
 
-/// What measurements say of the parameters, linear about a point: of the Fisher information J^T J
-/// of residuals in standard errors. A combination of which they tell nothing has an error of up to
-/// a million times the distance of the bounds.
+/// Errors and correlations of fitted parameters, from the Fisher information J^T J, where J is the
+/// Jacobian of residuals in units of the standard errors. The error of a combination of parameters
+/// that is not determined is limited to a million times the distance of the bounds.
 struct Information {
   Eigen::MatrixXd covariance, correlation;
-  double condition = 0;  ///< of the information of parameters in units of the distance of bounds
-  Eigen::VectorXd best, worst;  ///< known combinations of those, of length 1
+  /// Condition number of the Fisher matrix for parameters in units of the distance of their bounds.
+  double condition = 0;
+  /// Combinations of the parameters that are determined best and worst, as vectors of length 1.
+  Eigen::VectorXd best, worst;
 
   Eigen::VectorXd errors() const { return covariance.diagonal().cwiseSqrt(); }
 };
 
-/// The mean of chi^2 at the best fit of a linear model, its degrees of freedom: of residuals whose
-/// errors have this covariance. Residuals less parameters, where that is the identity.
+/// Returns the expectation of chi^2 of the best fit (the degrees of freedom) if the model is
+/// linear. errors: covariance matrix of the residuals; if it is the identity, the result is the
+/// number of residuals minus the number of parameters.
 double expected_chi_squared(const Eigen::MatrixXd& errors, const Eigen::MatrixXd& jacobian);
 
-/// An infinite condition where a combination is not known at all.
+/// Returns errors and correlations of the parameters from a Jacobian. The condition number is
+/// infinite if a combination of parameters is not determined.
 Information information(const BoundedLeastSquares& problem, const Eigen::MatrixXd& jacobian);
-/// fisher: J^T J.
+/// Returns errors and correlations of the parameters from a Fisher matrix J^T J.
 Information information_of(const BoundedLeastSquares& problem, const Eigen::MatrixXd& fisher);
 
 }  // namespace flatspeckle

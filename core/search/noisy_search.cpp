@@ -33,7 +33,8 @@ std::vector<GroupedSums> without_blocks(const GroupedSums& sums, std::size_t blo
 
 namespace {
 
-/// No exception may pass through the library, which is C.
+/// Data that NLopt passes to the callback called(). Exceptions are stored in `failure`, because
+/// they must not pass through NLopt, a C library.
 struct LocalCall {
   const std::function<std::optional<double>(const UnitPlace&)>& value;
   nlopt_opt optimiser = nullptr;
@@ -59,22 +60,26 @@ Measured combined(const Measured& a, const Measured& b, auto&& of) {
   return made;
 }
 
-constexpr double growth = 4;  ///< of samples, where differences are not seen
+/// Factor by which the number of samples is increased while differences are not significant.
+constexpr double growth = 4;
 
-/// The root of x^(d+1) = x + 1.
+/// Returns the solution x of x^(d+1) = x + 1, where d is the number of dimensions (sequence of
+/// Roberts).
 double root_of(std::size_t dimensions) {
   double x = 2;
   for (int i = 0; i < 60; ++i) x = std::pow(1 + x, 1 / static_cast<double>(dimensions + 1));
   return x;
 }
 
-/// Where places are scattered: a part of the unit cube, and what lies outside of it on its faces.
+/// Box that the points of a scan fill, and the discrete choices at these points. It may extend
+/// beyond the unit cube; points outside the cube are moved to its faces.
 struct SearchBox {
   UnitPlace low, high;
   std::vector<std::size_t> choices;
 };
 
-/// All of it, and its faces, where maxima often are.
+/// Returns a box that is larger than the unit cube by a margin. Points in the margin are moved to
+/// the faces of the cube, where maxima often are.
 SearchBox all_of(const SearchTask& task) {
   constexpr double margin = 0.05;
   SearchBox box{UnitPlace(task.dimensions, -margin), UnitPlace(task.dimensions, 1 + margin), {}};
@@ -82,8 +87,9 @@ SearchBox all_of(const SearchTask& task) {
   return box;
 }
 
-/// So many, but for those that were there before. Each choice has places that follow one another in
-/// the sequence, which are spread as evenly as all.
+/// Returns `count` points that fill the box evenly, except those that `before` contains, and adds
+/// them to `before`. Each discrete choice receives consecutive points of the sequence, which also
+/// fill the box evenly.
 std::vector<SearchPlace> scattered_places(const SearchBox& box, std::size_t count,
                                           std::set<SearchPlace>& before) {
   const std::size_t dimensions = box.low.size();
@@ -103,7 +109,8 @@ std::vector<SearchPlace> scattered_places(const SearchBox& box, std::size_t coun
   return places;
 }
 
-/// Largest of the distances along the axes; of other choices infinite.
+/// Returns the distance of two points in the maximum norm; infinite if their discrete choices
+/// differ.
 double distance(const SearchPlace& a, const SearchPlace& b) {
   if (a.choice != b.choice) return std::numeric_limits<double>::infinity();
   double largest = 0;
@@ -130,8 +137,8 @@ std::vector<FoundPlace> measured_at(const SearchTask& task, const std::vector<Se
   return found;
 }
 
-/// Around the best tenth of these, with a margin that reaches the faces of the cube near by;
-/// choices as often as they are among them.
+/// Returns a box around the best tenth of these points, with a margin. The discrete choices of the
+/// box are those of the best tenth, equally often.
 SearchBox around_best(std::vector<FoundPlace> places) {
   constexpr double margin = 0.1;
   const std::size_t count = std::max(places.size() / 10, places.front().place.at.size() + 1);
@@ -154,7 +161,7 @@ SearchBox around_best(std::vector<FoundPlace> places) {
   return box;
 }
 
-/// The search around one of the scattered places, round by round.
+/// Local search that starts at one of the points of the scan and proceeds in rounds.
 class RefinedSearch {
  public:
   RefinedSearch(const SearchTask& task, const SearchSettings& settings, FoundPlace start,
@@ -165,9 +172,11 @@ class RefinedSearch {
   double step() const { return step_; }
   bool has_ended() const { return ended_; }
 
-  /// Goes to the maximum of a quadratic model, and judges what could be seen of it.
+  /// Makes one round of the search: a local search with a fixed number of samples, after which the
+  /// step or the number of samples is adapted to the noise.
   void go_on() {
-    constexpr double finest = 1.0 / 8;  // of a round's steps
+    // last step of the local search of a round, relative to its first step
+    constexpr double finest = 1.0 / 8;
     const int most = 8 * static_cast<int>(task_->dimensions) + 8;
     around_ = measured_at(*task_, {best_.place}, {best_.samples});
     local_search(best_.place.at, step_, finest * step_, most, [&](const UnitPlace& at) {
@@ -184,7 +193,7 @@ class RefinedSearch {
     const auto [seen, noise] = typical();
     if (seen >= least_seen) {
       step_ /= noise > 0 ? 2 : 4;
-    } else {  // a smaller step would see less, and go astray
+    } else {  // with a smaller step, noise would dominate the differences
       ended_ = noise <= settings_->target_error / 2 * std::abs(best_.measured.value) ||
                best_.samples * growth > settings_->most_samples;
       if (!ended_) best_.samples *= growth;
@@ -192,9 +201,9 @@ class RefinedSearch {
     ended_ = ended_ || step_ < settings_->tolerance;
   }
 
-  /// How well places that the search came to are told from those that it came to before, in
-  /// standard errors, and what those are. The best is left out: chosen for its value, it seems to
-  /// be told from all others where there is noise alone.
+  /// Returns the median, over successive points of the last round, of the difference in standard
+  /// errors, and the median of the standard error. The best point is left out, because it was
+  /// selected by its value and would seem to differ from the others even in pure noise.
   std::pair<double, double> typical() const {
     std::vector<double> seen{}, noise{};
     const FoundPlace* before = nullptr;
@@ -227,7 +236,8 @@ class RefinedSearch {
   bool ended_ = false;
 };
 
-/// The best, none of them close to another.
+/// Returns the `count` best points of the scan, any two of which are more than `apart` from each
+/// other.
 std::vector<FoundPlace> starts_of(std::vector<FoundPlace> scattered, std::size_t count,
                                   double apart) {
   std::ranges::stable_sort(scattered, is_better);
@@ -237,14 +247,15 @@ std::vector<FoundPlace> starts_of(std::vector<FoundPlace> scattered, std::size_t
   return starts;
 }
 
-std::string told(const FoundPlace& best, const SearchTask& task) {
+std::string summary_of(const FoundPlace& best, const SearchTask& task) {
   char text[80];
   std::snprintf(text, sizeof text, "best %.4g +- %.2g",
                 task.negated ? -best.measured.value : best.measured.value, error(best.measured));
   return text;
 }
 
-/// Takes out those that are well below the best or have come to the same place.
+/// Removes searches whose best value is significantly below the best value of all searches, and
+/// searches that have arrived at the same point as a better search.
 void drop_losers(std::vector<RefinedSearch>& searches) {
   constexpr double sure = 3;
   std::ranges::stable_sort(searches, [](const RefinedSearch& a, const RefinedSearch& b) {
@@ -268,13 +279,13 @@ void refine(std::vector<RefinedSearch>& searches, const SearchTask& task) {
     for (RefinedSearch& search : searches)
       if (!search.has_ended()) search.go_on();
     drop_losers(searches);
-    task.tell(std::to_string(searches.size()) +
-              (searches.size() == 1 ? " search, " : " searches, ") +
-              told(searches.front().best(), task));
+    task.report(std::to_string(searches.size()) +
+                (searches.size() == 1 ? " search, " : " searches, ") +
+                summary_of(searches.front().best(), task));
   }
 }
 
-/// Whether there was time for it.
+/// Runs `work`; returns false if `work` has ended with SearchSpent, because the budget was spent.
 template <class Work>
 bool until_spent(const Work& work) {
   try {
@@ -302,7 +313,9 @@ void local_search(const UnitPlace& start, double first, double last, int most,
   nlopt_set_maxeval(optimiser, most);
   UnitPlace at = start;
   double found = 0;
-  nlopt_optimize(optimiser, at.data(), &found);  // whatever ends it, values are known by then
+  // The returned status is not needed, because the caller's function `value` has recorded all
+  // values.
+  nlopt_optimize(optimiser, at.data(), &found);
   if (call.failure) std::rethrow_exception(call.failure);
 }
 
@@ -348,8 +361,8 @@ SearchEnd noisy_search(const SearchTask& task, const SearchSettings& settings) {
   std::vector<RefinedSearch> searches;
   for (const FoundPlace& start : starts_of(places, settings.starts, apart))
     searches.emplace_back(task, settings, start, std::min(0.5 * apart, 0.25));
-  task.tell(std::to_string(places.size()) + " scattered places, " +
-            told(searches.front().best(), task));
+  task.report(std::to_string(places.size()) + " scattered places, " +
+              summary_of(searches.front().best(), task));
   end.finished = end.finished && until_spent([&] { refine(searches, task); });
   for (const RefinedSearch& search : searches) end.best.push_back(search.best());
   std::ranges::stable_sort(end.best, is_better);
@@ -374,7 +387,9 @@ std::vector<FoundPlace> measured_again(const SearchTask& task, const std::vector
   return measured_at(task, places, effort);
 }
 
-/// The two best, best first, by measurements that grow until they are told apart.
+/// Returns the two best of these points, best first, from new measurements (draw 1). The number of
+/// samples is increased until the difference of the two is significant or its error is below half
+/// the target error.
 std::vector<FoundPlace> two_best(const SearchTask& task, const SearchSettings& settings,
                                  const std::vector<FoundPlace>& found) {
   constexpr double sure = 3;
@@ -384,9 +399,9 @@ std::vector<FoundPlace> two_best(const SearchTask& task, const SearchSettings& s
     if (again.size() == 1) return again;
     again.resize(2);
     const Difference lead = difference(again[0].measured, again[1].measured);
-    const bool is_told = lead.value >= sure * lead.error;
+    const bool is_resolved = lead.value >= sure * lead.error;
     const double size = std::abs(again[0].measured.value);
-    if (is_told || lead.error <= settings.target_error / 2 * size ||
+    if (is_resolved || lead.error <= settings.target_error / 2 * size ||
         samples * growth > settings.most_samples)
       return again;
   }

@@ -19,12 +19,14 @@ namespace flatspeckle {
 namespace {
 
 struct Head {
-  std::uint32_t word = 0, checksum = 0;  ///< of the length and the bytes
+  /// checksum: CRC-32 of the length and the bytes of the block.
+  std::uint32_t word = 0, checksum = 0;
   std::uint64_t length = 0;
 };
 static_assert(sizeof(Head) == 16);
 
-constexpr std::uint32_t word_of_blocks = 0x6b6c6266;  // "fblk"
+// the letters "fblk", with which each block begins
+constexpr std::uint32_t word_of_blocks = 0x6b6c6266;
 
 std::uint32_t checksum_of(std::span<const std::byte> bytes) {
   const std::uint64_t length = bytes.size();
@@ -60,7 +62,8 @@ bool write_at(int descriptor, std::uint64_t place, std::span<const std::byte> by
   return true;
 }
 
-/// Nothing where there is no whole block.
+/// Returns the bytes of the block at a position in the file; nullopt if there is no complete,
+/// undamaged block.
 std::optional<std::vector<std::byte>> block_at(int descriptor, std::uint64_t place,
                                                std::uint64_t size) {
   Head head;
@@ -74,7 +77,7 @@ std::optional<std::vector<std::byte>> block_at(int descriptor, std::uint64_t pla
   return bytes;
 }
 
-/// Whether all from there on may be the beginning of one block.
+/// Whether the rest of the file from this position on may be the beginning of one block.
 bool is_torn(int descriptor, std::uint64_t place, std::uint64_t size) {
   Head head;
   if (size - place < sizeof head) return true;
@@ -176,7 +179,7 @@ Journal::Journal(const fs::path& path, const JournalHead& head, const std::strin
     : file_(path, BlockFile::Access::append) {
   scan(head.identity, use);
   if (head_ && head_->identity != head.identity)
-    throw InputError("resume: what " + path.string() + " holds " + stranger(head.identity, whose) +
+    throw InputError("resume: " + path.string() + " " + belongs_to_another(head.identity, whose) +
                      "; name another result file, or remove it");
   if (is_damaged()) keep_damaged();
   file_.cut();
@@ -188,9 +191,9 @@ Journal::Journal(const fs::path& path, const std::string& identity, const std::s
                  const Use& use)
     : file_(path, BlockFile::Access::read) {
   scan(identity, use);
-  if (!head_) throw InputError(path.string() + " is damaged, or of another version");
+  if (!head_) throw InputError(path.string() + " is damaged, or was written by another version");
   if (head_->identity != identity)
-    throw InputError(path.string() + ' ' + stranger(identity, whose));
+    throw InputError(path.string() + ' ' + belongs_to_another(identity, whose));
 }
 
 std::vector<std::string> Journal::configs_in(const fs::path& path) {
@@ -203,7 +206,8 @@ std::vector<std::string> Journal::configs_in(const fs::path& path) {
   return configs;
 }
 
-/// Records of another, which a head before them tells, are passed over.
+/// Calls `use` for each record of this identity. Records that follow a JournalHead with another
+/// identity are skipped.
 void Journal::scan(const std::string& identity, const Use& use) {
   tail_ = file_.scan([&](std::uint64_t place, std::span<const std::byte> block) {
     ByteReader bytes(block);
@@ -217,20 +221,21 @@ void Journal::scan(const std::string& identity, const Use& use) {
   });
 }
 
-std::string Journal::stranger(const std::string& identity, const std::string& whose) const {
+std::string Journal::belongs_to_another(const std::string& identity,
+                                        const std::string& whose) const {
   return "belongs to another " + whose + " (" + first_difference(head_->identity, identity) + ')';
 }
 
 void Journal::keep_damaged() const {
   const fs::path& path = file_.path();
-  const auto place = free_aside(path);
+  const auto place = free_backup(path);
   std::error_code failed;
   fs::copy_file(path, place, failed);
   std::cerr << "warning: " + path.string() + " is damaged after " + std::to_string(records_) +
                    " records; " +
-                   (failed ? "the rest is done again\n"
+                   (failed ? "the rest is computed again\n"
                            : "it is kept as " + place.filename().string() +
-                                 ", and the rest is done again\n");
+                                 ", and the rest is computed again\n");
 }
 
 std::uint64_t Journal::append(char kind, std::span<const std::byte> record) {
@@ -260,7 +265,7 @@ std::optional<std::vector<std::byte>> kept_record(const fs::path& path, const st
   });
   if (!kept || journal.is_damaged()) throw InputError(path.string() + " is damaged");
   return kept;
-} catch (const IoError& error) {  // no file at all
+} catch (const IoError& error) {  // the file cannot be opened or read
   throw InputError(error.what());
 }
 

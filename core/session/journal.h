@@ -14,15 +14,17 @@
 
 namespace flatspeckle {
 
-/// Returns the bytes behind their length and checksum: a block of a BlockFile.
+/// Returns the block of a BlockFile that contains these bytes, that is, the bytes preceded by their
+/// length and checksum.
 std::vector<std::byte> block_of(std::span<const std::byte> bytes);
 
-/// A file of blocks of bytes that only grows, each with its length and checksum: what was written
-/// before a process died is there, and what was being written is known not to be.
+/// File to which blocks of bytes are appended, each with its length and checksum. If the process
+/// dies, blocks that were already written remain readable, and an incomplete block at the end is
+/// recognised.
 class BlockFile {
  public:
   enum class Access { read, append };
-  /// Made where it is not there, to append. Throws IoError.
+  /// Opens the file. A missing file is created if it is opened to append. Throws IoError.
   BlockFile(std::filesystem::path path, Access access);
   BlockFile(const BlockFile&) = delete;
   BlockFile& operator=(const BlockFile&) = delete;
@@ -30,18 +32,21 @@ class BlockFile {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// What follows the last whole block: nothing, the beginning of one, or something else.
+  /// Content of the file after its last complete block: nothing, the beginning of a block (torn),
+  /// or other bytes (damaged).
   enum class Tail { none, torn, damaged };
-  /// use(place, bytes) of each whole block, in order, up to the first that is not.
+  /// Calls use(position in the file, bytes) for each block, in order, up to the first incomplete or
+  /// damaged block. Returns what follows the last complete block.
   Tail scan(const std::function<void(std::uint64_t place, std::span<const std::byte>)>& use);
-  /// Takes off what follows the blocks that scan() has found.
+  /// Removes everything after the complete blocks that scan() has found from the file.
   void cut();
 
-  /// Adds a block, and returns its place. Throws IoError, having left the file as it was.
+  /// Appends a block and returns its position in the file. If this fails, throws IoError and leaves
+  /// the file unchanged.
   std::uint64_t append(std::span<const std::byte> bytes);
-  /// The block there. Throws IoError where it is no longer whole.
+  /// Returns the bytes of the block at this position. Throws IoError if the block is damaged.
   std::vector<std::byte> read(std::uint64_t place) const;
-  /// Waits until the disk has it all.
+  /// Waits until all data is on the disk.
   void sync() const;
 
  private:
@@ -49,45 +54,50 @@ class BlockFile {
 
   std::filesystem::path path_;
   int descriptor_ = -1;
-  std::uint64_t end_ = 0;  ///< of the whole blocks
+  std::uint64_t end_ = 0;  ///< position of the end of the last complete block
 };
 
-/// The first record of a journal: what the others belong to.
+/// First record of a journal. It identifies the work, such as a sweep, whose results the following
+/// records contain.
 struct JournalHead {
-  std::string identity;     ///< equal texts, equal numbers
-  std::string config = {};  ///< a scene file that makes the same again, where there is one
+  std::string identity;     ///< text of all inputs: works with equal texts have equal results
+  std::string config = {};  ///< scene file that reproduces the work; empty if there is none
 };
 
-/// Records of work that is done, in a file that only grows (BlockFile): what was written before a
-/// process died is there. A letter says the kind of each record. Sweeps, searches and runs that
-/// can go on keep what they have in such files.
+/// File of records of finished work (a BlockFile), from which sweeps, searches and runs are resumed
+/// after the process has died. Each record has a kind, given by a letter.
 class Journal {
  public:
-  /// Called with each record of this identity that is found: its place, kind and contents.
+  /// Function that is called with the position, kind and contents of each existing record of this
+  /// identity.
   using Use = std::function<void(std::uint64_t place, char kind, ByteReader&)>;
 
-  /// Goes on with the file there, or begins one. What is torn or damaged at its end is cut off,
-  /// with a warning and a copy kept where it is damaged. whose: "sweep", for messages. Throws
-  /// InputError where the records there belong to another, IoError.
+  /// Opens the file at `path` to append records, or creates it. If the end of the file is
+  /// incomplete, it is cut off; if it is damaged, a warning is printed and the file is backed up
+  /// before. whose: kind of work, for messages, such as "sweep". Throws IoError, and InputError if
+  /// the file belongs to another identity.
   Journal(const std::filesystem::path& path, const JournalHead& head, const std::string& whose,
           const Use& use);
-  /// Reads alone. Throws InputError where there are no records of this identity, IoError.
+  /// Opens an existing file for reading. Throws IoError, and InputError if the file has no records
+  /// of this identity.
   Journal(const std::filesystem::path& path, const std::string& identity, const std::string& whose,
           const Use& use);
-  /// Every configuration that the records were made with, the last one last.
+  /// Returns the scene files (JournalHead::config) of all works whose records are in the file, in
+  /// the order of the file.
   static std::vector<std::string> configs_in(const std::filesystem::path& path);
 
   bool is_damaged() const { return tail_ == BlockFile::Tail::damaged; }
 
-  /// Adds a record, and returns its place. Throws IoError, having left the file as it was.
+  /// Appends a record and returns its position in the file. If this fails, throws IoError and
+  /// leaves the file unchanged.
   std::uint64_t append(char kind, std::span<const std::byte> record);
-  /// The record there. Throws IoError where it is no longer whole.
+  /// Returns the record at this position. Throws IoError if the record is damaged.
   std::vector<std::byte> read(std::uint64_t place) const;
   void sync() const { file_.sync(); }
 
  private:
   void scan(const std::string& identity, const Use& use);
-  std::string stranger(const std::string& identity, const std::string& whose) const;
+  std::string belongs_to_another(const std::string& identity, const std::string& whose) const;
   void keep_damaged() const;
 
   BlockFile file_;
@@ -96,12 +106,12 @@ class Journal {
   std::size_t records_ = 0;
 };
 
-/// A journal of one record, which replaces the one before as a whole: where a run that was cut off
-/// goes on. Throws IoError.
+/// Writes a journal that contains only this record, the state of an interrupted run. It replaces an
+/// existing journal at `path`. Throws IoError.
 void keep_record(const std::filesystem::path& path, const std::string& identity,
                  std::span<const std::byte> record, Durable durable);
-/// Its record; nothing where there is no file. Throws InputError for one that is damaged or belongs
-/// to another.
+/// Returns the record of a journal that keep_record() has written; nullopt if the file does not
+/// exist. Throws InputError if the journal is damaged or belongs to another identity.
 std::optional<std::vector<std::byte>> kept_record(const std::filesystem::path& path,
                                                   const std::string& identity,
                                                   const std::string& whose);

@@ -20,28 +20,32 @@ void add_seed_key(Keys& keys, RunSettings& run, const std::string& what) {
 
 void add_thread_key(Keys& keys, RunSettings& run) {
   keys.group(group);
-  keys.add("threads", run.threads, "Threads; 0: as many as there are cores").from(0, 1024).effort();
+  keys.add("threads", run.threads, "Number of threads (0: one per core)").from(0, 1024).effort();
 }
 
 void add_run_keys(Keys& keys, RunSettings& run) {
   add_output_key(keys, run);
-  add_seed_key(keys, run, "Seed; the same seed and samples give the same numbers");
-  keys.add("samples", run.samples, "Stop after so many light paths or placements")
+  add_seed_key(keys, run, "Random seed; the same seed and number of samples give the same result");
+  keys.add("samples", run.samples, "Stop after this number of light paths or placements")
       .positive()
       .effort();
-  keys.add("seconds", run.seconds, "Stop after so many seconds").positive().unit("s").effort();
+  keys.add("seconds", run.seconds, "Stop after this number of seconds")
+      .positive()
+      .unit("s")
+      .effort();
   keys.add("target_error", run.target_error,
-           "Stop at this relative error; 2 % is 0.02, the default if no other stop is given")
+           "Stop at this relative error; the default is 0.02 (2 %) if no other stop criterion is "
+           "given")
       .between(0, 1)
       .effort();
   add_thread_key(keys, run);
   keys.add("resume", run.resume,
-           "Go on from the run that --out holds, if there is one; a finished one is extended to "
-           "what is asked for now")
+           "Continue the run in the file --out, if it exists; a finished run is extended if the "
+           "stop criteria given now require more")
       .effort();
   keys.add("keep_state", run.keep_state,
-           "Keep the sums that a finished run is extended from, however large; up to 16 MB they "
-           "always are")
+           "Keep the sums from which a finished run can be extended even if they exceed 16 MB; "
+           "smaller sums are always kept")
       .effort();
 }
 

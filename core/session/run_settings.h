@@ -9,7 +9,7 @@
 
 namespace flatspeckle {
 
-/// How long to run, on what, and where the result goes.
+/// Values of the keys of a run: stop criteria, computing resources and result file.
 struct RunSettings {
   std::string out;
   std::int64_t seed = 1;
@@ -22,17 +22,18 @@ struct RunSettings {
 void add_output_key(Keys& keys, RunSettings& run, const std::string& what = "Result file (HDF5)");
 void add_seed_key(Keys& keys, RunSettings& run, const std::string& what);
 void add_thread_key(Keys& keys, RunSettings& run);
-/// All of them, for what batches make.
+/// Adds the keys of the functions above and those of the stop criteria, for results that are
+/// computed in batches.
 void add_run_keys(Keys& keys, RunSettings& run);
 
-/// The number of threads that is meant, and the seed.
+/// Returns the number of threads to use; if none is given, the number of cores.
 int threads_of(const Keys& keys, const RunSettings& run);
 std::uint64_t seed_of(const Keys& keys, const RunSettings& run);
 
 inline constexpr double default_target_error = 0.02;
 
-/// Without a stop rule a target error of 2 % is set. own_samples: a number of samples with a key of
-/// its own, which takes the place of `samples`.
+/// Returns the stop rule that the keys give; without any, a target error of 2 %. own_samples:
+/// number of samples that is used instead of the key `samples`, from a key of the method.
 StopRule stop_rule(const Keys& keys, const RunSettings& run);
 StopRule stop_rule(const Keys& keys, const RunSettings& run,
                    const std::optional<std::int64_t>& own_samples);

@@ -33,7 +33,7 @@ namespace flatspeckle {
 
 namespace {
 
-/// CRC-32 of all bytes of a file; 0 where it cannot be read.
+/// Returns the CRC-32 of all bytes of a file; 0 if it cannot be read.
 std::uint32_t file_checksum(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   std::array<char, 1 << 16> part;
@@ -64,16 +64,16 @@ std::string inputs_text(const Keys& keys) {
   return text;
 }
 
-std::filesystem::path free_aside(const std::filesystem::path& path) {
+std::filesystem::path free_backup(const std::filesystem::path& path) {
   for (int number = 1;; ++number) {
     const std::filesystem::path place = path.string() + ".aside-" + std::to_string(number);
     if (!std::filesystem::exists(place)) return place;
   }
 }
 
-std::filesystem::path set_aside(const std::filesystem::path& given) {
+std::filesystem::path back_up(const std::filesystem::path& given) {
   namespace fs = std::filesystem;
-  const fs::path path = link_target(given), place = free_aside(path);
+  const fs::path path = link_target(given), place = free_backup(path);
   std::error_code failed;
   fs::create_hard_link(path, place, failed);
   if (failed) fs::rename(path, place, failed);
@@ -106,16 +106,18 @@ std::string this_process() {
 std::string content(int descriptor) {
   std::array<char, 300> text{};
   const ::ssize_t length = ::pread(descriptor, text.data(), text.size() - 1, 0);
-  return length > 0 ? std::string(text.data()) : std::string("that does not say its name");
+  return length > 0 ? std::string(text.data()) : std::string("(unknown)");
 }
 
-/// For people: the lock holds without. Open no longer than that, or no disk could be made
-/// read-only.
-void say_owner(const fs::path& lock) {
+/// Writes process and machine into the lock file, for error messages only; the lock does not depend
+/// on this text. The file is closed at once, because a file open for writing prevents the disk from
+/// being made read-only.
+void write_owner(const fs::path& lock) {
   std::ofstream(lock) << this_process();
 }
 
-/// Not so where the process that held it has just removed it.
+/// Whether the opened lock file still exists at its path; the process that held the lock may just
+/// have removed it.
 bool is_still_there(int descriptor, const fs::path& path) {
   struct ::stat held {};
   struct ::stat found {};
@@ -123,54 +125,56 @@ bool is_still_there(int descriptor, const fs::path& path) {
          held.st_ino == found.st_ino && held.st_dev == found.st_dev;
 }
 
-constexpr std::size_t small_state = 16'000'000;  // bytes; kept whether it is asked for or not
+// bytes; states up to this size are always stored in the result
+constexpr std::size_t small_state = 16'000'000;
 
 std::string state_group(const std::string& run) {
   return "state/" + (run.empty() ? "run" : run);
 }
 
-/// Placements that a time allowed: who asks for a number knows it.
-void tell_few_placements(const PlannedRun& run, std::uint64_t placements) {
+/// Prints a note if a run has few placements of scatterers because of its time limit. If the user
+/// has set the number of placements, no note is printed.
+void report_few_placements(const PlannedRun& run, std::uint64_t placements) {
   if (run.job.samples_per_batch == 1 && run.stop.seconds && placements < trusted_batches)
     std::cerr << "note: " << run.label << " has only " << placements
-              << " placements: its errors are rough themselves, fewer than " << trusted_batches
-              << " miss rare strong ones\n";
+              << " placements: the errors are rough estimates, because fewer than "
+              << trusted_batches << " placements may miss rare strong ones\n";
 }
 
-void tell_few_batches(const std::string& label, std::uint64_t batches) {
-  constexpr std::uint64_t enough = 10;  // of Student's t with 9 degrees 7.7 % lie beyond 2
+void report_few_batches(const std::string& label, std::uint64_t batches) {
+  // with 9 degrees of freedom, Student's t is beyond +- 2 with a probability of 7.7 %
+  constexpr std::uint64_t enough = 10;
   if (batches < enough)
     std::cerr << "note: " << label << " has only " << batches
-              << " batches to take errors from: 2 standard errors do not cover 95 %\n";
+              << " batches to estimate errors from: 2 standard errors cover less than 95 %\n";
 }
 
-void tell_nothing_found(const std::string& label) {
-  std::cerr
-      << "note: all batches of " << label
-      << " are the same: the light that it samples has reached nothing that is asked for, and "
-         "standard errors of 0 are not to be trusted\n";
+void report_nothing_found(const std::string& label) {
+  std::cerr << "note: all batches of " << label
+            << " are equal: the sampled light contributes to none of the requested quantities, and "
+               "standard errors of 0 are meaningless\n";
 }
 
-void tell_rare(const std::vector<std::string>& estimates) {
+void report_rare(const std::vector<std::string>& estimates) {
   if (estimates.empty()) return;
   constexpr std::size_t most = 5;
-  std::cerr << "note: errors that rest on a few strong paths, and are rough themselves: ";
+  std::cerr << "note: undersampled, with rough errors that a few strong paths dominate: ";
   for (std::size_t i = 0; i < std::min(most, estimates.size()); ++i)
     std::cerr << (i == 0 ? "" : ", ") << estimates[i];
   if (estimates.size() > most) std::cerr << " and " << estimates.size() - most << " more";
-  std::cerr << " (NAME_rare marks them; more samples tell)\n";
+  std::cerr << " (entries with NAME_rare = 1; a longer run is needed)\n";
 }
 
-/// Prints the invariants that the result was checked by.
+/// Prints the invariants of the result, with their limits.
 void print_invariants(const ResultFile& file) {
   for (const auto& [name, worst] : file.invariants())
     std::cout << name << ": off by " << worst.off << ", at most " << worst.limit << " allowed"
-              << (worst.holds() ? "" : ": FAILS, so that the result has not converged") << '\n';
+              << (worst.holds() ? "" : ": FAILS, the result has not converged") << '\n';
 }
 
-void tell_undefined(const std::vector<std::string>& names) {
+void report_undefined(const std::vector<std::string>& names) {
   for (const std::string& name : names)
-    std::cerr << "note: " << name << " is left out: a value of it is not finite\n";
+    std::cerr << "note: " << name << " is left out, because one of its values is not finite\n";
 }
 
 }  // namespace
@@ -181,9 +185,10 @@ OutputLock::OutputLock(const std::filesystem::path& out) : path_(lock_beside(lin
   if (descriptor_ >= 0) remove_temporary_files(link_target(out));
 }
 
-/// False where it is to be tried again.
+/// Tries to lock the output file. Returns false if the caller must try again, because the lock file
+/// has been removed meanwhile.
 bool OutputLock::take(const std::filesystem::path& out) {
-  const EndsLater whole;
+  const DelayedTermination whole;
   descriptor_ = ::open(path_.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor_ < 0) return true;
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
@@ -191,8 +196,9 @@ bool OutputLock::take(const std::filesystem::path& out) {
     const std::string owner = content(descriptor_);
     ::close(std::exchange(descriptor_, -1));
     if (taken)
-      throw InputError("out", out.string(),
-                       "process " + owner + " works on it; wait for its end, or name another file");
+      throw InputError(
+          "out", out.string(),
+          "process " + owner + " works on it; wait until it ends, or name another file");
     return true;
   }
   if (!is_still_there(descriptor_, path_)) {
@@ -200,13 +206,13 @@ bool OutputLock::take(const std::filesystem::path& out) {
     return false;
   }
   removed_.emplace(path_.string());
-  say_owner(path_);
+  write_owner(path_);
   return true;
 }
 
 OutputLock::~OutputLock() {
   if (descriptor_ < 0) return;
-  const EndsLater whole;
+  const DelayedTermination whole;
   removed_.reset();
   ::unlink(path_.c_str());
   ::close(descriptor_);
@@ -250,11 +256,11 @@ Provenance Session::provenance() const {
 
 void Session::commit(ResultFile& file, const Provenance& provenance) {
   write_provenance(file, provenance);
-  const EndsLater whole;
-  file.commit_sealed(Durable::yes);
-  result_is_there();
-  tell_rare(file.rare());
-  tell_undefined(file.undefined());
+  const DelayedTermination whole;
+  file.commit_checksummed(Durable::yes);
+  ignore_termination_signals();
+  report_rare(file.rare());
+  report_undefined(file.undefined());
   std::cout << "wrote " << file.path().string() << '\n';
 }
 
@@ -277,32 +283,32 @@ int Session::once(ResultFile file, const std::function<Made(ResultFile&)>& make)
 bool Session::is_complete(const std::string& identity, bool has_begun) const {
   const std::string& path = settings_.out;
   if (!settings_.resume || !std::filesystem::exists(path)) return false;
-  if (!is_sealed(path)) {
+  if (!is_checksummed(path)) {
     if (has_begun) return false;
-    throw InputError("resume: " + path + " is damaged, or holds another run; name another file");
+    throw InputError("resume: " + path + " is damaged, or contains another run; name another file");
   }
   const ResultReader file(path);
   const bool is_same = file.has_attribute("/", "identity") &&
                        file.attribute<std::string>("/", "identity") == identity;
   if (!is_same && !has_begun)
-    throw InputError("resume: " + path + " holds another run; name another result file");
+    throw InputError("resume: " + path + " contains another run; name another result file");
   if (!is_same || !file.attribute<bool>("/", "complete")) return false;
   std::cout << path << " is complete; nothing to resume\n";
   return true;
 }
 
-/// All states at once: what is saved while one run goes on must hold those of the others. HDF5,
-/// which may crash on a damaged file, sees none.
+/// Reads the states of all runs from the output file: each later version of the file must contain
+/// all of them. Damaged files are rejected by their checksum, because HDF5 may crash on them.
 void Session::resume() {
   const std::string& path = settings_.out;
-  if (!is_sealed(path))
-    throw InputError("resume: " + path + " is damaged, or never held a run of this program");
+  if (!is_checksummed(path))
+    throw InputError("resume: " + path + " is damaged, or never contained a run of this program");
   const ResultReader file(path);
   const auto found = file.has_attribute("/", "identity")
                          ? file.attribute<std::string>("/", "identity")
                          : std::string();
   if (found != identity_)
-    throw InputError("resume: " + path + " holds another run (" +
+    throw InputError("resume: " + path + " contains another run (" +
                      first_difference(found, identity_) +
                      "); scene, sensors, seed and program version must be the same");
   const bool ended = file.attribute<bool>("/", "converged");
@@ -313,24 +319,27 @@ void Session::resume() {
       states_[name] = read_state(file, group, job.size);
   has_older_ = ended && !file.has("state");
   if (has_older_)
-    std::cerr << "note: " << path << " has not kept what it could be extended from (keep_state); "
-              << "all is done afresh\n";
+    std::cerr << "note: " << path
+              << " does not contain the sums from which it could be extended (keep_state); "
+              << "the run starts again\n";
 }
 
-/// What an interrupted run has done is not thrown away without a word.
-void Session::tell_unfinished() const {
-  if (!is_sealed(settings_.out)) return;
+/// Prints a note if the output file contains a part of this run that could be resumed but will be
+/// replaced.
+void Session::report_unfinished() const {
+  if (!is_checksummed(settings_.out)) return;
   const ResultReader file(settings_.out);
   if (!file.has_attribute("/", "identity") || file.attribute<bool>("/", "converged")) return;
   if (file.attribute<std::string>("/", "identity") == identity_)
     std::cerr << "note: " << settings_.out
-              << " holds a part of this run, which begins anew; --resume would go on with it\n";
+              << " contains a part of this run, which starts again; --resume would continue it\n";
 }
 
-/// Whether this call asks for more than the file holds, whose runs have ended.
+/// Whether this call requires more samples or a smaller error than the finished runs in the file
+/// have.
 bool Session::extends(const ResultReader& file) const {
   return std::ranges::any_of(runs_, [&](const PlannedRun& run) {
-    return asks_more(run.stop, run.job, read_trace(file, run.name));
+    return requires_more(run.stop, run.job, read_trace(file, run.name));
   });
 }
 
@@ -345,9 +354,9 @@ int Session::run(std::string plan, std::vector<PlannedRun> runs, const std::stri
   const bool exists = known_.has_value();
   has_older_ = exists && !settings_.resume;
   if (exists && settings_.resume) resume();
-  if (has_older_) tell_unfinished();
+  if (has_older_) report_unfinished();
   if (already_complete_) {
-    std::cout << settings_.out << " is complete, and no more is asked for\n";
+    std::cout << settings_.out << " is complete; this call requests no more\n";
     return ExitStatus::done;
   }
   std::cout << plan_ << '\n' << std::flush;
@@ -355,20 +364,22 @@ int Session::run(std::string plan, std::vector<PlannedRun> runs, const std::stri
     if (!interrupted_) run_one(run);
   try {
     return finish(contents);
-  } catch (const Interrupted&) {  // while the result was made of the sums
+  } catch (const Interrupted&) {  // a signal arrived while the result was computed from the sums
     interrupted_ = true;
     return finish(contents);
   }
 }
 
-/// Samples come in whole batches, two at the least: what is far more than was asked for is said.
+/// Prints a note if far more samples than requested are computed, because they are rounded up to
+/// whole batches, at least two.
 void Session::note_rounding(const PlannedRun& run) {
   if (!run.stop.samples) return;
-  const double asked = static_cast<double>(*run.stop.samples), batch = run.job.samples_per_batch;
-  const double done = batch * std::max(2.0, std::ceil(asked / batch));
-  if (done > 1.5 * asked)
-    std::cerr << "note: " << run.label << " takes " << done << " samples for the " << asked
-              << " asked for: they come in batches of " << batch << ", two at the least\n";
+  const double requested = static_cast<double>(*run.stop.samples),
+               batch = run.job.samples_per_batch;
+  const double done = batch * std::max(2.0, std::ceil(requested / batch));
+  if (done > 1.5 * requested)
+    std::cerr << "note: " << run.label << " takes " << done << " samples instead of the requested "
+              << requested << ": they come in batches of " << batch << ", at least two\n";
 }
 
 void Session::run_one(const PlannedRun& run) {
@@ -378,16 +389,16 @@ void Session::run_one(const PlannedRun& run) {
                            [this](const RunState&) { save_resumable(); }};
   const StopReason reason = run_batches(run.job, options, state);
   interrupted_ = reason == StopReason::interrupted;
-  if (interrupted_) {  // perhaps before the first batch
+  if (interrupted_) {  // the run may have been interrupted before its first batch
     converged_ = false;
     return;
   }
   if (!run.job.one_by_one) {
-    tell_few_batches(run.label, state.sums.batches());
-    tell_few_placements(run, state.sums.batches());
+    report_few_batches(run.label, state.sums.batches());
+    report_few_placements(run, state.sums.batches());
   }
   if (found_nothing(run.job, state.sums)) {
-    tell_nothing_found(run.label);
+    report_nothing_found(run.label);
     blind_ = true;
   }
   const bool reached = !run.stop.target_error || reason == StopReason::target_error ||
@@ -398,8 +409,9 @@ void Session::run_one(const PlannedRun& run) {
 int Session::finish(const std::function<void(ResultFile&)>& contents) {
   if (interrupted_) {
     save_resumable();
-    std::cout << "interrupted; " << settings_.out << " holds what is done, --resume goes on";
-    if (!older_aside_.empty()) std::cout << "; what it held before is in " << older_aside_;
+    std::cout << "interrupted; " << settings_.out
+              << " contains the finished part; continue with --resume";
+    if (!older_backup_.empty()) std::cout << "; the previous file is now " << older_backup_;
     std::cout << '\n';
     return ExitStatus::interrupted_resumable;
   }
@@ -412,25 +424,26 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
   print_invariants(file);
   const bool keeps_state = !converged_ || settings_.keep_state || state_bytes() <= small_state;
   if (keeps_state) write_states(file);
-  set_strangers_aside();
-  file.commit_sealed(Durable::yes);
-  tell_rare(file.rare());
-  tell_undefined(file.undefined());
+  back_up_foreign_files();
+  file.commit_checksummed(Durable::yes);
+  report_rare(file.rare());
+  report_undefined(file.undefined());
   std::error_code none;
-  if (!older_aside_.empty()) std::filesystem::remove(older_aside_, none);
+  if (!older_backup_.empty()) std::filesystem::remove(older_backup_, none);
   std::cout << "wrote " << settings_.out;
   if (!keeps_state)
     std::cout << " without the " << std::ceil(1e-6 * static_cast<double>(state_bytes()))
-              << " MB of sums that extend it (--keep_state)";
+              << " MB of sums from which it could be extended (--keep_state keeps them)";
   std::cout << '\n';
   if (converged_) return ExitStatus::done;
   const auto is_deterministic = [](const PlannedRun& run) { return run.job.one_by_one; };
   if (!reached)
-    std::cout
-        << (std::ranges::all_of(runs_, is_deterministic)
-                ? "not converged: the error is more than the tolerance\n"
-            : blind_ ? "not converged: no error can be taken from equal batches; --resume goes on\n"
-                     : "stopped before the target error was reached; --resume goes on\n");
+    std::cout << (std::ranges::all_of(runs_, is_deterministic)
+                      ? "not converged: the error exceeds the tolerance\n"
+                  : blind_
+                      ? "not converged: no error can be estimated from equal batches; continue "
+                        "with --resume\n"
+                      : "stopped before the target error was reached; continue with --resume\n");
   return ExitStatus::error_not_reached;
 }
 
@@ -447,8 +460,8 @@ void Session::write_common(ResultFile& file, bool converged) const {
   write_provenance(file, provenance);
 }
 
-void Session::set_older_aside() {
-  older_aside_ = set_aside(settings_.out).string();
+void Session::back_up_older() {
+  older_backup_ = back_up(settings_.out).string();
   has_older_ = false;
 }
 
@@ -456,18 +469,19 @@ void Session::save_resumable() {
   ResultFile file(settings_.out);
   write_common(file, false);
   write_states(file);
-  set_strangers_aside();
-  if (has_older_) set_older_aside();
-  file.commit_sealed(Durable::yes);
+  back_up_foreign_files();
+  if (has_older_) back_up_older();
+  file.commit_checksummed(Durable::yes);
   known_ = stamp_of(settings_.out);
 }
 
-/// What something else has put there since: this program keeps off (OutputLock).
-void Session::set_strangers_aside() {
+/// Backs up the output file if another program has written it since this session last wrote it.
+/// (Other processes of flatspeckle cannot write it because of OutputLock.)
+void Session::back_up_foreign_files() {
   const auto found = stamp_of(settings_.out);
   if (!found || found == known_) return;
-  const auto place = set_aside(settings_.out);
-  std::cerr << "warning: another file stood at " << settings_.out << "; it is now "
+  const auto place = back_up(settings_.out);
+  std::cerr << "warning: found a foreign file at " << settings_.out << "; it has been renamed to "
             << place.string() << '\n';
   has_older_ = false;
 }

@@ -19,48 +19,51 @@
 
 namespace flatspeckle {
 
-/// What tells one run from another: its scene and seed as lines "key = value", and what else it was
-/// made from. The first line of one identity that the other does not have.
+/// Returns the first line of the text `there` that the text `here` does not contain, to show how
+/// two runs differ. Both are identities of runs: texts that list scene and seed as lines "key =
+/// value", and all other inputs.
 std::string first_difference(const std::string& there, const std::string& here);
 
-/// The files that keys name and that were read, each by name and checksum, a line each.
+/// Returns a line with name and checksum for each input file that a key names, if the key was read.
 std::string inputs_text(const Keys& keys);
 
-/// Where a file that is in the way is kept: the first of NAME.aside-1, NAME.aside-2 ... that is
+/// Returns the name for a backup of a file: the first of NAME.aside-1, NAME.aside-2 ... that is
 /// free.
-std::filesystem::path free_aside(const std::filesystem::path& path);
+std::filesystem::path free_backup(const std::filesystem::path& path);
 
-/// Gives a file, or the file that a link leads to, such a name, by a second one beside its own
-/// where the file system can, so that the first is never without a file; returns it. Throws
-/// IoError.
-std::filesystem::path set_aside(const std::filesystem::path& path);
+/// Backs up a file, or the target of a symbolic link, under the name of free_backup(), and returns
+/// this name. If the file system supports hard links, the backup is one, so that the file always
+/// exists under its original name. Throws IoError.
+std::filesystem::path back_up(const std::filesystem::path& path);
 
-/// Tells one file at a path from another, or from itself rewritten.
+/// Properties of the file at a path, by which it is detected that the file was replaced or
+/// rewritten.
 struct FileStamp {
   std::uint64_t device, inode;
-  std::int64_t seconds, nanoseconds;  ///< of its last change
+  std::int64_t seconds, nanoseconds;  ///< time of the last change of the file
   bool operator==(const FileStamp&) const = default;
 };
-/// Nothing where there is no file.
+/// Returns the stamp of the file at a path; nullopt if there is no file.
 std::optional<FileStamp> stamp_of(const std::filesystem::path& path);
 
-/// Exit statuses (README).
+/// Exit statuses of the program (README).
 enum ExitStatus : int {
   done = 0,
   bad_input = 2,
   error_not_reached = 3,
   io_failed = 4,
-  row_failed = 5,  ///< a row of a benchmark; the result is written
+  row_failed = 5,  ///< a row of a benchmark failed; the result is written
   interrupted_resumable = 75,
-  interrupted_for_good = 130  ///< nothing written, nothing to resume
+  interrupted_for_good = 130  ///< interrupted; nothing is written that could be resumed
 };
 
-/// Keeps an output to one process at a time, by a lock on .NAME.lock beside it, or beside the file
-/// that a link leads to, that ends with the process however that ends. Where the file system has no
-/// locks there is none. Removes the temporary files that killed processes have left there.
+/// Lock that limits an output file to one process at a time. The file .NAME.lock in the same folder
+/// (for a symbolic link, in the folder of its target) is locked, until the process ends for
+/// whatever reason. If the file system does not support locks, nothing is locked. The constructor
+/// removes temporary files of the output that killed processes have left.
 class OutputLock {
  public:
-  /// Throws InputError, which names the process that has the output.
+  /// Throws InputError naming the process that has locked the output.
   explicit OutputLock(const std::filesystem::path& out);
   OutputLock(const OutputLock&) = delete;
   OutputLock& operator=(const OutputLock&) = delete;
@@ -76,73 +79,84 @@ class OutputLock {
 
 class ResultReader;
 
-/// One of the runs of a session. A run without a name has its trace in the root of the result.
+/// One of the runs of a session. `name` is the group of the result that receives the trace of the
+/// run; if empty, the root receives it.
 struct PlannedRun {
   std::string name, label;
   BatchJob job;
   StopRule stop;
 };
 
-/// What was made at once: in words how, and of how many samples.
+/// Summary of a result that was computed in one piece, without batches: description of the method,
+/// number of samples and exit status.
 struct Made {
   std::string plan;
   double samples = 1;
   int status = ExitStatus::done;
 };
 
-/// One call of the program and the result file it ends in. Made before any work, it refuses what
-/// can be refused by then; at the end it writes how the result came about, and says where it is.
+/// One call of the program and its result file. It is constructed before any work, so that errors
+/// of the output path are found early. At the end it writes the provenance of the result and prints
+/// the path of the file.
 class Session {
  public:
-  /// command_line: as typed. Reads seed and threads. only_prints: no result is wanted.
-  /// Throws InputError where `out` is missing or not writable.
-  /// Kinds of files: one that is no result may be replaced; a result that several processes make
-  /// together they keep to themselves.
+  /// Kind of the output file. `other`: not a result file; it may replace an existing file of any
+  /// kind. `shared`: a result to which several processes contribute and which is locked by the
+  /// caller, not by this class.
   enum class Out { result, other, shared };
+  /// Reads the keys of the run and marks seed and threads as read. command_line: the command as
+  /// typed. only_prints: true if no result is written. Throws InputError if the key `out` is not
+  /// given or its file cannot be written.
   Session(std::string command_line, const Keys& keys, const RunSettings& settings,
           bool only_prints = false, Out kind = Out::result);
 
   std::uint64_t seed() const { return seed_; }
-  /// Of this process: fewer where it shares its machine with other ranks, once it has joined them.
+  /// Returns the number of threads of this process. It is reduced if other MPI processes run on the
+  /// same cores, which is known after initialize_ranks().
   int threads() const;
   const std::string& out() const { return settings_.out; }
 
-  /// Writes what `make` fills in one go; nothing where it throws Interrupted.
+  /// Calls `make`, which fills `file`, and writes the file. Writes nothing if `make` throws
+  /// Interrupted. Returns the exit status.
   int once(ResultFile file, const std::function<Made(ResultFile&)>& make) const;
 
-  /// Runs all to their end, or until an interruption, or goes on with those that the file there
-  /// holds; runs that have ended there are extended where this call asks for more. While they run,
-  /// the file holds what could be resumed; at the end, the result. Each state of it replaces the
-  /// one before as a whole; what was there before the runs stays beside it (NAME.aside-1) until the
-  /// result is there. inputs: what the scene takes from other files, as text; a resumed run must
-  /// have the same. contents: everything but provenance, traces and states. Returns the exit
-  /// status.
+  /// Computes all runs until they end or are interrupted, and returns the exit status. With
+  /// --resume, continues the runs in the existing file, and extends finished runs if this call
+  /// requires more samples. The output file contains a state that can be resumed while the runs are
+  /// computed, and the result at the end. It is always replaced as a whole; a file of another run
+  /// is backed up (NAME.aside-1) until the result is written. inputs: text of all other files that
+  /// the scene uses, which must be the same when the runs are resumed. contents: function that
+  /// writes the result except provenance, traces and states.
   int run(std::string plan, std::vector<PlannedRun> runs, const std::string& inputs,
           const std::function<void(ResultFile&)>& contents);
 
-  /// Of a run, once it has ended.
+  /// Returns the sums of a run that has ended.
   const GroupedSums& sums(const std::string& run) const { return states_.at(run).sums; }
 
-  /// Whether --resume finds the whole result of this identity there, which is said. Throws
-  /// InputError where another run's is, unless this one has begun to replace it.
+  /// Whether --resume is given and the output file already contains the complete result of the run
+  /// with this identity; if so, prints a line. If the file contains the result of another run,
+  /// throws InputError unless has_begun is true. has_begun: whether unfinished work of this run
+  /// exists.
   bool is_complete(const std::string& identity, bool has_begun) const;
 
-  /// How results of this call came about, but for plan and costs.
+  /// Returns the provenance of a result of this call, except `plan` and the costs of the
+  /// computation.
   Provenance provenance() const;
-  /// Ends a file that is whole but for that, with a seal; says where it is.
+  /// Completes a result file: writes the provenance, commits the file with a checksum, and prints
+  /// its path.
   static void commit(ResultFile& file, const Provenance& provenance);
 
  private:
   void resume();
-  void tell_unfinished() const;
+  void report_unfinished() const;
   bool extends(const ResultReader& file) const;
   static void note_rounding(const PlannedRun& run);
   void run_one(const PlannedRun& run);
   int finish(const std::function<void(ResultFile&)>& contents);
   void write_common(ResultFile& file, bool converged) const;
   void save_resumable();
-  void set_older_aside();
-  void set_strangers_aside();
+  void back_up_older();
+  void back_up_foreign_files();
   void write_states(ResultFile& file) const;
   std::size_t state_bytes() const;
 
@@ -158,11 +172,12 @@ class Session {
   std::string plan_, identity_;
   std::vector<PlannedRun> runs_;
   std::map<std::string, RunState> states_;
-  bool has_older_ = false;          ///< the file there is none of these runs
-  std::string older_aside_;         ///< where it is now
-  std::optional<FileStamp> known_;  ///< of the file there, when it was last looked at or written
+  bool has_older_ = false;    ///< true if the existing output file belongs to another run
+  std::string older_backup_;  ///< path of the backup of the file of another run
+  /// Stamp of the output file when it was last checked or written.
+  std::optional<FileStamp> known_;
   bool already_complete_ = false, interrupted_ = false, converged_ = true;
-  bool blind_ = false;  ///< a run has found nothing that varies
+  bool blind_ = false;  ///< true if all batches of one of the runs are equal (see found_nothing())
 };
 
 }  // namespace flatspeckle

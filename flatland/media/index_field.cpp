@@ -15,7 +15,7 @@ IndexTable::IndexTable(const std::string& path) : path_(path) {
              imaginary = table.column("index_im");
   for (std::size_t row = 0; row < table.rows(); ++row) {
     if (!(wavelength[row] > 0) || (row > 0 && wavelength[row] <= wavelength[row - 1]))
-      throw InputError("index_table", path, "must have positive wavelengths that rise");
+      throw InputError("index_table", path, "must have positive, increasing wavelengths");
     index_.emplace_back(real[row], imaginary[row]);
     if (const auto fault = index_fault(index_.back()); !fault.empty())
       throw InputError("index_table", path,
@@ -27,8 +27,8 @@ IndexTable::IndexTable(const std::string& path) : path_(path) {
 Complex IndexTable::at(double wavelength) const {
   if (!(wavelength >= wavelength_.front() && wavelength <= wavelength_.back()))
     throw InputError("index_table", path_,
-                     "must cover the wavelength " + number_text(wavelength) + "; it goes from " +
-                         number_text(wavelength_.front()) + " to " +
+                     "must cover the wavelength " + number_text(wavelength) +
+                         "; the table extends from " + number_text(wavelength_.front()) + " to " +
                          number_text(wavelength_.back()));
   const auto above = std::ranges::upper_bound(wavelength_, wavelength);
   if (above == wavelength_.end()) return index_.back();
@@ -44,13 +44,13 @@ std::string IndexField::describe() const {
     case Kind::parabolic:
       return "parabolic guide";
     case Kind::blobs:
-      return std::to_string(blobs.size()) + " blobs of the index";
+      return std::to_string(blobs.size()) + " Gaussian blobs of the index";
     case Kind::ultrasound:
-      return "standing sound";
+      return "standing sound wave";
     case Kind::grid:
-      return "index of a grid";
+      return "index sampled on a grid";
     case Kind::mean_field:
-      return "refraction by the scatterers";
+      return "effective index of the scatterers";
     case Kind::homogeneous:
       break;
   }

@@ -31,7 +31,8 @@ double Layers::depth_at(double z) const {
   return depths_[layer] + mu(layer) * (z - faces_[layer]);
 }
 
-/// Within one layer without the cancellation of two depths.
+/// If the path stays within one layer, returns mu_t times its length, because the difference of the
+/// optical depths of its ends would lose digits.
 double Layers::optical_depth(Vec2 x, Vec2 w, double length) const {
   const double end = x.z + length * w.z;
   const std::size_t layer = material_at(x);
@@ -67,13 +68,13 @@ std::string Layers::describe() const {
 
 const DatasetTable layers_table{
     "layers",
-    {{"layer", Data::numbers, "", "1", "number of the layer, from z = 0 on"},
+    {{"layer", Data::numbers, "", "1", "number of the layer; the first begins at z = 0"},
      {"layer_thickness", Data::real, "layer", "length", "thickness"},
      {"layer_optical_depth", Data::real, "layer", "1", "mu_t times the thickness"},
      {"layer_g", Data::real, "layer", "1", "mean cosine of scattering"},
      {"layer_albedo", Data::real, "layer", "1", "mu_s/mu_t"},
      {"layer_k_shift", Data::real, "layer", "1/length",
-      "real part of the effective wavenumber less k"}}};
+      "real part of the effective wavenumber, minus k"}}};
 
 void Layers::write(ResultFile& file) const {
   const ResultGroup root(file, layers_table);

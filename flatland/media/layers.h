@@ -7,17 +7,18 @@
 
 namespace flatspeckle {
 
-/// Layers on top of each other, from z = 0 on, each of one material.
+/// Stack of homogeneous layers, each of one material. The first layer begins at z = 0.
 class Layers : public MediumProfile {
  public:
-  /// One of each material, none thinner than 0.
+  /// Creates one layer of each material. No thickness may be negative.
   Layers(std::vector<Material> materials, const std::vector<double>& thicknesses);
 
-  /// Of the layers' faces, from 0 on.
+  /// Returns the z coordinates of the layers' faces. The first is 0.
   const std::vector<double>& faces() const { return faces_; }
   double thickness(std::size_t layer) const { return faces_[layer + 1] - faces_[layer]; }
 
-  /// f(layer, length) of each part of a way.
+  /// Calls f(layer, length) for each layer that the straight path from x along w crosses, with the
+  /// length of the path in that layer.
   template <typename F>
   void each_part(Vec2 x, Vec2 w, double length, const F& f) const {
     double gone = 0;
@@ -45,7 +46,7 @@ class Layers : public MediumProfile {
   double depth_at(double z) const;
 
   std::vector<double> faces_;
-  std::vector<double> depths_;  ///< optical, of the faces
+  std::vector<double> depths_;  ///< optical depth from z = 0 to each face
 };
 
 extern const DatasetTable layers_table;

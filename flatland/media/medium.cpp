@@ -18,17 +18,18 @@ namespace flatspeckle {
 
 namespace {
 
-/// q is in inverse units of the scene's length, so a file of another scale must not pass.
+/// Throws InputError if a value stored in a structure-factor file differs from the value of the
+/// scene by more than 2 %. This also detects files in another unit of length.
 void check_same(const std::string& path, const std::string& what, double measured, double scene) {
   constexpr double rounding = 0.02;
   if (std::abs(measured - scene) <= rounding * scene) return;
   std::ostringstream accepted;
-  accepted << "has " << what << ' ' << measured << ", the scene " << scene
+  accepted << "was measured at " << what << ' ' << measured << ", but the scene has " << scene
            << "; measure it with the scene's own disks";
   throw InputError("structure", path, accepted.str());
 }
 
-/// sqrt(S) at the momentum transfer of a scattering angle.
+/// Returns sqrt(S) at the momentum transfer of a scattering angle.
 double structure_amplitude(const StructureTable& structure, double k, double theta) {
   return std::sqrt(structure(2 * k * std::abs(std::sin(theta / 2))));
 }
@@ -67,8 +68,9 @@ StructureTable hard_disk_structure(const DiskSpacing& disks, double q_max) {
   if (packing > 0.7)
     throw InputError("structure", "hard_disks",
                      "the fluid of hard disks freezes near packing fraction 0.7");
-  // Of q times diameter: linear between the nodes, to 1e-4 at packing 0.3. Beyond the last S is 1
-  // to 6e-3 eta g(contact), which is 0.2 % at packing 0.2.
+  // Step and last node of the table, in q times the contact distance. At packing 0.3, linear
+  // interpolation with this step is accurate to 1e-4. Beyond the last node |S - 1| is below 6e-3
+  // eta g(contact), with eta the packing fraction: 0.2 % at packing 0.2.
   constexpr double step = 0.05, last = 100;
   q_max = std::min(q_max, last / disks.contact);
   const HardDiskFluid fluid(packing, disks.contact);
@@ -96,7 +98,7 @@ StructureTable read_table(const std::string& path, const DiskSpacing& disks) {
   const double area = measured("width") * measured("depth");
   const auto count = static_cast<double>(file.attribute<std::uint64_t>("/", "count"));
   const double density = count / area;
-  // packing_fraction leaves the gap out
+  // The attribute packing_fraction does not include the gap.
   const double diameter =
       std::sqrt(4 * measured("packing_fraction") / (std::numbers::pi * density));
   check_same(path, "density", density, disks.density);
@@ -107,8 +109,9 @@ StructureTable read_table(const std::string& path, const DiskSpacing& disks) {
       std::all_of(values.begin(), values.end(), [&](double s) { return s > 0 && s <= count; });
   if (q.size() != values.size() || q.empty() || !rising || !(q.front() >= 0) ||
       !std::isfinite(q.back()) || !possible)
-    throw InputError("structure", path,
-                     "must hold values above 0 and at most the count of disks, over rising q");
+    throw InputError(
+        "structure", path,
+        "must contain increasing q, and values of S above 0 and at most the number of disks");
   return {"measured, " + path, std::move(q), std::move(values)};
 }
 
@@ -166,7 +169,8 @@ BulkMedium bulk_medium(const Scatterer& bulk, const BulkPhase& phase, double mu_
 
 BulkMedium correlated_medium(BulkMedium medium, double k, StructureTable structure) {
   medium.structure = std::move(structure);
-  // The trapezoidal rule is spectrally accurate where S is smooth, and fine enough for a table.
+  // If S is smooth, the trapezoidal rule converges spectrally. If S is tabulated, this number of
+  // intervals is fine enough.
   const std::size_t intervals = 256 * (medium.t_matrix.size() + 1);
   const auto alone = amplitudes(medium.t_matrix, k, intervals);
   const double step = std::numbers::pi / static_cast<double>(intervals);

@@ -12,21 +12,22 @@ namespace flatspeckle {
 
 class ResultFile;
 
-/// Shares of the motion that a scene states (delays).
+/// Motion of the scatterers of one material, for fields at two times: factors on the diffusion
+/// coefficient and the flow velocity of the scene.
 struct MaterialMotion {
   double diffusion = 1, velocity = 1;
 };
 
-/// What a part of a medium is made of.
+/// Material of a part of a medium: its scatterers, their bulk properties and their motion.
 struct Material {
   Scatterer scatterer;
   BulkMedium medium;
   MaterialMotion motion{};
 };
 
-/// A medium that varies from place to place within a domain: which material is where, and how dense
-/// over the density of the material's own bulk. Points outside of the domain are as its nearest
-/// edge.
+/// A medium that varies within a domain. It defines the material at each point, and the density
+/// there relative to the density in the material's bulk properties. Points outside the domain have
+/// the values at the nearest edge.
 class MediumProfile {
  public:
   explicit MediumProfile(std::vector<Material> materials) : materials_(std::move(materials)) {}
@@ -39,23 +40,25 @@ class MediumProfile {
   double mu_t(Vec2 x) const { return relative_density(x) * bulk(x).mu_t; }
   double mu_s(Vec2 x) const { return relative_density(x) * bulk(x).mu_s; }
   double albedo(Vec2 x) const { return bulk(x).albedo; }
-  /// Scatterers per area.
+  /// Returns the number of scatterers per area.
   double density(Vec2 x) const { return relative_density(x) * bulk(x).density; }
-  /// No density() is larger.
+  /// Returns an upper bound of density().
   virtual double most_density() const = 0;
 
-  /// int mu_t along w, which stays in the domain.
+  /// Returns the integral of mu_t over a straight path of the given length from x along w. The path
+  /// must lie in the domain.
   virtual double optical_depth(Vec2 x, Vec2 w, double length) const = 0;
-  /// How far along w an optical depth reaches; at most `longest`.
+  /// Returns the distance from x along w after which the path has the given optical depth; at most
+  /// `longest`.
   virtual double reach(Vec2 x, Vec2 w, double optical_depth, double longest) const = 0;
 
-  /// Of the whole domain: mu_t, mu_s, absorption, density and k_shift in the mean, and g of all
-  /// that is scattered. Without a T-matrix.
+  /// Returns the average over the whole domain: means of mu_t, mu_s, absorption, density and
+  /// k_shift, and the mean of g weighted by mu_s. The result has no T-matrix.
   virtual BulkMedium mean() const = 0;
 
-  /// What a result file says of it.
+  /// Writes the profile to a result file.
   virtual void write(ResultFile& file) const = 0;
-  /// In words, for plans.
+  /// Returns a short description, printed in the plan of a run.
   virtual std::string describe() const = 0;
 
  private:

@@ -11,14 +11,18 @@ namespace flatspeckle {
 
 namespace {
 
-/// Numerator of d(eta Z) / d eta over (1 - eta)^3, Z of Henderson.
+/// Returns the numerator N in d(eta Z) / d eta = N / (1 - eta)^3, with eta the packing fraction and
+/// Z the compressibility factor by Henderson's equation of state.
 double stiffness_numerator(double packing) {
   return 1 + packing + 3 * packing * packing / 8 - std::pow(packing, 3) / 8;
 }
 
-/// Baus and Colot's length, in diameters: makes the integral of c(r) agree with the equation of
-/// state, (2/pi) [a^2 (a^2 - 4) asin(1/a) - (a^2 + 2) sqrt(a^2 - 1)]
-///   = (1 - 4 eta - 1/stiffness) / eta^2, the right side written without cancellation.
+/// Returns the length a of Baus and Colot, in diameters, for which the integral of the direct
+/// correlation function c(r) agrees with the equation of state (eta: packing fraction, stiffness =
+/// d(eta Z) / d eta):
+///   (2/pi) [a^2 (a^2 - 4) asin(1/a) - (a^2 + 2) sqrt(a^2 - 1)]
+///     = (1 - 4 eta - 1/stiffness) / eta^2.
+/// The code computes the right-hand side without cancellation.
 double overlap_scale(double packing) {
   const double wanted =
       (-6.625 - 0.625 * packing + 0.5 * packing * packing) / stiffness_numerator(packing);
@@ -26,7 +30,7 @@ double overlap_scale(double packing) {
     return 2 / std::numbers::pi *
            (a * a * (a * a - 4) * std::asin(1 / a) - (a * a + 2) * std::sqrt(a * a - 1));
   };
-  double low = 1, high = 2.1;  // from -3 down to below any wanted value
+  double low = 1, high = 2.1;  // left() falls from -3 to below every possible `wanted`
   for (int i = 0; i < 60; ++i) {
     const double middle = (low + high) / 2;
     (left(middle) > wanted ? low : high) = middle;
@@ -34,17 +38,19 @@ double overlap_scale(double packing) {
   return low;
 }
 
-/// Area that two disks of diameter 1 share at distance x <= 1, relative to that of one.
+/// Returns the common area of two disks of diameter 1 whose centres are x <= 1 apart, divided by
+/// the area of one disk.
 double overlap(double x) {
   return 2 / std::numbers::pi * (std::acos(x) - x * std::sqrt(1 - x * x));
 }
 
-/// Integral of x J_0(q x) over (0, 1).
+/// Returns the integral of x J_0(q x) over (0, 1).
 double disk_transform(double q) {
   return q < 1e-4 ? 0.5 : ::j1(q) / q;
 }
 
-/// Integral of x overlap(x / scale) J_0(q x) over (0, 1), scale > 1, by Simpson's rule to 1e-6.
+/// Returns the integral of x overlap(x / scale) J_0(q x) over (0, 1), scale > 1, by Simpson's rule
+/// to 1e-6.
 double overlap_transform(double q, double scale) {
   const int intervals = 2 * (32 + static_cast<int>(4 * q));
   double sum = 0;
@@ -56,7 +62,7 @@ double overlap_transform(double q, double scale) {
   return sum / (3 * intervals);
 }
 
-/// cos and sin of i * phase, i = first .. last.
+/// Values of cos(i phase) and sin(i phase) for i = first .. last.
 struct Phasors {
   std::vector<double> cosine, sine;
   Phasors(double phase, std::ptrdiff_t first, std::ptrdiff_t last) {
@@ -82,7 +88,9 @@ double HardDiskFluid::contact_value() const {
   return (1 - 7 * packing_ / 16) / std::pow(1 - packing_, 2);
 }
 
-// S = 1 / (1 - rho c(q)), c(r) = -stiffness [1 - a^2 eta + a^2 eta overlap(r / a)] inside contact.
+// S = 1 / (1 - rho c(q)), with rho the number density and c(q) the Fourier transform of c(r) =
+// -stiffness [1 - a^2 eta + a^2 eta overlap(r / a)] for r < 1, and 0 beyond; r is in diameters, a =
+// scale_.
 double HardDiskFluid::structure_factor(double q) const {
   const double x = q * diameter_, weight = scale_ * scale_ * packing_;
   const double transform = (1 - weight) * disk_transform(x) + weight * overlap_transform(x, scale_);
@@ -97,7 +105,7 @@ MeasuredStructureFactor::MeasuredStructureFactor(const Domain& box, double q_max
   std::map<std::size_t, std::vector<Wavevector>> shells;
   for (std::size_t n = 0; n <= most_n_; ++n) {
     const double q_x = 2 * std::numbers::pi * static_cast<double>(n) / box.width;
-    // Half of the plane: S(-q) = S(q).
+    // Half of all wavevectors suffice, because S(-q) = S(q).
     for (std::size_t j = n == 0 ? most_m_ + 1 : 0; j <= 2 * most_m_; ++j) {
       const double m = static_cast<double>(j) - static_cast<double>(most_m_);
       const double q = std::hypot(q_x, 2 * std::numbers::pi * m / box.depth);
@@ -115,7 +123,8 @@ MeasuredStructureFactor::MeasuredStructureFactor(const Domain& box, double q_max
   squares_.resize(members_.size());
 }
 
-/// |sum_j exp(i q.r_j)|^2 at [n][m + most_m].
+/// Returns |sum_j exp(i q.r_j)|^2, with r_j the centres, for q = (2 pi n / width, 2 pi m / depth):
+/// [n][m + most_m].
 std::vector<double> MeasuredStructureFactor::density_waves(std::span<const Vec2> centres) const {
   const std::size_t columns = 2 * most_m_ + 1;
   const auto m = static_cast<std::ptrdiff_t>(most_m_);
@@ -174,7 +183,7 @@ std::vector<double> MeasuredStructureFactor::errors() const {
 const DatasetTable structure_factor_table{
     "structure factor",
     {{"q", Data::scale, "", "1/length",
-      "wavenumber, mean of a shell of wavevectors that fit the box"},
+      "wavenumber q, mean over a shell of the wavevectors that fit the box"},
      {"structure_factor", Data::estimate, "q", "1", "structure factor S(q)"},
      {"structure_factor_theory", Data::real, "q", "1",
       "S(q) of the equilibrium fluid, Baus and Colot 1987"}}};

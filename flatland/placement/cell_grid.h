@@ -10,7 +10,7 @@
 
 namespace flatspeckle {
 
-/// Points in square cells, so that neighbours within one cell size are found at constant cost.
+/// Points sorted into square cells. Neighbours within one cell size are found at constant cost.
 class CellGrid {
  public:
   explicit CellGrid(double cell_size) : cell_size_(cell_size) {}
@@ -19,8 +19,8 @@ class CellGrid {
     cells_[key(column(position.x), column(position.z))].push_back({position, number});
   }
 
-  /// Whether visit(position, number) is true for any point within the cell size (others may be
-  /// visited too).
+  /// Calls visit(position, number) for the points within one cell size, and for some farther
+  /// points, until a call returns true. Returns whether any call returned true.
   template <typename Visit>
   bool any_near(Vec2 position, Visit visit) const {
     const std::int64_t cx = column(position.x), cz = column(position.z);
@@ -41,7 +41,8 @@ class CellGrid {
     std::size_t number;
   };
 
-  /// Very far ones share the last.
+  /// Returns the index of the cell that contains a coordinate. All very large coordinates share one
+  /// cell.
   std::int64_t column(double coordinate) const {
     constexpr double last = 1e18;
     return static_cast<std::int64_t>(std::clamp(std::floor(coordinate / cell_size_), -last, last));

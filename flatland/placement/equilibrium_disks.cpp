@@ -13,36 +13,41 @@ namespace flatspeckle {
 
 namespace {
 
-/// What rounding may take from a distance must not make disks touch.
+/// Relative margin by which radii are enlarged, so that rounding of distances cannot make disks
+/// touch.
 constexpr double rounding_margin = 1e-11;
 
+/// A neighbouring column or row of cells along one axis of the periodic box.
 struct Neighbours {
   std::uint32_t cell;
-  double shift;  ///< of the periodic image that is near
+  double shift;  ///< translation to the periodic image of `cell` that is the neighbour
 };
 
-/// The cell `step` further on (-1, 0 or 1) around the box.
+/// Returns the cell at `step` (-1, 0 or 1) from a cell along one axis of the periodic box.
 Neighbours neighbour(std::uint32_t cell, int step, std::uint32_t cells, double length) {
   if (step < 0 && cell == 0) return {cells - 1, -length};
   if (step > 0 && cell + 1 == cells) return {0, length};
   return {cell + static_cast<std::uint32_t>(step), 0};
 }
 
-/// Random sequential addition is quick up to here.
+/// Packing fraction up to which random sequential addition is fast.
 constexpr double start_packing = 0.3;
-/// Short enough for density waves to relax as fast as they can.
+/// Number of contacts per chain. It is small enough for density waves to relax at their fastest
+/// rate.
 constexpr double contacts_per_chain = 20;
 
-/// Contacts per disk that forget the start. The slowest relaxation measured (N up to 1000) is that
-/// of density waves below packing 0.65, 10 to 20 contacts per disk, and beyond it that of the
-/// orientation of the bonds, 25 at 0.65 and 330 at 0.69.
+/// Returns the number of contacts per disk after which the state no longer depends on the initial
+/// one. Relaxation times were measured with up to 1000 disks. Below packing 0.65 density waves
+/// relax most slowly, in 10 to 20 contacts per disk. Above packing 0.65 the orientation of the
+/// bonds between neighbours relaxes most slowly, in 25 contacts per disk at 0.65 and 330 at 0.69.
 double contacts_per_disk(double packing) {
   return 100 + 0.8 / std::pow(0.71 - packing, 2);
 }
 
-/// Mean distance between contacts along a chain: each makes the motion jump by pi/4 diameters, and
-/// these jumps over the distance are Z - 1 = 2 eta g(contact). In a thin gas there is no need to
-/// move further than to the next disk.
+/// Returns the mean distance that a chain moves between contacts. At a contact the motion jumps by
+/// pi/4 diameters on average. The ratio of jumps to distance is Z - 1 = 2 eta g(contact), with Z
+/// the compressibility factor, eta the packing fraction and g the pair correlation function. In a
+/// dilute gas the mean spacing is returned if it is shorter.
 double free_distance(double packing, double mean_diameter, double spacing) {
   const double jumps = 2 * packing * HardDiskFluid(packing, mean_diameter).contact_value();
   return std::min(std::numbers::pi / 4 * mean_diameter / jumps, spacing);
@@ -61,7 +66,8 @@ class Fluid {
         contacts_per_chain * free_distance(packing_, mean_diameter, std::sqrt(box.area() / disks));
   }
 
-  /// Places all disks, shrunk where they would not fit, then lets them grow while they move.
+  /// Places all disks, with reduced radii if the packing is high, then grows them to full size
+  /// while they move.
   void fill() {
     const double scale = std::min(1.0, std::sqrt(start_packing / packing_));
     for (std::size_t disk = 0; disk < chains_.size(); ++disk)
@@ -75,7 +81,8 @@ class Fluid {
 
   void equilibrate() { move(contacts_per_disk(packing_)); }
 
-  /// All moved alike by a random vector, which makes the density exactly uniform.
+  /// Returns all centres, shifted by one common random vector, which makes the density exactly
+  /// uniform.
   std::vector<Vec2> centres() {
     const Vec2 shift = anywhere();
     std::vector<Vec2> result;
@@ -95,8 +102,8 @@ class Fluid {
     for (int tries = 0; !attempt(); ++tries)
       if (tries == most_tries)
         throw InputError(
-            "the disks cannot be packed: the large ones leave no room; lower the "
-            "density or min_gap");
+            "the disks cannot be packed: the large disks leave no space for the small ones; lower "
+            "the density or min_gap");
   }
 
   bool all_grow() {
@@ -132,7 +139,7 @@ EventChains::EventChains(const Domain& box, std::span<const double> radii)
     : length_{box.width, box.depth}, radius_(radii.begin(), radii.end()), reach_(radii.size()) {
   for (double& radius : radius_) radius *= 1 + rounding_margin;
   const double contact = 2 * *std::max_element(radius_.begin(), radius_.end());
-  // Many more cells than disks would only cost memory.
+  // A finer grid, with many more cells than disks, would only cost memory.
   const double most_cells = 3 + 2 * std::sqrt(static_cast<double>(size()));
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const double cells = std::floor(std::min(length_[axis] / contact, most_cells));
@@ -203,18 +210,18 @@ bool EventChains::place(std::size_t disk, Vec2 centre, double scale) {
 }
 
 bool EventChains::grow(std::size_t disk) {
-  double room = radius_[disk];
+  double free_radius = radius_[disk];
   visit_near({at_[0][disk], at_[1][disk]}, [&](std::uint32_t other, Vec2 distance) {
-    if (other != disk) room = std::min(room, length(distance) - reach_[other]);
+    if (other != disk) free_radius = std::min(free_radius, length(distance) - reach_[other]);
   });
-  reach_[disk] = std::max(reach_[disk], room);
+  reach_[disk] = std::max(reach_[disk], free_radius);
   return reach_[disk] == radius_[disk];
 }
 
 EventChains::Contact EventChains::next_contact(std::size_t axis, std::uint32_t disk,
                                                double farthest) const {
   const std::size_t across = 1 - axis;
-  const double along = at_[axis][disk], aside = at_[across][disk], radius = reach_[disk];
+  const double along = at_[axis][disk], lateral = at_[across][disk], radius = reach_[disk];
   Contact contact{farthest, none, 0};
   std::array<std::uint32_t, 2> cell;
   for (int ahead = 0; ahead <= 1; ++ahead) {
@@ -225,7 +232,7 @@ EventChains::Contact EventChains::next_contact(std::size_t axis, std::uint32_t d
       cell[across] = row.cell;
       for (std::uint32_t l = first_in(cell); l != none; l = next_[l]) {
         const double dx = at_[axis][l] + column.shift - along;
-        const double dz = at_[across][l] + row.shift - aside;
+        const double dz = at_[across][l] + row.shift - lateral;
         const double reach = radius + reach_[l], free = reach * reach - dz * dz;
         if (dx <= 0 || free <= 0) continue;
         const double distance = dx - std::sqrt(free);
@@ -241,8 +248,8 @@ double EventChains::move(std::size_t axis, std::size_t first, double length) {
   auto disk = static_cast<std::uint32_t>(first);
   for (;;) {
     std::uint32_t& cell = cell_[axis][disk];
-    // Cells are wider than any contact, so up to the end of this one nothing beyond the next is
-    // met.
+    // Cells are wider than any contact distance. Up to the end of its cell, the disk can therefore
+    // meet only disks of this cell and of the next.
     const double end = (cell + 1) * cell_size_[axis];
     const double to_end = end - at_[axis][disk];
     const Contact contact = next_contact(axis, disk, std::min(to_end, length));

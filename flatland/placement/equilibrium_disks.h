@@ -11,39 +11,40 @@
 namespace flatspeckle {
 
 /// Hard disks in a box with periodic edges, moved by straight event chains (Bernard, Krauth and
-/// Wilson 2009, Phys. Rev. E 80, 056704): a disk moves until it meets another, which moves on in
-/// its place, until the whole chain has moved a stated length. No move is refused, and the
-/// equilibrium fluid is left unchanged. The box must be at least three of the largest distances of
-/// contact wide and deep.
+/// Wilson [bernard2009], Phys. Rev. E 80, 056704): a disk moves until it touches another, which
+/// then moves instead, until the whole chain has moved a given length. No move is rejected, and the
+/// equilibrium distribution is preserved. The box must be at least three times as wide and deep as
+/// the largest contact distance of two disks.
 class EventChains {
  public:
-  /// Radii include half of the gap that disks are to keep. No disk has a place yet.
+  /// Radii include half of the gap between disks. No disk is placed yet.
   EventChains(const Domain& box, std::span<const double> radii);
 
   std::size_t size() const { return reach_.size(); }
-  /// Of a disk that has a place; in the box |x| <= width/2, 0 <= z <= depth.
+  /// Returns the centre of a placed disk, in the box |x| <= width/2, 0 <= z <= depth.
   Vec2 centre(std::size_t disk) const;
   double reach(std::size_t disk) const { return reach_[disk]; }
 
-  /// Gives a disk without a place one, at scale times its radius. False, and nothing is changed,
-  /// where it would overlap.
+  /// Places a disk that is not placed yet, with `scale` times its radius. Returns false and changes
+  /// nothing if it would overlap another disk.
   bool place(std::size_t disk, Vec2 centre, double scale = 1);
-  /// Lets a placed disk grow up to its radius, as far as its neighbours allow. True if it has that
-  /// radius.
+  /// Grows a placed disk up to its radius, as far as its neighbours allow. Returns whether the disk
+  /// has its full radius.
   bool grow(std::size_t disk);
 
-  /// Moves one chain along x (axis 0) or z (axis 1), `disk` first. Returns length plus the
-  /// distances between centres, along the chain, over which the motion jumped: for equal disks its
-  /// mean over the length is the compressibility factor Z (Michel, Kapfer and Krauth 2014, J. Chem.
-  /// Phys. 140, 054116).
+  /// Moves one chain along x (axis 0) or z (axis 1), beginning with `disk`. At each contact the
+  /// motion jumps to the next disk, over the distance between the two centres along the axis.
+  /// Returns `length` plus the sum of these jumps. For equal disks the mean of the returned value,
+  /// divided by `length`, is the compressibility factor Z (Michel, Kapfer and Krauth [michel2014],
+  /// J. Chem. Phys. 140, 054116).
   double move(std::size_t axis, std::size_t disk, double length);
 
  private:
   static constexpr std::uint32_t none = 0xffffffff;
   struct Contact {
     double distance;
-    std::uint32_t disk;  ///< none: nothing in the way
-    double jump;         ///< between centres, along the chain
+    std::uint32_t disk;  ///< `none` if no disk is in the way
+    double jump;         ///< distance between both centres along the axis
   };
 
   std::uint32_t& first_in(const std::array<std::uint32_t, 2>& cell) {
@@ -54,26 +55,26 @@ class EventChains {
   }
   void enter(std::uint32_t disk);
   void leave(std::uint32_t disk);
-  /// Visits the disks of the 3 x 3 cells around a point, with the vector from it to them.
+  /// Calls visit(disk, vector from the point) for the disks of the 3 x 3 cells around a point.
   template <typename Visit>
   void visit_near(const std::array<double, 2>& point, Visit visit) const;
   Contact next_contact(std::size_t axis, std::uint32_t disk, double farthest) const;
 
   std::array<double, 2> length_, cell_size_;
   std::array<std::uint32_t, 2> cells_;
-  std::array<std::vector<double>, 2> at_;  ///< [axis][disk], in [0, length)
-  std::vector<double> radius_, reach_;     ///< full radius; radius now
+  std::array<std::vector<double>, 2> at_;  ///< centres, [axis][disk], in [0, length)
+  std::vector<double> radius_, reach_;     ///< full radius; current radius
   std::array<std::vector<std::uint32_t>, 2> cell_;
-  std::vector<std::uint32_t> first_, next_, previous_;  ///< disks of a cell as a list
+  std::vector<std::uint32_t> first_, next_, previous_;  ///< linked list of the disks of each cell
 };
 
-/// Centres of hard disks from the equilibrium fluid in a box with periodic edges: the box is a
-/// window on a homogeneous fluid without walls, of uniform density. (Distances in the plane are no
-/// shorter than periodic ones, so nothing overlaps there either.)
-/// Radii include half of the gap that disks are to keep; they may differ, the largest first. A pure
-/// function of the random numbers. Preconditions: packing fraction up to 0.69 (above, the fluid
-/// freezes), a box at least three of the largest diameters wide and deep. Throws InputError where
-/// disks of very different size find no place.
+/// Draws the centres of hard disks from the equilibrium fluid in a box with periodic edges. The box
+/// is a window on a homogeneous fluid without walls, whose density is uniform. Disks that do not
+/// overlap in the periodic box do not overlap in the plane either, where distances are no shorter.
+/// Radii include half of the gap between disks. They may differ, in descending order. The result
+/// depends only on the arguments. Preconditions: the packing fraction is at most 0.69 (the fluid
+/// freezes above), and the box is at least three times as wide and deep as the largest diameter.
+/// Throws InputError if disks of very different size cannot be placed.
 std::vector<Vec2> draw_equilibrium_disks(const Domain& box, std::span<const double> radii,
                                          RandomStream& random);
 

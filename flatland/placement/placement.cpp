@@ -20,7 +20,8 @@ Vec2 uniform_in(const Domain& box, RandomStream& random) {
   return {x, random.uniform() * box.depth};
 }
 
-/// Counts unit-rate arrivals until the mean is passed.
+/// Draws a Poisson-distributed number: the number of arrivals of a unit-rate process up to the time
+/// `mean`.
 std::uint64_t poisson_number(double mean, RandomStream& random) {
   std::uint64_t number = 0;
   for (double arrival = -std::log(random.uniform()); arrival < mean;
@@ -29,7 +30,7 @@ std::uint64_t poisson_number(double mean, RandomStream& random) {
   return number;
 }
 
-/// Random sequential addition. Radii include half the gap.
+/// Places disks by random sequential addition. Radii include half the gap.
 std::vector<Vec2> add_disks(const Domain& box, std::span<const double> radii,
                             RandomStream& random) {
   CellGrid grid(2 * *std::max_element(radii.begin(), radii.end()));
@@ -37,8 +38,9 @@ std::vector<Vec2> add_disks(const Domain& box, std::span<const double> radii,
   constexpr std::uint64_t most_tries = 100'000'000;
   for (std::uint64_t tries = 0; centres.size() < radii.size(); ++tries) {
     if (tries == most_tries)
-      throw InputError("the disks cannot be packed: placing " + std::to_string(radii.size()) +
-                       " one after the other does not end; lower the density or min_gap");
+      throw InputError("the disks cannot be packed: random sequential addition of " +
+                       std::to_string(radii.size()) +
+                       " disks does not end; lower the density or min_gap");
     const Vec2 position = uniform_in(box, random);
     const double radius = radii[centres.size()];
     const bool taken = grid.any_near(position, [&](Vec2 other, std::size_t number) {
@@ -75,15 +77,15 @@ PlacementRule::Kind placement_kind(const std::optional<std::string>& word, bool 
   const Rule rule = chosen<Rule>(placement_words, *word);
   if (disks == (rule == Rule::poisson))
     throw InputError("placement", *word,
-                     disks ? "disks must not overlap: hard_disk or equilibrium"
-                           : "scatterers without a radius: poisson");
+                     disks ? "must be hard_disk or equilibrium for disks, which must not overlap"
+                           : "must be poisson for scatterers without a radius");
   return rule;
 }
 
 void require_placeable(const PlacementRule& rule) {
   if (rule.mean_count > most_scatterers)
     throw InputError("count", rule.mean_count,
-                     "too many to place, more than this machine can solve");
+                     "must be at most 1e7, the largest number that can be solved");
 }
 
 Placement draw_placement(const Domain& box, const Scatterer& scatterer, const PlacementRule& rule,
@@ -106,7 +108,7 @@ Placement draw_placement(const Domain& box, const Scatterer& scatterer, const Pl
 std::vector<Vec2> draw_disks(const Domain& box, std::span<const double> radii,
                              PlacementRule::Kind kind, double min_gap, RandomStream& random) {
   if (radii.empty()) return {};
-  // Large disks find no room among many small ones.
+  // The largest disks are placed first, because they would not fit among many small ones.
   std::vector<std::size_t> order(radii.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -128,22 +130,24 @@ std::vector<Vec2> draw_disks(const Domain& box, std::span<const double> radii,
 
 void check_packing(const Domain& box, PlacementRule::Kind kind, double packing, double largest) {
   const bool equilibrium = kind == PlacementRule::Kind::equilibrium;
-  // Some slack lets the limit itself be asked for with the default gap.
+  // The default gap raises the packing fraction slightly: the slack of 0.2 % accepts disks that
+  // would be exactly at the limit without it.
   if (packing > 1.002 * (equilibrium ? 0.69 : 0.5))
     throw InputError(
         "packing fraction (with min_gap)", packing,
         equilibrium
-            ? "the fluid of hard disks freezes near 0.7: must be at most 0.69; lower the density, "
-              "the radius or min_gap"
-            : "hard disks placed one after the other reach 0.5; lower the density, the radius or "
-              "min_gap, or let placement = equilibrium pack them");
+            ? "must be at most 0.69, because the fluid of hard disks freezes near 0.7; lower the "
+              "density, the radius or min_gap"
+            : "must be at most 0.5 for placement = hard_disk; lower the density, the radius or "
+              "min_gap, or use placement = equilibrium");
   const bool slab = box.kind == Domain::Kind::slab;
   for (const auto& [key, extent] : {std::pair{"width", box.width}, {"depth", box.depth}})
     if (equilibrium && !slab && extent < 3.001 * largest)
-      throw InputError(key, extent,
-                       "placement = equilibrium needs a box more than three times as wide and deep "
-                       "as the largest disk with its gap, " +
-                           std::to_string(largest));
+      throw InputError(
+          key, extent,
+          "placement = equilibrium requires a box more than three times as wide and deep "
+          "as the largest disk with its gap, " +
+              std::to_string(largest));
 }
 
 Placement read_placement(const std::string& path, const Scatterer& scatterer) {
@@ -153,7 +157,7 @@ Placement read_placement(const std::string& path, const Scatterer& scatterer) {
     if (!table.has(name))
       throw InputError("placement", path, std::string("column ") + name + " is missing");
   if (table.has("index_im") && !table.has("index_re"))
-    throw InputError(path + ": column index_re is missing beside index_im");
+    throw InputError(path + ": the column index_im requires a column index_re");
   if (scatterer.is_disk() && !table.has("radius") && scatterer.radius <= 0)
     throw InputError(path + ": column radius is missing, and the key radius is not given");
   Placement placement;
@@ -171,7 +175,7 @@ void require_outside(const Placement& placement, Vec2 sensor) {
     if (scatterer.is_disk() ? distance >= scatterer.radius : distance > 0) continue;
     throw InputError("near_sensors",
                      "(" + std::to_string(sensor.x) + ", " + std::to_string(sensor.z) + ")",
-                     "must lie outside every scatterer (a map shows the field inside)");
+                     "must lie outside every scatterer; use a map for the field inside");
   }
 }
 
@@ -195,7 +199,7 @@ double smallest_gap(const Placement& placement, double within) {
 void check_no_overlap(const Placement& placement) {
   double largest = 0;
   for (const auto& placed : placement) largest = std::max(largest, placed.scatterer.disk_radius());
-  constexpr double tiny = 1e-6;  // points meet only where they are equal
+  constexpr double tiny = 1e-6;  // points overlap only if they are equal
   CellGrid grid(largest > 0 ? 2 * largest : tiny);
   for (std::size_t j = 0; j < placement.size(); ++j) {
     const PlacedScatterer& here = placement[j];

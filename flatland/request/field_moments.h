@@ -6,22 +6,26 @@
 
 namespace flatspeckle {
 
-/// What either solver makes of a scene: batches for the runner, and how their sums are read.
-/// Nothing else may know which of the two it was.
+/// Computation of the mean field and the covariance of a scene, by the exact solver or by Monte
+/// Carlo. The runner executes the batches, which add to sums; the estimators compute the results
+/// from these sums. Code that runs the job does not depend on the solver.
 struct FieldJob {
   BatchJob batches;
-  Estimator mean;        ///< mean scattered field per channel; empty where it is not defined
-  Estimator covariance;  ///< per entry of the request
+  /// Estimates the mean scattered field of each channel (light and view); empty if not computed.
+  Estimator mean;
+  Estimator covariance;  ///< estimates the covariance of each entry of the request
 };
 
-/// Mean field per channel and covariance per requested entry, with standard errors.
+/// Mean field of each channel (light and view) and covariance of each requested entry, with
+/// standard errors.
 struct FieldMoments {
   Estimate mean;
   Estimate covariance;
   double samples = 0;
 };
 
-/// Of an estimator, as a batch job asks for it.
+/// Returns the function that computes the relative error of an estimator, for
+/// BatchJob::relative_error.
 inline auto relative_error_of(const Estimator& estimator) {
   return
       [estimator](const GroupedSums& sums) { return relative_error(jackknife(sums, estimator)); };

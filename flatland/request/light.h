@@ -8,14 +8,14 @@
 
 namespace flatspeckle {
 
-/// What illuminates the medium, of unit size: a plane wave exp(i k w.r), a point source (the Green
-/// function of C3), or a Gaussian beam whose field is 1 at its focus.
+/// Illumination of the medium, with unit amplitude: a plane wave exp(i k w.r), a point source (the
+/// Green function of C3), or a Gaussian beam whose field is 1 at its focus.
 struct Light {
   enum class Kind { plane, point, beam };
   Kind kind = Kind::plane;
-  double angle = 0;  ///< of a plane wave, or of a beam's axis (C2)
-  Vec2 point;        ///< the source, or a beam's focus
-  double waist = 0;  ///< of a beam: where its field at the focus has fallen to 1/e
+  double angle = 0;  ///< direction of a plane wave or of a beam's axis (C2)
+  Vec2 point;        ///< position of a point source, or of a beam's focus
+  double waist = 0;  ///< 1/e radius of a beam's field at its focus
   auto operator<=>(const Light&) const = default;
 };
 
@@ -29,7 +29,7 @@ inline Light gaussian_beam(double angle, Vec2 focus, double waist) {
   return {Light::Kind::beam, angle, focus, waist};
 }
 
-/// A list of lights; plain numbers are the angles of plane waves.
+/// List of illuminations. A list of numbers is converted to plane waves with these angles (C2).
 struct Lights : std::vector<Light> {
   Lights() = default;
   Lights(std::vector<Light> lights) : std::vector<Light>(std::move(lights)) {}

@@ -39,7 +39,8 @@ CovarianceRequest every_channel(Lights lights, std::vector<View> views) {
   return request;
 }
 
-/// Numbers things as they come, in a list of them; equal ones share a number.
+/// Collects distinct things in a list, in the order in which they first appear. number() returns
+/// the index of a thing in the list.
 template <typename Thing, typename List>
 class Numbering {
  public:
@@ -56,7 +57,7 @@ class Numbering {
   std::map<Thing, std::uint32_t> numbers_;
 };
 
-/// Gathers the channels of a request, each once.
+/// Collects the lights, views and channels of a request, each once.
 class ChannelList {
  public:
   explicit ChannelList(CovarianceRequest& request)
@@ -72,7 +73,9 @@ class ChannelList {
   Numbering<Channel, std::vector<Channel>> channels_;
 };
 
-/// Adds moved channels and lists the entries of CovarianceRequest.
+/// Builds a request that compares a reference field with moved fields, whose light or views are
+/// tilted or shifted. Adds their channels; list_entries() then lists the entries in the order that
+/// is documented at CovarianceRequest.
 class Moves {
  public:
   Moves(CovarianceRequest& request, const Light& light, const std::vector<View>& views)
@@ -113,7 +116,8 @@ double tilt_over_k(const Light& light, double tilt) {
   return tilt == 0 ? 0 : std::sin(light.angle + tilt) - std::sin(light.angle);
 }
 
-/// The view on the same side whose sine is larger by q/k; `key` has the value that asks for it.
+/// Returns the far view on the same side of the medium for which sin(angle) is larger by q_over_k
+/// than for `view`. key and value are used in error messages.
 View deflected(const View& view, double q_over_k, const std::string& key, double value) {
   if (q_over_k == 0) return view;
   const double sine = std::sin(view.angle) + q_over_k;
@@ -135,7 +139,8 @@ View translated(View view, double shift) {
   return view;
 }
 
-/// Tilts with the views that C19 matches to them.
+/// For each tilt of the light, adds the fields in the matched views: k sin(view angle) changes by
+/// as much as k sin(light angle) (C19).
 void add_matched(CovarianceRequest& request, Moves& moves, const Light& light) {
   for (double tilt : request.tilts) {
     const double q_over_k = tilt_over_k(light, tilt);
@@ -163,7 +168,7 @@ std::vector<double> CovarianceRequest::reference_angles() const {
   return angles;
 }
 
-bool has_near_ends(const CovarianceRequest& request) {
+bool has_near_endpoints(const CovarianceRequest& request) {
   return !request.lights.all(Light::Kind::plane) || std::ranges::any_of(request.views, &View::near);
 }
 
@@ -179,13 +184,14 @@ CovarianceRequest full_request(Lights lights, std::vector<View> views) {
   auto request = every_channel(std::move(lights), std::move(views));
   request.kind = CovarianceRequest::Kind::full;
   const std::size_t n = request.channels.size(), entries = n * (n + 1) / 2;
-  // About twenty copies of the sums are held: the groups and the batches in hand.
+  // About twenty copies of the covariance sums are in memory at once: for the groups of batches
+  // from which errors are estimated, and for the batches in progress.
   const double bytes = 20.0 * sizeof(Complex) * static_cast<double>(entries);
   const double memory = usable_memory();
   if (bytes > 0.8 * memory) {
     throw InputError("covariance", "full",
                      std::to_string(n) + " channels need " + std::to_string(bytes / 1e9) +
-                         " GB, there are " + std::to_string(memory / 1e9));
+                         " GB of memory; available GB: " + std::to_string(memory / 1e9));
   }
   request.entries.reserve(entries);
   for (std::size_t a = 0; a < n; ++a)

@@ -13,12 +13,12 @@
 
 namespace flatspeckle {
 
-/// What records the field: a direction far away (amplitude A of C4) or a point (the scattered
+/// Detector of the field: a far-field direction (amplitude A of C4) or a point (the scattered
 /// field).
 struct View {
   bool near = false;
-  double angle = 0;  ///< far view
-  Vec2 point;        ///< near sensor
+  double angle = 0;  ///< direction of a far view (C2)
+  Vec2 point;        ///< position of a near sensor
   auto operator<=>(const View&) const = default;
 };
 
@@ -34,41 +34,50 @@ inline View near_sensor(Vec2 point) {
   return {true, 0, point};
 }
 
-/// Reads columns x, z; at least one row. Throws InputError.
+/// Reads points from a CSV file with columns x and z and at least one row. Throws InputError. key:
+/// name of the key in messages.
 std::vector<Vec2> read_points(const std::string& key, const std::string& path);
 
-/// Where the covariance of channels b <= a stands among the entries of a full_request().
+/// Returns the index, in the entries of a full_request(), of the covariance of channels a and b.
+/// Precondition: b <= a.
 inline std::size_t triangle_entry(std::size_t a, std::size_t b) {
   return a * (a + 1) / 2 + b;
 }
 
-/// The intensities of so many channels, of all covariances.
+/// Returns the diagonal (the intensities of the channels) of the covariance matrix whose lower
+/// triangle is given.
 inline std::vector<Complex> diagonal(std::span<const Complex> triangle, std::size_t channels) {
   std::vector<Complex> found;
   for (std::size_t a = 0; a < channels; ++a) found.push_back(triangle[triangle_entry(a, a)]);
   return found;
 }
 
-/// One recorded field u: a light seen in a view, by their numbers in the scene.
+/// One recorded field u, given by the indices of its illumination (light) and its detector (view)
+/// in the request.
 struct Channel {
   std::uint32_t light = 0, view = 0;
   auto operator<=>(const Channel&) const = default;
 };
 
-/// One covariance entry E[u_a conj(u_b)] - E[u_a] conj(E[u_b]), by channel numbers.
+/// One covariance entry E[u_a conj(u_b)] - E[u_a] conj(E[u_b]), where a and b are indices of
+/// channels.
 struct Entry {
   std::uint32_t a = 0, b = 0;
 };
 
-/// Which lights, views and entries a run is asked for. The order of `entries` is that of the
-/// result:
-///  intensity      [light][view], a = b
+/// Illuminations, detectors and covariance entries that a run computes. Results have the order of
+/// `entries`, which depends on the kind:
+///  intensity      [light][view]; both fields are the same (a = b)
 ///  full           the lower triangle of channels [light][view], row by row, b <= a
 ///  pairs          [pair]
 ///  memory_effect, tilt_shift, translation
-///                 [move][view] reference against moved; then the reference's [view] and the moved
-///                 [move][view] intensities. Moves are tilts with their matched views;
-///                 [tilt][shift] and, for far views, [tilt] with their matched views; shifts
+///                 covariances of reference and moved fields, [move][view]; then intensities of the
+///                 reference, [view]; then intensities of the moved fields, [move][view]
+/// In these three kinds the light, the views or both are moved relative to the reference. The moves
+/// are
+///  memory_effect  tilts, with matched views
+///  tilt_shift     [tilt][shift], followed for far views by the tilts with matched views
+///  translation    shifts
 struct CovarianceRequest {
   enum class Kind { intensity, pairs, memory_effect, tilt_shift, translation, full };
   Kind kind = Kind::intensity;
@@ -76,15 +85,18 @@ struct CovarianceRequest {
   std::vector<View> views;
   std::vector<Channel> channels;
   std::vector<Entry> entries;
-  // Of a moved light or view against a reference, which is light 0 and the first views.
+  // Moves of the light or the views relative to the reference, which is light 0 with the first
+  // reference_views views.
   std::vector<double> tilts;   ///< rotation of the light, radians
-  std::vector<double> tilt_q;  ///< k (sin tilted - sin reference), per tilt (C19)
-  std::vector<double> shifts;  ///< of k sin(view), or along x
+  std::vector<double> tilt_q;  ///< k (sin(tilted angle) - sin(reference angle)) (C19)
+  /// tilt_shift of far views: change of k sin(view angle); otherwise: translation along x.
+  std::vector<double> shifts;
   std::size_t moves = 0, reference_views = 0;
 
-  /// Whether all views are on the side that light is transmitted to.
+  /// Whether all views are on the transmission side of the medium.
   bool transmission_only() const;
-  /// Of far views.
+  /// Returns the angles of the reference views, which must be far-field views (directions, not near
+  /// sensors).
   std::vector<double> reference_angles() const;
   bool has_reference() const { return moves > 0; }
   std::size_t tilted_entry(std::size_t move, std::size_t view) const {
@@ -96,31 +108,34 @@ struct CovarianceRequest {
   }
 };
 
-/// As in scene files, by kind.
+/// Accepted values of the scene key `covariance`, in the order of CovarianceRequest::Kind.
 inline const std::vector<std::string> request_words = {"intensity",  "pairs",       "memory_effect",
                                                        "tilt_shift", "translation", "full"};
 
-/// Whether it has beams, near sources or near sensors.
-bool has_near_ends(const CovarianceRequest& request);
+/// Whether a request has beams, near sources or near sensors.
+bool has_near_endpoints(const CovarianceRequest& request);
 
 CovarianceRequest intensity_request(Lights lights, std::vector<View> views);
 CovarianceRequest full_request(Lights lights, std::vector<View> views);
-/// pairs: angles (light 1, view 1, light 2, view 2) of each.
+/// Angles, in radians, of a requested pair of fields: the first field has light1 and view1, the
+/// second light2 and view2.
 struct AnglePair {
   double light1, view1, light2, view2;
 };
 CovarianceRequest pairs_request(const std::vector<AnglePair>& pairs);
-/// Matched views keep k sin v - k sin i and the side of the medium (C19). Throws InputError for a
-/// tilt that takes the light or a matched view past the horizon.
+/// Returns the request for tilts of the light, each with matched views: with the light angle i, the
+/// view angle v changes so that k sin v - k sin i stays the same, on the same side of the medium
+/// (C19). Throws InputError if a tilt takes the light or a matched view past the horizon.
 CovarianceRequest memory_effect_request(double k, double light, const std::vector<double>& views,
                                         std::vector<double> tilts);
-/// Every tilt of the light (of a beam about its focus) with every shift of the views: of k
-/// sin(view) on the same side for far views, along x for near sensors. Throws InputError for what
-/// passes the horizon.
+/// Returns the request that combines every tilt of the light with every shift of the views. A beam
+/// is tilted about its focus. Far views are shifted in k sin(view angle) on the same side of the
+/// medium, near sensors along x. Throws InputError if a tilt or shift takes a direction past the
+/// horizon.
 CovarianceRequest tilt_shift_request(double k, const Light& light, const std::vector<View>& views,
                                      std::vector<double> tilts, std::vector<double> shifts);
-/// A beam or point source and the near sensors moved along x together. Far views stay: a
-/// translation only turns their phase.
+/// Returns the request for a beam or point source that moves along x together with the near
+/// sensors. Far views do not move, because a translation changes only their phase.
 CovarianceRequest translation_request(const Light& light, const std::vector<View>& views,
                                       std::vector<double> shifts);
 

@@ -11,8 +11,8 @@
 
 namespace flatspeckle {
 
-/// The phase functions that a scene may have in place of scatterers, beside hg: each a type with a
-/// word, keys and make_phase, in a file of its own. This is their list.
+/// The phase functions, besides hg, that a scene may have instead of scatterers. Each is a type
+/// with a `word`, add_keys() and make_phase(), in its own file.
 using BulkPhases = std::tuple<TwoTermHg, PhaseTable, Rayleigh>;
 
 inline void add_keys(Keys& keys, BulkPhases& all) {
@@ -23,7 +23,8 @@ inline std::vector<std::string> bulk_phase_words() {
   return kind_words(BulkPhases{});
 }
 
-/// That of this word. Throws InputError.
+/// Returns the phase function that `word` names, or an empty one if `word` is not the word of one
+/// of the BulkPhases. Throws InputError.
 inline BulkPhase make_phase(const Keys& keys, const BulkPhases& all, const std::string& word) {
   BulkPhase phase;
   with_kind(all, word, [&](const auto& one) { phase = make_phase(keys, one); });

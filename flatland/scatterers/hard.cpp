@@ -5,7 +5,7 @@ namespace flatspeckle {
 
 namespace {
 
-// C7: the normal derivative is 0 at the rim.
+// Returns T_n of C7: the normal derivative of the field is 0 at the rim.
 std::vector<ScaledComplex> hard_t_matrix(const Scatterer&, double x, int order) {
   const auto j = scaled_bessel_j(order + 1, x);
   const auto h = scaled_hankel(order + 1, x);

@@ -8,8 +8,8 @@ namespace flatspeckle {
 
 namespace {
 
-/// Integral of f(angle) times the table over [0, pi], by three Gauss-Legendre points of each
-/// interval.
+/// Returns the integral of f(angle) times the table over [0, pi], by three Gauss-Legendre points
+/// per interval.
 template <typename F>
 double integral(const AngleTable& table, const F& f) {
   const double root = std::sqrt(0.6), nodes[] = {-root, 0, root}, weights[] = {5, 8, 5};

@@ -7,8 +7,9 @@
 
 namespace flatspeckle {
 
-/// A phase function that was measured or computed elsewhere: a CSV file with columns angle
-/// (radians, rising from 0 to pi) and value (not negative, in any unit), linear in between.
+/// Phase function that was measured or computed elsewhere. It is read from a CSV file with columns
+/// angle (radians, increasing from 0 to pi) and value (not negative, in any unit), and is linear
+/// between the angles.
 struct PhaseTable {
   static constexpr const char* word = "phase_table";
   std::string phase_table;
@@ -20,7 +21,8 @@ inline void add_keys(Keys& keys, PhaseTable& values) {
       .only_of(values.word);
 }
 
-/// Throws InputError for a file that is no such table.
+/// Reads the file that phase_table names. Throws InputError if the file is not a table of this
+/// form.
 BulkPhase make_phase(const Keys& keys, const PhaseTable& values);
 
 }  // namespace flatspeckle

@@ -8,14 +8,16 @@ namespace {
 
 void read_point(const Keys& keys, const ScattererValues& values, Scatterer& made) {
   read_albedo(keys, values, made);
-  if (made.albedo == 0) throw InputError("albedo", 0, "of points must be in (0, 1]");
+  if (made.albedo == 0) throw InputError("albedo", 0, "must be in (0, 1] for points");
   const auto& phase_shift = keys.read(values.phase_shift);
   if (phase_shift && made.albedo != 1)
-    throw InputError("phase_shift", *phase_shift, "an absorbing point is resonant; leave it out");
+    throw InputError(
+        "phase_shift", *phase_shift,
+        "requires albedo = 1, because an absorbing point is resonant; leave out phase_shift");
   made.phase_shift = phase_shift.value_or(made.phase_shift);
 }
 
-// C8
+// Returns T_0 of C8; the T_n of all other orders are 0.
 std::vector<ScaledComplex> point_t_matrix(const Scatterer& point, double, int order) {
   std::vector<ScaledComplex> t(order + 1);
   const long double angle = 2 * static_cast<long double>(point.phase_shift);

@@ -8,8 +8,8 @@
 
 namespace flatspeckle {
 
-/// Unpolarized light on what is small against its wavelength: in the plane thin dielectric
-/// cylinders, uniform for E along the axis and cos^2 across it.
+/// Rayleigh scattering of unpolarized light in the plane, by thin dielectric cylinders: the sum of
+/// a uniform pattern (E along the axis) and a cos^2 pattern (E across the axis).
 struct Rayleigh {
   static constexpr const char* word = "rayleigh";
 };

@@ -12,7 +12,7 @@ namespace flatspeckle {
 
 namespace {
 
-// sum over n = -M .. M of terms that are even in n
+// Returns the sum over n = -M .. M of terms that are even in n, with M the highest order of t.
 template <typename Term>
 auto two_sided_sum(const std::vector<ExtendedComplex>& t, Term term) {
   auto sum = term(0);
@@ -20,8 +20,8 @@ auto two_sided_sum(const std::vector<ExtendedComplex>& t, Term term) {
   return sum;
 }
 
-/// Clenshaw's recurrence for sum c_n cos(n theta), b_n = c_n + 2 cos(theta) b_{n+1} - b_{n+2}, at
-/// several angles side by side. Rounding grows as the order squared: 1e-12 at order 100.
+/// Clenshaw's recurrence for sum c_n cos(n theta), b_n = c_n + 2 cos(theta) b_{n+1} - b_{n+2}, for
+/// several angles at once. Rounding errors grow as the order squared, to 1e-12 at order 100.
 struct ClenshawBlock {
   static constexpr std::size_t size = 64;
   using Row = std::array<double, size>;
@@ -37,14 +37,15 @@ struct ClenshawBlock {
       imaginary[i] = next_imaginary;
     }
   }
-  /// c_0 + cos(theta) b_1 - b_2
+  /// Returns the sum at angle i, c_0 + cos(theta) b_1 - b_2. c: c_0.
   Complex sum(Complex c, std::size_t i) const {
     return c + Complex(cosine[i] * real[i] - last_real[i],
                        cosine[i] * imaginary[i] - last_imaginary[i]);
   }
 };
 
-/// From sum T_n cos(n theta) to the amplitude (C6).
+/// Returns the factor by which the sum of T_n cos(n theta) is multiplied to give the amplitude
+/// (C6).
 Complex far_field_factor(double k) {
   return std::polar(std::sqrt(2 / (std::numbers::pi * k)), -std::numbers::pi / 4);
 }
@@ -52,8 +53,9 @@ Complex far_field_factor(double k) {
 }  // namespace
 
 std::string index_fault(Complex index) {
-  if (index == 0.0 || index.imag() < 0) return "must not be 0 nor amplify (Im >= 0 absorbs)";
-  if (index.real() < 0) return "must not be negative";
+  if (index == 0.0 || index.imag() < 0)
+    return "must not be 0 and must not amplify (a positive imaginary part absorbs)";
+  if (index.real() < 0) return "must not have a negative real part";
   return "";
 }
 
@@ -76,7 +78,7 @@ int oscillating_order(const Scatterer& scatterer, double k) {
   constexpr double most = 1e4;
   if (!(size <= most))
     throw InputError("radius", scatterer.radius,
-                     "k radius |index| is " + std::to_string(size) + ", must be at most 10000");
+                     "k radius |index| is " + std::to_string(size) + "; it must be at most 10000");
   return static_cast<int>(std::ceil(size));
 }
 
@@ -98,7 +100,7 @@ CrossSections cross_sections(const std::vector<ExtendedComplex>& t, double k) {
   long double cosine = 0;
   for (std::size_t n = 0; n + 1 < t.size(); ++n) cosine += 2 * (t[n] * std::conj(t[n + 1])).real();
   const double g = scattered > 0 ? static_cast<double>(cosine / scattered) : 0;
-  // no scatterer amplifies; of one that absorbs nothing the two differ by rounding
+  // No scatterer has gain. Without absorption, extinction and scattering differ only by rounding.
   const long double extinction = std::max(lost, scattered);
   return {static_cast<double>(4 * scattered / k), static_cast<double>(4 * extinction / k), g};
 }

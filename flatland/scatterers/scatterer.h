@@ -9,20 +9,21 @@
 
 namespace flatspeckle {
 
-/// One scatterer. hg and the other phase functions of the bulk (bulk_phases.h) have no T-matrix,
-/// and the wave solver refuses them; so it does spheres (mie), which are of space alone.
+/// One scatterer, or the phase function of a medium without scatterers (the bulk). The wave solver
+/// rejects phase functions (hg and those of bulk_phases.h), which have no T-matrix, and spheres
+/// (mie), which exist only in three dimensions.
 struct Scatterer {
   enum class Kind { point, soft, hard, tm, te, hg, mie, other_bulk };
   Kind kind = Kind::point;
-  double radius = 0;                          ///< of soft, hard, tm, te, mie
-  Complex index = 1.5;                        ///< of tm, te, mie, relative to the surroundings
-  double g = 0;                               ///< of hg
-  double albedo = 1;                          ///< of the bulk and of resonant points (C8)
-  double phase_shift = std::numbers::pi / 2;  ///< of lossless points; pi/2 is resonance
+  double radius = 0;    ///< radius of a cylinder (soft, hard, tm, te) or sphere (mie)
+  Complex index = 1.5;  ///< for tm, te, mie: index relative to the surroundings
+  double g = 0;         ///< for hg: mean cosine
+  double albedo = 1;    ///< for phase functions of the bulk and for points (C8)
+  double phase_shift = std::numbers::pi / 2;  ///< for lossless points; pi/2 is resonance
 
-  /// A disk of nonzero radius, which others must not overlap.
+  /// Whether it is a disk of nonzero radius, which must not overlap other scatterers.
   bool is_disk() const { return kind != Kind::point && !is_bulk(); }
-  /// A cylinder that light enters.
+  /// Whether it is a cylinder that light enters.
   bool is_penetrable() const { return kind == Kind::tm || kind == Kind::te; }
   bool is_bulk() const { return kind == Kind::hg || kind == Kind::mie || kind == Kind::other_bulk; }
 
@@ -31,33 +32,35 @@ struct Scatterer {
   bool operator==(const Scatterer&) const = default;
 };
 
-/// Why no cylinder may have this index, empty if it may.
+/// Returns the reason why a cylinder cannot have this index, for error messages; empty if it can.
 std::string index_fault(Complex index);
 
-/// T_n for n = 0 .. order; T_{-n} = T_n. (conventions, C7 and C8)
-/// k: wavenumber outside. A bulk phase function is a precondition violation.
+/// Returns T_n for n = 0 .. order; T_{-n} = T_n (conventions, C7 and C8). k: wavenumber outside.
+/// Precondition: the scatterer has a T-matrix (not is_bulk()).
 std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k, int order);
-/// The same; 0 where T_n is below the range of long double.
+/// Returns the T_n of scaled_t_matrix() in long double; values below the range of long double
+/// become 0.
 std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int order);
 
-/// The order up to which T_n may oscillate or resonate; beyond it |T_n| falls. Throws InputError
-/// where it is above 10000.
+/// Returns the order up to which T_n may oscillate or resonate; beyond it |T_n| falls. Throws
+/// InputError if it is above 10000.
 int oscillating_order(const Scatterer& scatterer, double k);
 
-/// The order beyond which no |T_n| exceeds tolerance times the largest one.
+/// Returns the order beyond which no |T_n| exceeds tolerance times the largest one.
 int isolated_order(const Scatterer& scatterer, double k, double tolerance);
 
-/// Cross-sections are lengths in flatland (C4, C5, C9).
+/// Cross-sections of a scatterer; in flatland they are lengths (C4, C5, C9).
 struct CrossSections {
   double scattering = 0, extinction = 0;
   double g = 0;  ///< mean cosine
 };
 CrossSections cross_sections(const std::vector<ExtendedComplex>& t_matrix, double k);
 
-/// Far-field amplitude of one scatterer at the origin for light along +z (C6), at scattering angle
-/// theta.
+/// Returns the far-field amplitude of one scatterer at the origin for light along +z (C6), at
+/// scattering angle theta.
 Complex amplitude(const std::vector<ExtendedComplex>& t_matrix, double k, double theta);
-/// The same at theta = 0 .. pi in equal intervals, a node in a nanosecond per order.
+/// Returns the amplitudes at theta = 0 .. pi in equal intervals. Takes about one nanosecond per
+/// angle and order.
 std::vector<Complex> amplitudes(const std::vector<ExtendedComplex>& t_matrix, double k,
                                 std::size_t intervals);
 

@@ -9,7 +9,7 @@
 
 namespace flatspeckle {
 
-/// What scatterers are told; each kind reads what it has a use for.
+/// Values of the keys that describe scatterers. Each kind reads only the keys that it uses.
 struct ScattererValues {
   double wavelength = 1;
   std::string scatterer = "point";
@@ -18,30 +18,31 @@ struct ScattererValues {
   BulkPhases bulk{};
 };
 
-/// One kind of scatterer, in a file of its own. Their list is that of scatterer_kinds.cpp; phase
-/// functions of the bulk with keys of their own have another (bulk_phases.h).
+/// One kind of scatterer, defined in its own file and listed in scatterer_kinds.cpp. Phase
+/// functions that have their own keys are listed in bulk_phases.h instead.
 struct ScattererKind {
   const char* word;
   Scatterer::Kind kind;
-  /// Reads the keys. Throws InputError.
+  /// Reads the keys of this kind into `made`. Throws InputError.
   void (*read)(const Keys& keys, const ScattererValues& values, Scatterer& made);
-  /// T_n for n = 0 .. order at k radius = x; none of the bulk.
+  /// Returns T_n for n = 0 .. order, with x = k radius. Null for kinds without a T-matrix
+  /// (Scatterer::is_bulk()).
   std::vector<ScaledComplex> (*t_matrix)(const Scatterer& scatterer, double x, int order);
 };
 extern const ScattererKind point_kind, soft_kind, hard_kind, tm_kind, te_kind, hg_kind, mie_kind;
 
-// What several kinds read.
+// These functions read keys that several kinds of scatterers share.
 void read_radius(const Keys& keys, const ScattererValues& values, Scatterer& made);
 void read_radius_and_index(const Keys& keys, const ScattererValues& values, Scatterer& made);
 void read_albedo(const Keys& keys, const ScattererValues& values, Scatterer& made);
 
-/// That of a scatterer with a T-matrix.
+/// Returns the kind of a scatterer, which must not be other_bulk.
 const ScattererKind& kind_of(const Scatterer& scatterer);
 
-/// What `scatterer` may be.
+/// Returns the accepted values of the key `scatterer`.
 std::vector<std::string> scatterer_words();
 
-/// Throws InputError naming key, value and what is accepted.
+/// Creates a scatterer. Throws InputError naming key, value and what is accepted.
 Scatterer make_scatterer(const Keys& keys, const ScattererValues& values);
 
 }  // namespace flatspeckle

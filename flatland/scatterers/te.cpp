@@ -5,9 +5,12 @@ namespace flatspeckle {
 
 namespace {
 
-// C7 as in tm.cpp: T_n = -(s J_n + J_{n+1}) / (s H_n + H_{n+1}),  s = (n/x)(1/m^2 - 1) - r_n / m.
-// In the numerator the leading terms x/(2(n+1)) of J_{n+1}/J_n and r_n/m, which are equal, are
-// taken out by J_{n+1} = x/(2(n+1)) (J_n + J_{n+2}) on both sides.
+// Returns T_n of C7, transformed as in tm.cpp (m: index, r_n: ratio of Bessel functions defined
+// there):
+//   T_n = -(s J_n + J_{n+1}) / (s H_n + H_{n+1}),  s = (n/x)(1/m^2 - 1) - r_n / m.
+// In the numerator the leading terms of J_{n+1}/J_n and r_n/m are both x/(2(n+1)) and cancel. They
+// are removed by the recurrence J_{n+1} = x/(2(n+1)) (J_n + J_{n+2}), which is applied outside and
+// inside the cylinder.
 std::vector<ScaledComplex> te_t_matrix(const Scatterer& cylinder, double x, int order) {
   std::vector<ScaledComplex> t(order + 1);
   if (cylinder.index == 1.0) return t;

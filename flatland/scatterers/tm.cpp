@@ -5,9 +5,10 @@ namespace flatspeckle {
 
 namespace {
 
-// C7 with J_n'(mx) = (n/(mx) - r_n) J_n(mx), r_n = J_{n+1}(mx)/J_n(mx), and likewise outside:
+// Returns T_n of C7. With the derivatives J_n'(mx) = (n/(mx) - r_n) J_n(mx), r_n =
+// J_{n+1}(mx)/J_n(mx), and the corresponding ones outside, it becomes
 //   T_n = -(J_{n+1} - m r_n J_n) / (H_{n+1} - m r_n H_n).
-// The terms n/x, which would cancel for small or faint cylinders, are gone.
+// This avoids the terms n/x, which would cancel for small or weak cylinders.
 std::vector<ScaledComplex> tm_t_matrix(const Scatterer& cylinder, double x, int order) {
   std::vector<ScaledComplex> t(order + 1);
   if (cylinder.index == 1.0) return t;

@@ -7,22 +7,22 @@
 
 namespace flatspeckle {
 
-/// Two Henyey-Greenstein functions of the plane (C22) mixed, as tissue and ice are described: a
-/// forward peak and what goes backwards.
+/// Mixture of two Henyey-Greenstein functions of the plane (C22), as used for tissue and ice: a
+/// forward peak and a backward part.
 struct TwoTermHg {
   static constexpr const char* word = "two_term_hg";
   std::optional<double> g, g_back, forward_share;
 };
 
 inline void add_keys(Keys& keys, TwoTermHg& values) {
-  keys.add("g", values.g, "Mean cosine of the first term")
+  keys.add("g", values.g, "Mean cosine of the first Henyey-Greenstein term")
       .between(-1, 1)
       .only_of(values.word)
       .swept();
-  keys.add("g_back", values.g_back, "Mean cosine of the second term")
+  keys.add("g_back", values.g_back, "Mean cosine of the second Henyey-Greenstein term")
       .between(-1, 1)
       .only_of(values.word);
-  keys.add("forward_share", values.forward_share, "Share of the first term")
+  keys.add("forward_share", values.forward_share, "Weight of the first term (the one with g)")
       .from(0, 1)
       .only_of(values.word);
 }

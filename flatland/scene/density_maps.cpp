@@ -16,16 +16,17 @@ namespace flatspeckle {
 
 namespace {
 
-/// Of a coordinate in units of cells; the last cells reach beyond the edges.
+/// Returns the index of the cell that contains a position, given in units of cells. The outermost
+/// cells extend beyond the edges of the box.
 std::ptrdiff_t cell_of(double position, std::size_t cells) {
   return std::clamp(static_cast<std::ptrdiff_t>(std::floor(position)), std::ptrdiff_t{0},
                     static_cast<std::ptrdiff_t>(cells) - 1);
 }
 
-/// Which cells of one axis a way meets.
+/// Steps of a straight path through the cells of a grid along one axis (columns or rows).
 struct Steps {
-  std::ptrdiff_t cell, step, last;
-  double next, between;  ///< distances to the next cell, and from one to another
+  std::ptrdiff_t cell, step, last;  ///< current cell; +1 or -1; last cell that the path can reach
+  double next, between;  ///< path length from the start to the next cell; path length across a cell
 
   Steps(double position, double speed, std::size_t cells)
       : cell(cell_of(position, cells)),
@@ -43,24 +44,26 @@ struct Steps {
   }
 };
 
-/// A Gaussian of the relative density, amplitude exp(-r^2 / (2 radius^2)); a hole where the
-/// amplitude is negative.
+/// A Gaussian contribution to the relative density: amplitude exp(-r^2 / (2 radius^2)) at distance
+/// r from the centre. It is a hole if the amplitude is negative.
 struct Blob {
   Vec2 centre;
   double radius = 1, amplitude = 0;
 };
 
-/// int exp(-(t - middle)^2 / (2 radius^2)) dt
+/// Returns int exp(-(t - middle)^2 / (2 radius^2)) dt between `from` and `to`.
 double gaussian_between(double from, double to, double middle, double radius) {
   const double scale = 1 / (std::numbers::sqrt2 * radius);
   return std::sqrt(std::numbers::pi / 2) * radius *
          (std::erf((to - middle) * scale) - std::erf((from - middle) * scale));
 }
 
-/// Relative density 1 and Gaussian blobs. What a way meets is in closed form.
+/// Relative density that is 1 plus a sum of Gaussian blobs. Its integral along a straight path has
+/// a closed form.
 class Blobs : public DensityMap {
  public:
-  /// The density must be positive everywhere: negative amplitudes add up to -1 at the most.
+  /// The sum of the negative amplitudes must be at least -1, so that the density is nowhere
+  /// negative.
   Blobs(Domain box, Material material, std::vector<Blob> blobs)
       : DensityMap(box, std::move(material)), blobs_(std::move(blobs)) {}
 
@@ -70,19 +73,19 @@ class Blobs : public DensityMap {
       const Vec2 from = x - centre;
       density += amplitude * std::exp(-dot(from, from) / (2 * radius * radius));
     }
-    return std::max(0.0, density);  // what rounding leaves of a hole
+    return std::max(0.0, density);  // rounding may make it negative in a hole
   }
 
   std::string describe() const override {
-    return "density of " + std::to_string(blobs_.size()) + " blobs";
+    return "density with " + std::to_string(blobs_.size()) + " Gaussian blobs";
   }
 
  private:
   double met(Vec2 x, Vec2 w, double length) const override {
     double sum = length;
     for (const auto& [centre, radius, amplitude] : blobs_) {
-      const Vec2 way = centre - x;
-      const double along = dot(way, w), across = way.x * w.z - way.z * w.x;
+      const Vec2 to_centre = centre - x;
+      const double along = dot(to_centre, w), across = to_centre.x * w.z - to_centre.z * w.x;
       sum += amplitude * std::exp(-across * across / (2 * radius * radius)) *
              gaussian_between(0, length, along, radius);
     }
@@ -118,8 +121,8 @@ std::vector<Blob> read_blobs(const std::string& path) {
     holes += std::min(0.0, blobs.back().amplitude);
   }
   if (holes < -1)
-    throw InputError(path + ", amplitude: those below 0 add up to", holes,
-                     "must not be less than -1, for no density is negative");
+    throw InputError(path + ", sum of negative amplitudes", holes,
+                     "must be at least -1, because a density cannot be negative");
   return blobs;
 }
 
@@ -139,16 +142,18 @@ Cells read_cells(const std::string& path) {
   const bool possible = std::ranges::all_of(
       cells.density, [](double value) { return value >= 0 && std::isfinite(value); });
   if (!possible || std::ranges::all_of(cells.density, [](double value) { return value == 0; }))
-    throw InputError("density_map", path, "must hold finite numbers, none negative, not all 0");
+    throw InputError("density_map", path,
+                     "must contain finite, non-negative numbers that are not all 0");
   return cells;
 }
 
 void refuse_beside_map(const Keys& keys, const SceneSpec& spec, const std::string& key) {
-  if (spec.domain == "slab") throw InputError(key + ": a density map needs a box");
-  if (!spec.layers.empty()) throw InputError(key + ", layers: give one of them");
-  if (spec.structure != "none") throw InputError(key + ", structure: give one of them");
+  if (spec.domain == "slab") throw InputError(key + ": a density map requires domain = box");
+  if (!spec.layers.empty()) throw InputError(key + ", layers: give only one of them");
+  if (spec.structure != "none") throw InputError(key + ", structure: give only one of them");
   if (keys.given(spec.count))
-    throw InputError(key + ", count: give the density where the map is 1");
+    throw InputError(key +
+                     ", count: leave out count and give the density at points where the map is 1");
 }
 
 }  // namespace
@@ -201,7 +206,8 @@ std::string CellDensity::describe() const {
 DensityMap::DensityMap(Domain box, Material material)
     : MediumProfile({std::move(material)}), box_(box) {}
 
-/// Newton steps, kept within what is known to be too short and too long.
+/// Solves for the distance by Newton's method. Bisection replaces Newton steps that leave the
+/// interval between the lower and the upper bound found so far.
 double DensityMap::reach(Vec2 x, Vec2 w, double optical_depth, double longest) const {
   const double mu = bulk().mu_t, wanted = optical_depth / mu;
   double low = 0, high = longest;
@@ -224,10 +230,10 @@ BulkMedium DensityMap::mean() const {
 
 const DatasetTable density_table{
     "density",
-    {{"map_density_x", Data::scale, "", "length", "where the density is told, across"},
-     {"map_density_z", Data::scale, "", "length", "where the density is told, deep"},
+    {{"map_density_x", Data::scale, "", "length", "x of the density samples"},
+     {"map_density_z", Data::scale, "", "length", "z of the density samples"},
      {"relative_density", Data::real, "map_density_z map_density_x", "1",
-      "density of the scatterers over that which the scene states"}}};
+      "density of the scatterers relative to the density that the scene states"}}};
 
 void DensityMap::write(ResultFile& file) const {
   constexpr int cells = 64;
@@ -249,7 +255,7 @@ MakeDensityMap density_map(const Keys& keys, const SceneSpec& spec) {
                     &cells_path = keys.read(spec.density_map);
   if (blobs_path.empty() && cells_path.empty()) return {};
   if (!blobs_path.empty() && !cells_path.empty())
-    throw InputError("density_blobs, density_map: give one of them");
+    throw InputError("density_blobs, density_map: give only one of them");
   refuse_beside_map(keys, spec, blobs_path.empty() ? "density_map" : "density_blobs");
   if (!blobs_path.empty())
     return [blobs = read_blobs(blobs_path)](const Domain& box, const Material& material) {

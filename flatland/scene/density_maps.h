@@ -9,8 +9,9 @@
 
 namespace flatspeckle {
 
-/// One material whose density varies over a box. Kinds of maps give it, and how much of it a way
-/// meets; how far an optical depth reaches follows.
+/// One material whose density varies over a box. Derived classes define the relative density and
+/// its integral along a path. reach() solves for the path length at which mu_t times this integral
+/// is a given optical depth.
 class DensityMap : public MediumProfile {
  public:
   DensityMap(Domain box, Material material);
@@ -29,10 +30,10 @@ class DensityMap : public MediumProfile {
   const BulkMedium& bulk() const { return materials().front().medium; }
 
  private:
-  /// int relative_density() along w.
+  /// Returns the integral of relative_density() over a path of the given length from x along w.
   virtual double met(Vec2 x, Vec2 w, double length) const = 0;
   virtual double most_relative() const = 0;
-  /// Of the box.
+  /// Returns the mean relative density of the box.
   virtual double mean_relative() const = 0;
 
   Domain box_;
@@ -40,10 +41,11 @@ class DensityMap : public MediumProfile {
 
 extern const DatasetTable density_table;
 
-/// Relative density of equal rectangular cells that fill a box, constant in each.
+/// Relative density that is constant within each of the equal rectangular cells that fill a box.
 class CellDensity : public DensityMap {
  public:
-  /// [row][column], rows from z = 0 on, columns from x = -width/2 on; none negative.
+  /// density: relative density of each cell, [row][column]. Row 0 begins at z = 0, column 0 at x =
+  /// -width/2. No value may be negative.
   CellDensity(Domain box, Material material, std::size_t rows, std::vector<double> density);
 
   double relative_density(Vec2 x) const override;
@@ -55,16 +57,17 @@ class CellDensity : public DensityMap {
   double mean_relative() const override;
 
   std::size_t rows_, columns_;
-  double across_, deep_;  ///< extents of a cell
+  double across_, deep_;  ///< extents of a cell along x and along z
   std::vector<double> density_;
 };
 
-/// Makes a density map of a box of a material.
+/// Function that creates a density map for a given box and material.
 using MakeDensityMap =
     std::function<std::shared_ptr<const MediumProfile>(const Domain&, const Material&)>;
 
-/// That which the keys density_blobs and density_map name; empty without. Reads keys and files.
-/// Throws InputError.
+/// Returns the function that creates the density map given by density_blobs or density_map. The
+/// returned function is empty if neither key is given. Reads these keys and the file. Throws
+/// InputError.
 MakeDensityMap density_map(const Keys& keys, const SceneSpec& spec);
 
 }  // namespace flatspeckle

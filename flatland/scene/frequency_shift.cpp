@@ -42,11 +42,12 @@ Scene at_frequency(const Scene& scene, double shift) {
 void require_changing(const std::string& key, const CovarianceRequest& request) {
   using Kind = CovarianceRequest::Kind;
   if (request.kind != Kind::intensity && request.kind != Kind::memory_effect)
-    throw InputError(key + ": needs covariance = intensity or memory_effect");
+    throw InputError(key + ": requires covariance = intensity or memory_effect");
 }
 
 void check_frequency_shifts(const CovarianceRequest& request, const std::vector<double>& shifts) {
-  if (has_near_ends(request)) throw InputError("frequency_shifts: needs plane waves and far views");
+  if (has_near_endpoints(request))
+    throw InputError("frequency_shifts: requires plane waves and far views");
   require_changing("frequency_shifts", request);
   for (const double shift : shifts) {
     if (!(std::abs(shift) <= 0.1))

@@ -8,26 +8,29 @@
 
 namespace flatspeckle {
 
-/// Entries of which the second field may be another one: all, or of a request with a reference
-/// those of reference and moved field.
+/// Returns the number of entries whose second field can be replaced by the field at another
+/// frequency or time. These entries come first in the request. They are all entries or, if the
+/// request has a reference field, those that combine the reference with a moved field.
 std::size_t changing_entries(const CovarianceRequest& request);
 
-/// The second view of an entry, turned so that transverse momenta match where the wavenumber of the
-/// second field is larger by a share `shift` (conventions, C39); nan past the horizon.
+/// Returns the angle to which the second view of an entry must turn so that the transverse momenta
+/// of both fields match although the second field has the wavenumber (1 + shift) k (conventions,
+/// C39). Returns nan if that direction is past the horizon.
 double matched_view(const CovarianceRequest& request, const Entry& entry, double shift);
-/// The same by the angles of both lights and views.
+/// Computes the same angle from the angles of both lights and both views.
 double matched_view(double light1, double view1, double light2, double view2, double shift);
 
-/// The scene at k (1 + shift), with a channel for the second field of each changing entry, in their
-/// order: its light in the matched view. The medium stays that of k.
+/// Returns the scene at the wavenumber k (1 + shift). Its channel e, for e below
+/// changing_entries(), is the second field of entry e: the second light of that entry in its
+/// matched view. The medium keeps the properties that it has at k.
 Scene at_frequency(const Scene& scene, double shift);
 
-/// Throws InputError for requests whose entries do not change (those of other kinds than intensity
-/// and memory_effect).
+/// Throws InputError unless the kind of the request is intensity or memory_effect. Only for these
+/// kinds can the second field of an entry be taken at another frequency or time.
 void require_changing(const std::string& key, const CovarianceRequest& request);
 
-/// Throws InputError for near lights and views, for requests whose entries do not change, for
-/// shifts that are not small, and for matched views past the horizon.
+/// Throws InputError for near sources, beams and near sensors, for requests that require_changing()
+/// rejects, if |shift| exceeds 0.1, and if a matched view is past the horizon.
 void check_frequency_shifts(const CovarianceRequest& request, const std::vector<double>& shifts);
 
 }  // namespace flatspeckle

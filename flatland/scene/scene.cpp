@@ -36,7 +36,8 @@ std::string shown_place(Vec2 x) {
   return '(' + number_text(x.x) + ", " + number_text(x.z) + ')';
 }
 
-/// Where light of the scene surely is.
+/// Returns points that the light of the scene must reach: the corners of the domain, near sources
+/// and near sensors.
 std::vector<Vec2> lit_places(const Scene& scene) {
   const double half = scene.domain.width / 2, depth = scene.domain.depth;
   std::vector<Vec2> places = {{-half, 0}, {half, 0}, {-half, depth}, {half, depth}};
@@ -49,12 +50,12 @@ std::vector<Vec2> lit_places(const Scene& scene) {
 
 void check_mean_field(const Scene& scene) {
   if (!scene.medium.has_scatterers)
-    throw InputError("index_field", "mean_field", "is of scatterers, not of a phase function");
-  if (has_near_ends(scene.request))
-    throw InputError("index_field", "mean_field", "is of plane waves and far views");
+    throw InputError("index_field", "mean_field", "requires scatterers, not a phase function");
+  if (has_near_endpoints(scene.request))
+    throw InputError("index_field", "mean_field", "requires plane waves and far views");
 }
 
-/// A column and the member of a scene that it gives.
+/// A column of the file of layers, and the member of SceneSpec that it sets.
 struct Column {
   const char* name;
   std::optional<double> SceneSpec::*member;
@@ -74,10 +75,11 @@ std::vector<std::string> all_columns() {
   return names;
 }
 
-/// The file of the key `layers`: a line for each layer, from z = 0 on, with its thickness, one of
-/// optical_depth, mean_free_path and density, and whatever keys of the scatterers differ between
-/// layers (g, albedo, radius, index_re and index_im, phase_shift); and of motion shares of the
-/// scene's, diffusion and flow.
+/// File that the key `layers` names, with one line for each layer; the first layer begins at z = 0.
+/// Its columns are the thickness, one of optical_depth, mean_free_path and density, and those
+/// properties of the scatterers that differ between layers (g, albedo, radius, index_re and
+/// index_im, phase_shift). The columns diffusion and flow are factors on the diffusion coefficient
+/// and the flow velocity of the scene.
 class LayerTable {
  public:
   /// Reads the key and the file. Throws InputError.
@@ -86,7 +88,7 @@ class LayerTable {
         table_(read_key_table("layers", path_, all_columns(), true)) {
     constexpr std::size_t most = 1000;
     if (table_.rows() == 0 || table_.rows() > most)
-      throw InputError("layers", path_, "must hold 1 to " + std::to_string(most) + " layers");
+      throw InputError("layers", path_, "must contain 1 to " + std::to_string(most) + " layers");
     if (!table_.has("thickness")) throw InputError(path_ + ": column thickness is missing");
     for (const double thickness : table_.column("thickness"))
       if (!(thickness > 0)) throw InputError(path_ + ", thickness", thickness, "must be positive");
@@ -97,17 +99,17 @@ class LayerTable {
                        ": give exactly one of the columns optical_depth, mean_free_path, "
                        "density");
     if (table_.has("index_im") && !table_.has("index_re"))
-      throw InputError(path_ + ": column index_re is missing beside index_im");
+      throw InputError(path_ + ": the column index_im requires a column index_re");
     refuse_twice(keys, spec);
   }
 
-  /// Of all layers.
+  /// Returns the total thickness of all layers.
   double depth() const {
     const auto column = table_.column("thickness");
     return std::accumulate(column.begin(), column.end(), 0.0);
   }
 
-  /// Throws InputError that names the line of a layer that cannot be.
+  /// Creates the layers. Throws InputError naming the line of a layer that is not valid.
   std::shared_ptr<const Layers> layers(const SceneSpec& spec) const {
     std::vector<Material> materials;
     for (std::size_t layer = 0; layer < table_.rows(); ++layer) try {
@@ -121,7 +123,7 @@ class LayerTable {
   }
 
  private:
-  /// What a column gives in each layer, and a key for all.
+  /// Rejects values that are given twice: by a column for each layer, and by a key for all layers.
   void refuse_twice(const Keys& keys, const SceneSpec& spec) const {
     const auto refuse = [&](const std::string& column, const auto& member) {
       if (table_.has(column) && keys.given(member))
@@ -132,8 +134,8 @@ class LayerTable {
     refuse("index_re", spec.index);
   }
 
-  /// The optical depth or the density of layers for which 0 is given: so little that it changes
-  /// results by less than their rounding, in proportion to all other layers.
+  /// Returns the optical depth or density that replaces 0 in a layer. It is so small, compared with
+  /// the sum over all layers, that results change by less than rounding errors.
   double clear() const {
     constexpr double share = 1e-15;
     double all = 0;
@@ -144,7 +146,8 @@ class LayerTable {
     return share * all;
   }
 
-  /// Of the layer as a slab of its own, all of whose keys must be of use.
+  /// Returns the material of a layer, computed as for a slab that consists only of this layer.
+  /// Throws InputError if a value given for the layer is not used.
   Material material(const SceneSpec& spec, std::size_t layer) const {
     SceneSpec own;
     static_cast<ScattererValues&>(own) = spec;
@@ -175,7 +178,7 @@ class LayerTable {
   Table table_;
 };
 
-/// layers: whose depth it has then.
+/// Creates the domain. If layers are given, its depth is their total thickness.
 Domain make_domain(const Keys& keys, const SceneSpec& spec,
                    const std::optional<LayerTable>& layers) {
   Domain domain;
@@ -183,7 +186,7 @@ Domain make_domain(const Keys& keys, const SceneSpec& spec,
   domain.depth = layers ? layers->depth() : keys.required(spec.depth);
   if (domain.kind == Domain::Kind::slab) return domain;
   domain.width = keys.required(spec.width);
-  const double most = 1e8 * spec.wavelength;  // along which phases are integrated
+  const double most = 1e8 * spec.wavelength;  // rounding errors of phases k r grow with the extent
   for (const auto& [key, extent] : {std::pair{"width", domain.width}, {"depth", domain.depth}})
     if (extent > most) throw InputError(key, extent, "must be at most 1e8 wavelengths");
   return domain;
@@ -207,7 +210,7 @@ void check_density_keys(const Keys& keys, const SceneSpec& spec) {
                    ": give exactly one of count, density, mean_free_path, optical_depth");
 }
 
-/// mu_t, where the spec gives it.
+/// Returns mu_t if mean_free_path or optical_depth is given, otherwise nullopt.
 std::optional<double> stated_extinction(const SceneSpec& spec, const Domain& domain) {
   if (spec.mean_free_path) return 1 / *spec.mean_free_path;
   if (spec.optical_depth) return *spec.optical_depth / domain.depth;
@@ -230,7 +233,7 @@ BulkMedium medium_of_scatterers(const SceneSpec& spec, const Scatterer& scattere
   return medium;
 }
 
-/// But for the number, which follows from the density.
+/// Creates the placement rule except for its mean_count, which is set later from the density.
 PlacementRule make_placement_rule(const Keys& keys, const SceneSpec& spec,
                                   const Scatterer& scatterer) {
   PlacementRule rule;
@@ -255,21 +258,24 @@ void check_extinction(const BulkMedium& medium) {
   if (medium.mu_t > 0 && !std::isfinite(medium.mean_free_path()))
     throw InputError("albedo", medium.albedo,
                      "leaves an extinction of " + number_text(medium.mu_t) +
-                         ", so little that its mean free path is no number");
+                         ", so small that its mean free path is not finite");
 }
 
 void check_structure(const Keys& keys, const SceneSpec& spec, const Scatterer& scatterer) {
   if (keys.read(spec.structure) == "none") return;
   if (!scatterer.is_disk())
-    throw InputError("structure", spec.structure,
-                     "is a key of soft, hard, tm and te; points and hg are independent (none)");
+    throw InputError(
+        "structure", spec.structure,
+        "is a key of soft, hard, tm and te only; positions of other scatterers are independent "
+        "(structure = none)");
   for (const auto* extinction : {&spec.mean_free_path, &spec.optical_depth})
     if (*extinction)
-      throw InputError(keys.name(*extinction), **extinction,
-                       "correlations change the extinction; with structure give count or density");
+      throw InputError(
+          keys.name(*extinction), **extinction,
+          "cannot be combined with structure, which changes the extinction; give count or density");
 }
 
-/// The medium with the correlations that the scene states (C16).
+/// Returns the medium of the scene with the correlations that `structure` names (C16).
 BulkMedium correlated(const std::string& structure, const Scene& scene) {
   const DiskSpacing disks{scene.medium.density,
                           2 * scene.scatterer.radius + scene.placement.min_gap};
@@ -278,13 +284,14 @@ BulkMedium correlated(const std::string& structure, const Scene& scene) {
                                                      : read_structure(structure, disks));
 }
 
-/// Returns the distance up to which rounding leaves places of the medium distinct.
+/// Returns the largest distance of a source or sensor at which, despite rounding, points of the
+/// medium remain distinct.
 double furthest(const Domain& domain) {
   return 1e9 * (domain.width + domain.depth);
 }
 
-/// Refuses sources, sensors and beams so far away, or so wide, that the medium is lost in their
-/// rounding.
+/// Rejects sources, sensors and beams that are so far away, or so wide, that points of the medium
+/// are no longer distinct after rounding.
 void check_reach(const Scene& scene) {
   const double most = furthest(scene.domain);
   for (const Light& light : scene.request.lights) {
@@ -292,22 +299,24 @@ void check_reach(const Scene& scene) {
     if (light.kind == Light::Kind::beam && (length(light.point) > most || light.waist > most))
       throw InputError(
           "beam_waist", light.waist,
-          "is too wide, or its focus too far from the medium; a plane wave does as well");
+          "the beam is too wide, or its focus too far from the medium; use a plane wave instead");
   }
   for (const View& view : scene.request.views)
     if (view.near) require_reach("near_sensors", view.point, scene);
 }
 
-/// Of a medium that is the same everywhere: its phase function, if it has no scatterers.
+/// Checks that exactly one density key is given, for a scene without layers. If the scene has a
+/// phase function instead of scatterers, sets its medium.
 void make_phase_of_bulk(const Keys& keys, const SceneSpec& spec, Scene& scene) {
   check_density_keys(keys, spec);
   if (!scene.scatterer.is_bulk()) return;
   const auto mu_t = stated_extinction(spec, scene.domain);
-  if (!mu_t) throw InputError("scatterer", spec.scatterer, "give mean_free_path or optical_depth");
+  if (!mu_t)
+    throw InputError("scatterer", spec.scatterer, "requires mean_free_path or optical_depth");
   scene.medium = bulk_medium(scene.scatterer, make_phase(keys, spec.bulk, spec.scatterer), *mu_t);
 }
 
-/// Keys that all layers share.
+/// Reads the keys of the phase function, which all layers share. Rejects dimension = 3.
 void read_layer_keys(const Keys& keys, const SceneSpec& spec, const Scatterer& scatterer) {
   if (scatterer.is_bulk()) make_phase(keys, spec.bulk, spec.scatterer);
   if (spec.dimension == 3)
@@ -315,14 +324,16 @@ void read_layer_keys(const Keys& keys, const SceneSpec& spec, const Scatterer& s
                      "requires a slab without layers; leave out layers, or take dimension = 2");
 }
 
-/// Where nearly all is refused that can be, before the bulk is derived.
+/// Creates the scene without the bulk properties (BulkMedium) of its scatterers. Nearly all invalid
+/// input is rejected here, before these properties are computed.
 Scene without_bulk(const Keys& keys, const SceneSpec& spec,
                    const std::optional<LayerTable>& layers) {
   Scene scene;
   scene.scatterer = make_scatterer(keys, spec);
   if (scene.scatterer.is_disk() && !layers) keys.required(spec.radius);
   if (scene.scatterer.kind == Scatterer::Kind::mie && spec.dimension != 3)
-    throw InputError("scatterer", spec.scatterer, "spheres are of slabs in space: dimension = 3");
+    throw InputError("scatterer", spec.scatterer,
+                     "spheres require domain = slab and dimension = 3");
   scene.wavelength = spec.wavelength;
   scene.k = 2 * std::numbers::pi / spec.wavelength;
   scene.domain = make_domain(keys, spec, layers);
@@ -332,7 +343,7 @@ Scene without_bulk(const Keys& keys, const SceneSpec& spec,
   scene.placement = make_placement_rule(keys, spec, scene.scatterer);
   check_structure(keys, spec, scene.scatterer);
   if (layers && spec.structure != "none")
-    throw InputError("structure", spec.structure, "is of media without layers");
+    throw InputError("structure", spec.structure, "requires a medium without layers");
   scene.request = make_request(keys, spec);
   check_reach(scene);
   if (scene.domain.kind == Domain::Kind::slab)
@@ -353,15 +364,16 @@ void require_phase(const std::string& key, Vec2 point, double k) {
   constexpr double accuracy = 1e-3;  // rad
   const double most = accuracy / (k * std::numeric_limits<double>::epsilon());
   if (!(length(point) <= most))
-    throw InputError(key, length(point),
-                     "is too far away: double precision holds the phase k r to 0.001 rad up to " +
-                         number_text(most) + "; a direction does as well");
+    throw InputError(
+        key, length(point),
+        "is too far away: in double precision the phase k r is accurate to 0.001 rad up to " +
+            number_text(most) + "; use a direction instead");
 }
 
 void require_reach(const std::string& key, Vec2 point, const Scene& scene) {
   require_phase(key, point, scene.k);
   if (length(point) > furthest(scene.domain))
-    throw InputError(key, length(point), "lies too far from the medium; a direction does as well");
+    throw InputError(key, length(point), "lies too far from the medium; use a direction instead");
 }
 
 std::optional<IndexField> index_field(const Keys& keys, const SceneSpec& spec) {
@@ -372,7 +384,7 @@ std::optional<IndexField> index_field(const Keys& keys, const SceneSpec& spec) {
   if (field.kind != Kind::grid && field.is_around()) field.origin = keys.read(spec.axis_index);
   switch (field.kind) {
     case Kind::linear:
-      field.slope = {keys.required(spec.index_slope)[0], spec.index_slope[1]};
+      field.gradient = {keys.required(spec.index_gradient)[0], spec.index_gradient[1]};
       break;
     case Kind::parabolic:
       field.alpha = keys.required(spec.index_alpha);
@@ -398,17 +410,17 @@ void check_index_field(const Scene& scene) {
   if (!scene.index) return;
   const auto refuse = [](const std::string& why) { throw InputError("index_field: " + why); };
   if (scene.scatterer.is_disk() && scene.index->is_around())
-    refuse("scatterers are points or phase functions of the bulk");
-  if (scene.profile) refuse("is of media without layers and density maps");
-  if (scene.medium.dimension == 3) refuse("is of the plane: dimension = 2");
+    refuse("requires points or phase functions of the bulk as scatterers");
+  if (scene.profile) refuse("requires a medium without layers or density maps");
+  if (scene.medium.dimension == 3) refuse("requires dimension = 2");
   if (!scene.request.lights.all(Light::Kind::plane) &&
       !scene.request.lights.all(Light::Kind::point))
-    refuse("has no beams");
+    refuse("requires plane waves or near sources, not beams");
   if (!scene.index->is_around()) return check_mean_field(scene);
   const bool stratified =
-      scene.index->kind == IndexField::Kind::linear && scene.index->slope.x == 0;
+      scene.index->kind == IndexField::Kind::linear && scene.index->gradient.x == 0;
   if (scene.domain.kind == Domain::Kind::slab && !stratified)
-    refuse("an infinite slab has linear ones with a slope along z alone");
+    refuse("an infinite slab requires a linear field with its gradient along z");
   if (!scene.index->is_quadratic()) return;
   for (const Vec2 place : lit_places(scene))
     if (!(scene.index->square(place) > 0))
@@ -421,7 +433,7 @@ void check_index_field(const Scene& scene) {
 void refuse_graded(const Scene& scene, const std::string& what) {
   if (scene.index)
     throw InputError("index_field", index_field_words[static_cast<std::size_t>(scene.index->kind)],
-                     "is not of " + what);
+                     "is not supported by " + what);
 }
 
 Scene make_scene(const Keys& keys, const SceneSpec& spec) {

@@ -17,8 +17,8 @@
 
 namespace flatspeckle {
 
-/// Scene keys as the user gives them; names and meanings as in the README. Lengths in any one unit,
-/// angles in radians.
+/// Values of the scene keys as given by the user (docs/keys.md). All lengths are in the same,
+/// arbitrary unit; angles are in radians.
 struct SceneSpec : ScattererValues {
   std::int64_t dimension = 2;
   std::string domain = "box";
@@ -31,7 +31,7 @@ struct SceneSpec : ScattererValues {
   std::string layers, density_blobs, density_map;
   std::string index_field = "homogeneous", index_blobs, index_grid;
   double axis_index = 1;
-  std::vector<double> index_slope{};
+  std::vector<double> index_gradient{};
   std::optional<double> index_alpha, sound_amplitude, sound_wavenumber;
   std::vector<double> light_angles{0};
   std::string near_sources;
@@ -44,76 +44,81 @@ struct SceneSpec : ScattererValues {
   std::vector<double> pairs{};
 };
 
-/// All that a solver is told: one scene, two eyes.
+/// Complete input of a solver. The exact solver and Monte Carlo use the same scene.
 struct Scene {
   double wavelength = 1, k = 0;
   Domain domain;
   Scatterer scatterer;
-  BulkMedium medium;                               ///< where it varies, in the mean
-  std::shared_ptr<const MediumProfile> profile{};  ///< null where it is the same everywhere
-  std::optional<IndexField> index{};               ///< none where it is 1 everywhere
+  BulkMedium medium;                               ///< bulk properties; means if the medium varies
+  std::shared_ptr<const MediumProfile> profile{};  ///< null if the medium is uniform
+  std::optional<IndexField> index{};               ///< index around scatterers; nullopt if it is 1
   PlacementRule placement;
   CovarianceRequest request;
 };
 
-// Rows of the keys, by what they are of; add_keys adds all.
+// These functions add the schema entries of the scene keys, by topic. add_keys() calls all of them
+// except add_dimension_key().
 void add_scatterer_keys(Keys& keys, SceneSpec& spec);
-/// g, albedo and optical_depth.
+/// Adds the keys g, albedo and optical_depth, and the keys of other phase functions.
 void add_bulk_keys(Keys& keys, SceneSpec& spec);
 void add_medium_keys(Keys& keys, SceneSpec& spec);
-/// Of methods that can be in space; not among those of add_keys.
+/// Adds the key dimension, for methods that also work in three dimensions.
 void add_dimension_key(Keys& keys, SceneSpec& spec);
-/// The structure factor that Monte Carlo takes positions to have.
+/// Adds the key structure, the structure factor of the scatterers' positions in Monte Carlo.
 void add_structure_key(Keys& keys, SceneSpec& spec);
-/// Of media that vary.
+/// Adds the keys of layers and density maps.
 void add_profile_keys(Keys& keys, SceneSpec& spec);
-/// Of an index that varies.
+/// Adds the keys of the refractive index around the scatterers, if it varies in space.
 void add_index_keys(Keys& keys, SceneSpec& spec);
 void add_view_keys(Keys& keys, SceneSpec& spec);
-/// Near sources and beams.
+/// Adds the keys of near sources and beams.
 void add_light_keys(Keys& keys, SceneSpec& spec);
-/// Which entries of the covariance.
+/// Adds the keys that select entries of the covariance.
 void add_request_keys(Keys& keys, SceneSpec& spec);
 void add_keys(Keys& keys, SceneSpec& spec);
 
-// What follows reads a spec by its keys and throws InputError naming key, value and what is
-// accepted.
+// The functions below read the values of a spec through its keys. They throw InputError, which
+// names the key, its value and what is accepted.
 
-/// Lights, views and entries alone.
+/// Creates only the request: lights, views and entries.
 CovarianceRequest make_request(const Keys& keys, const SceneSpec& spec);
-/// Everything; the last to read the keys: it refuses what is given and was not read, before the
-/// work of deriving the bulk.
+/// Creates the scene. Must be called after all other functions that read keys, because it rejects
+/// keys that are given but have not been read.
 Scene make_scene(const Keys& keys, const SceneSpec& spec);
-/// The same of values alone, all of which must be of use.
+/// Creates the scene from values alone. Throws InputError if a given value is not used.
 Scene make_scene(const SceneSpec& spec);
 CovarianceRequest make_request(const SceneSpec& spec);
 
-/// The infinite slab has lights from below the horizon, and (C18) of plane waves and far views only
-/// entries whose transverse momenta match; near ends, which transport alone takes, on one side of
-/// the light's way. Throws InputError.
+/// Throws InputError if a request is not possible on an infinite slab. Light must enter the slab at
+/// z = 0. For plane waves and far views, the two fields of an entry must have equal shifts of
+/// transverse momentum (C18). Either the lights or the views may be near endpoints, but not both.
+/// Only the transport solver supports near endpoints.
 void check_slab_request(const CovarianceRequest& request, double depth);
 
-/// Throws InputError, which names the key, for a near source or sensor at a distance r from the
-/// origin at which double precision does not hold the phase k r: k r eps must be at most 0.001.
+/// Throws InputError, which names the key, if a near source or sensor is too far from the origin.
+/// In double precision the phase k r, with r the distance, has the rounding error k r eps, which
+/// must be at most 0.001 rad.
 void require_phase(const std::string& key, Vec2 point, double k);
-/// Throws InputError in that case, and where places of the medium are lost in the rounding of r.
+/// Throws InputError under the conditions of require_phase(), and if the distance r is so large
+/// that its rounding error exceeds the differences between points of the medium.
 void require_reach(const std::string& key, Vec2 point, const Scene& scene);
 
-/// What a scene took from other files, exactly: near sensors and sources, and the structure factor.
+/// Returns, in full precision, all numbers that a scene read from other files: near sensors and
+/// sources, structure factor and phase function.
 std::string inputs_text(const Scene& scene);
 
 /// Draws a realization of a scene in a box.
 Placement draw_placement(const Scene& scene, RandomStream& random);
 
-/// That which the key index_field names; none where the index is the same everywhere. Reads its
-/// keys and the file of blobs. Throws InputError.
+/// Returns the index field that the key index_field names; nullopt if the index is uniform. Reads
+/// the keys of that field and the file of blobs. Throws InputError.
 std::optional<IndexField> index_field(const Keys& keys, const SceneSpec& spec);
 
-/// Throws InputError where a scene cannot have the field that it has: what scatters, the domain,
-/// and n^2 wherever light goes.
+/// Throws InputError if the index field cannot be combined with the scatterers, lights or domain of
+/// the scene, or if n^2 is not positive at a point that light must reach.
 void check_index_field(const Scene& scene);
 
-/// Throws InputError where the index varies, which `what` does not take.
+/// Throws InputError if the index varies. what: name of the method that does not support this.
 void refuse_graded(const Scene& scene, const std::string& what);
 
 }  // namespace flatspeckle

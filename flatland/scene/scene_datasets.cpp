@@ -10,25 +10,27 @@ const DatasetTable scene_table{
     .name = "scene",
     .rows = {},
     .attributes = {
-        {"", "wavelength", "float64", "in vacuum, in the unit of the scene's lengths"},
-        {"", "depth", "float64", "of the medium: the L of q L"},
-        {"", "width", "float64", "of a box"},
+        {"", "wavelength", "float64",
+         "wavelength in the medium around the scatterers, in the unit of the scene's lengths"},
+        {"", "depth", "float64", "depth L of the medium"},
+        {"", "width", "float64", "width of a box"},
         {"", "optical_depth", "float64", "mu_t L"},
         {"", "dimension", "uint64",
-         "3: scalar waves in space, covariances per illuminated area; absent: of the plane"},
+         "3 for scalar waves in space, with covariances per illuminated area; absent in 2D"},
         {"", "g", "float64", "mean cosine of scattering"},
         {"", "albedo", "float64", "mu_s/mu_t"},
-        {"", "mean_free_path", "float64", "1/mu_t, of what scatters"},
+        {"", "mean_free_path", "float64", "1/mu_t"},
         {"", "transport_mean_free_path", "float64", "1/(mu_a + mu_s (1 - g))"},
         {"", "k_mean_free_path", "float64", "k/mu_t"},
         {"", "sigma_s", "float64", "scattering cross section (in 2D a length) of one scatterer"},
         {"", "sigma_e", "float64", "extinction cross section of one scatterer"},
         {"", "density", "float64", "scatterers per area"},
-        {"", "packing_fraction", "float64", "share of the area that scatterers cover"},
-        {"", "k_shift", "float64", "real part of the effective wavenumber less k"},
+        {"", "packing_fraction", "float64", "fraction of the area that scatterers cover"},
+        {"", "k_shift", "float64", "real part of the effective wavenumber, minus k"},
         {"", "index_front", "float64",
          "index around the scatterers at x = z = 0, where n^2 is linear or parabolic"},
-        {"", "index_back", "float64", "the same at z = depth"},
+        {"", "index_back", "float64",
+         "index around the scatterers at x = 0, z = depth, where n^2 is linear or parabolic"},
     }};
 
 const DatasetTable axes_table{
@@ -39,18 +41,18 @@ const DatasetTable axes_table{
               "transverse position of the focus or source"},
              {"light_z", Data::real, "light", "length", "depth of the focus or source"},
              {"view_angle", Data::scale, "", "rad", "direction of view, from +z towards +x"},
-             {"sensor", Data::numbers, "", "1", "near-field sensor"},
+             {"sensor", Data::numbers, "", "1", "number of the near-field sensor"},
              {"sensor_x", Data::real, "sensor", "length", "transverse position"},
              {"sensor_z", Data::real, "sensor", "length", "depth"},
              {"light_angle_2", Data::scale, "", "rad", "direction of the second light"},
-             {"light_2", Data::numbers, "", "1", "second light"},
+             {"light_2", Data::numbers, "", "1", "number of the second light"},
              {"view_angle_2", Data::scale, "", "rad", "direction of the second view"},
-             {"sensor_2", Data::numbers, "", "1", "second near-field sensor"},
-             {"pair", Data::numbers, "", "1", "requested pair"},
-             {"pair_light_1", Data::real, "pair", "rad", "angle"},
-             {"pair_view_1", Data::real, "pair", "rad", "angle"},
-             {"pair_light_2", Data::real, "pair", "rad", "angle"},
-             {"pair_view_2", Data::real, "pair", "rad", "angle"},
+             {"sensor_2", Data::numbers, "", "1", "number of the second near-field sensor"},
+             {"pair", Data::numbers, "", "1", "number of the requested pair"},
+             {"pair_light_1", Data::real, "pair", "rad", "angle of the first light"},
+             {"pair_view_1", Data::real, "pair", "rad", "angle of the first view"},
+             {"pair_light_2", Data::real, "pair", "rad", "angle of the second light"},
+             {"pair_view_2", Data::real, "pair", "rad", "angle of the second view"},
              {"tilt", Data::scale, "", "rad", "rotation of the light"},
              {"tilt_q", Data::real, "tilt", "1/length", "transverse wavenumber of the tilt"},
              {"shift", Data::scale, "", "SHIFT", "change of k sin(view), or translation along x"}},
@@ -72,7 +74,8 @@ namespace {
 
 using Kind = CovarianceRequest::Kind;
 
-// Each axis has a scale of its own: xarray cannot tell two axes of one name apart.
+// Writes the axes of the second light and view. They repeat the values of the first ones under
+// other names, because xarray cannot distinguish two axes with one name.
 void write_second_axes(ResultFile& file, const CovarianceRequest& request) {
   const ResultGroup root(file, axes_table);
   const bool plane = request.lights.all(Light::Kind::plane), near = request.views.front().near;

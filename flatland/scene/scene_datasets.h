@@ -5,24 +5,28 @@
 
 namespace flatspeckle {
 
-// What results hold of their scene. Axes bind the roles LIGHT and VIEW, of lights and views, in a
-// full covariance LIGHT_2 and VIEW_2 too.
+// Datasets and attributes of the scene in result files. Dataset tables name axes and units by
+// placeholders. Writing the axes binds LIGHT and VIEW to the axes of lights and views and, for a
+// full covariance, LIGHT_2 and VIEW_2 to those of the second field.
 
 extern const DatasetTable scene_table, axes_table, beams_table;
 
-/// Root attributes: wavelength and extent of the medium.
+/// Writes the wavelength and the extent of the medium as root attributes.
 void write_domain(ResultFile& file, const Scene& scene);
-/// Those and the bulk properties.
+/// Writes the domain and the bulk properties.
 void write_medium(ResultFile& file, const Scene& scene);
 
-/// Says in what unit fields (FIELD) and their squares (COVARIANCE) are. Far fields are
-/// lengths^(1/2), and a slab's covariance counts per unit length.
+/// Binds the placeholders FIELD and COVARIANCE to the units of fields and covariances. Far fields
+/// of a box have the unit length^(1/2). The covariance of a slab is divided by the illuminated
+/// length, so that it has no unit.
 void bind_units(ResultFile& file, const Scene& scene);
-/// The axis of lights: light_angle of plane waves, else light with its coordinates.
+/// Writes the axis of lights: light_angle for plane waves, otherwise the number `light` with the
+/// coordinates of each light.
 void write_light_axis(ResultFile& file, const Lights& lights);
-/// The axis of views that are all far (view_angle) or all near (sensor, with its coordinates).
+/// Writes the axis of views that are all far (view_angle) or all near (sensor, with its
+/// coordinates).
 void write_view_axis(ResultFile& file, const std::vector<View>& views);
-/// The axes that the datasets of the scene's request stand on, and their units.
+/// Writes the axes for the datasets of the scene's request, and binds their units.
 void write_axes(ResultFile& file, const Scene& scene);
 
 }  // namespace flatspeckle

@@ -9,16 +9,18 @@ void add_scatterer_keys(Keys& keys, SceneSpec& spec) {
       .positive()
       .unit("length");
   keys.add("scatterer", spec.scatterer,
-           "Points; soft (field 0 at the rim), hard (normal derivative 0), tm and te cylinders (E "
-           "or H along the axis); a phase function of the bulk; or in space mie, spheres")
+           "Points; cylinders that are soft (field 0 at the rim), hard (normal derivative 0), tm "
+           "or te (E or H along the axis); a phase function instead of scatterers; or mie, "
+           "spheres in 3D")
       .one_of(scatterer_words());
   keys.add("radius", spec.radius, "Radius of the cylinders or spheres")
       .positive()
       .unit("length")
       .only_of("soft, hard, tm, te and mie")
       .swept();
-  keys.add("index", spec.index,
-           "Relative index, as \"1.5+0.1i\" (which absorbs); neither part negative (default 1.5)")
+  keys.add(
+          "index", spec.index,
+          "Relative index, such as \"1.5+0.1i\" (absorbing); no part may be negative (default 1.5)")
       .only_of("tm, te and mie")
       .swept();
   keys.add("phase_shift", spec.phase_shift,
@@ -29,10 +31,17 @@ void add_scatterer_keys(Keys& keys, SceneSpec& spec) {
 
 void add_bulk_keys(Keys& keys, SceneSpec& spec) {
   keys.group("Bulk");
-  keys.add("optical_depth", spec.optical_depth, "Density from mu_t x depth").positive().swept();
-  keys.add("g", spec.g, "Mean cosine (default 0)").between(-1, 1).only_of("hg").swept();
+  keys.add("optical_depth", spec.optical_depth,
+           "Optical depth mu_t x depth, which sets the density")
+      .positive()
+      .swept();
+  keys.add("g", spec.g, "Mean cosine of the scattering angle (default 0)")
+      .between(-1, 1)
+      .only_of("hg")
+      .swept();
   add_keys(keys, spec.bulk);
-  keys.add("albedo", spec.albedo, "Albedo; of points, which are resonant, above 0 (default 1)")
+  keys.add("albedo", spec.albedo,
+           "Albedo (default 1). Points require a value above 0; below 1, they scatter at resonance")
       .from(0, 1)
       .only_of("points and phase functions of the bulk")
       .swept();
@@ -40,25 +49,27 @@ void add_bulk_keys(Keys& keys, SceneSpec& spec) {
 
 void add_medium_keys(Keys& keys, SceneSpec& spec) {
   keys.group("Medium");
-  keys.add("domain", spec.domain, "Where scatterers are; a slab is infinite in x")
+  keys.add("domain", spec.domain, "Region of the scatterers; a slab is infinite in x")
       .one_of({"box", "slab"});
-  keys.add("width", spec.width, "|x| <= width/2").positive().unit("length").only_of("a box");
-  keys.add("depth", spec.depth, "0 <= z <= depth").positive().unit("length");
-  keys.add("count", spec.count, "Density from a fixed number of scatterers in the box")
+  keys.add("width", spec.width, "Width of the box: |x| <= width/2")
+      .positive()
+      .unit("length")
+      .only_of("a box");
+  keys.add("depth", spec.depth, "Depth of the domain: 0 <= z <= depth").positive().unit("length");
+  keys.add("count", spec.count, "Number of scatterers in the box, which sets the density")
       .not_negative();
-  keys.add("density", spec.density, "Density as number per area")
+  keys.add("density", spec.density, "Number of scatterers per area")
       .positive()
       .unit("1/length^2")
       .swept();
-  keys.add("mean_free_path", spec.mean_free_path, "Density from the mean free path 1/mu_t")
+  keys.add("mean_free_path", spec.mean_free_path, "Mean free path 1/mu_t, which sets the density")
       .positive()
       .unit("length");
   keys.add("placement", spec.placement,
-           "Of points poisson; of disks hard_disk (default, one after the other) or equilibrium "
-           "(the "
-           "fluid of hard disks)")
+           "poisson for points; for disks hard_disk (default, random sequential addition) or "
+           "equilibrium (the fluid of hard disks)")
       .one_of(placement_words);
-  keys.add("min_gap", spec.min_gap, "Least distance between rims (default 1e-3 radius)")
+  keys.add("min_gap", spec.min_gap, "Least gap between the rims of disks (default 1e-3 radius)")
       .not_negative()
       .unit("length")
       .only_of("disks");
@@ -67,7 +78,8 @@ void add_medium_keys(Keys& keys, SceneSpec& spec) {
 void add_dimension_key(Keys& keys, SceneSpec& spec) {
   keys.group("Methods");
   keys.add("dimension", spec.dimension,
-           "Of space: 2, or 3 for scalar waves, lights and views in the plane of incidence")
+           "Dimension of space: 2, or 3 for scalar waves with lights and views in the plane of "
+           "incidence")
       .from(2, 3)
       .only_of("slabs, by transport or Monte Carlo");
 }
@@ -82,17 +94,19 @@ void add_structure_key(Keys& keys, SceneSpec& spec) {
 void add_profile_keys(Keys& keys, SceneSpec& spec) {
   keys.group("Medium");
   keys.add("layers", spec.layers,
-           "CSV of layers from z = 0 on: thickness, one of optical_depth, mean_free_path and "
-           "density, and what of g, albedo, radius, index_re, index_im, phase_shift varies")
+           "CSV with a line for each layer; the first layer starts at z = 0. Columns: thickness; "
+           "one of "
+           "optical_depth, mean_free_path and density; and those of g, albedo, radius, index_re, "
+           "index_im, phase_shift that differ between layers")
       .file()
-      .only_of("layered media, in place of depth and density");
+      .only_of("layered media, instead of depth and density");
   keys.add("density_blobs", spec.density_blobs,
-           "CSV with columns x, z, radius, amplitude: Gaussians that the relative density has "
-           "beside 1")
+           "CSV with columns x, z, radius, amplitude: Gaussians added to the relative "
+           "density of 1")
       .file()
       .only_of("a box");
   keys.add("density_map", spec.density_map,
-           "HDF5 file with relative_density [z][x]: of equal cells that fill the box")
+           "HDF5 file with relative_density [z][x] of equal cells that fill the box")
       .file()
       .only_of("a box");
 }
@@ -100,34 +114,36 @@ void add_profile_keys(Keys& keys, SceneSpec& spec) {
 void add_index_keys(Keys& keys, SceneSpec& spec) {
   keys.group("Index around the scatterers");
   keys.add("index_field", spec.index_field,
-           "How the index varies: n^2 linear, a parabolic guide along z, blobs, standing sound, "
-           "samples of a grid (wavelengths are those where it is 1); or mean_field, by what the "
-           "scatterers add to it (k_shift)")
+           "How the index n varies: n^2 linear, a parabolic guide along z, Gaussian blobs, a "
+           "standing sound wave, or samples on a grid (the wavelength is that where n = 1); or "
+           "mean_field, the effective index of the scatterers (k_shift)")
       .one_of(index_field_words);
   keys.add("axis_index", spec.axis_index,
-           "Index at the origin (linear), on the axis x = 0 (parabolic), or around")
+           "Index at the origin (linear), on the axis x = 0 (parabolic), or in the background")
       .positive()
       .only_of("index_field = linear, parabolic, blobs and ultrasound");
-  keys.add("index_slope", spec.index_slope, "Gradient of n^2, along x and z")
+  keys.add("index_slope", spec.index_gradient, "Gradient of n^2, along x and z")
       .exactly(2, "along x, along z")
       .unit("1/length")
       .only_of("index_field = linear");
-  keys.add("index_alpha", spec.index_alpha, "Of n^2 = axis_index^2 - alpha^2 x^2")
+  keys.add("index_alpha", spec.index_alpha, "alpha in n^2 = axis_index^2 - alpha^2 x^2")
       .positive()
       .unit("1/length")
       .only_of("index_field = parabolic");
   keys.add("index_blobs", spec.index_blobs,
-           "CSV with columns x, z, height, width: height exp(-r^2/(2 width^2)), of the index")
+           "CSV with columns x, z, height, width: each line adds height exp(-r^2/(2 width^2)) to n")
       .file()
       .only_of("index_field = blobs");
-  keys.add("sound_amplitude", spec.sound_amplitude, "Of the index, times J_0(wavenumber x)")
+  keys.add("sound_amplitude", spec.sound_amplitude,
+           "Amplitude of the change of n, sound_amplitude J_0(sound_wavenumber x)")
       .only_of("index_field = ultrasound");
   keys.add("sound_wavenumber", spec.sound_wavenumber, "2 pi frequency / speed of the sound")
       .positive()
       .unit("1/length")
       .only_of("index_field = ultrasound");
   keys.add("index_grid", spec.index_grid,
-           "HDF5 file with excess [x][y][z], n - 1 as render takes it, of which y = 0 counts")
+           "HDF5 file with excess [x][y][z], which is n - 1 as for render; samples at y = 0 are "
+           "used")
       .file()
       .only_of("index_field = grid");
 }
@@ -136,10 +152,11 @@ void add_view_keys(Keys& keys, SceneSpec& spec) {
   keys.group("Lights and views");
   keys.add("light_angles", spec.light_angles, "Directions of plane waves and beams, from +z")
       .angle()
-      .only_of("plane waves and beams (near_sources, pairs: none)");
+      .only_of("plane waves and beams (not with near_sources or pairs)");
   keys.add("view_angles", spec.view_angles, "Directions of far views, from +z")
       .angle()
-      .only_of("far views (either near_sensors or view_angles; pairs name their own)");
+      .only_of(
+          "far views (give either near_sensors or view_angles; pairs contain their own angles)");
   keys.add("near_sensors", spec.near_sensors, "CSV with columns x, z: near-field sensors")
       .only_of("near fields (pairs and memory_effect have far views only)");
 }
@@ -147,34 +164,36 @@ void add_view_keys(Keys& keys, SceneSpec& spec) {
 void add_light_keys(Keys& keys, SceneSpec& spec) {
   keys.group("Lights and views");
   keys.add("near_sources", spec.near_sources,
-           "CSV with columns x, z: point sources in place of plane waves")
+           "CSV with columns x, z: point sources instead of plane waves")
       .only_of("near fields (pairs have plane waves)");
   keys.add("beam_waist", spec.beam_waist,
-           "Gaussian beams in place of plane waves: 1/e radius of the field at the focus")
+           "Gaussian beams instead of plane waves: 1/e radius of the field at the focus")
       .positive()
       .unit("length")
-      .only_of("beams (either near_sources or beams; pairs have neither)");
+      .only_of("beams (give either near_sources or beams; pairs have neither)");
   keys.add("beam_positions", spec.beam_positions,
-           "x of the beams' focus, each with every light angle (default 0)")
+           "x of the beams' foci, each combined with every light angle (default 0)")
       .unit("length")
       .only_of("beams (beam_waist)");
-  keys.add("beam_depth", spec.beam_depth, "z of the beams' focus (default 0)")
+  keys.add("beam_depth", spec.beam_depth, "z of the beams' foci (default 0)")
       .unit("length")
       .only_of("beams (beam_waist)");
 }
 
 void add_request_keys(Keys& keys, SceneSpec& spec) {
-  keys.group("What is asked for");
-  keys.add("covariance", spec.covariance, "Which entries of the covariance").one_of(request_words);
+  keys.group("Requested entries");
+  keys.add("covariance", spec.covariance, "Entries of the covariance to compute")
+      .one_of(request_words);
   keys.add("tilts", spec.tilts, "Rotations of the light")
       .angle()
       .only_of("covariance = memory_effect and tilt_shift");
   keys.add("shifts", spec.shifts,
-           "tilt_shift: of the views, in k sin(view) or of near sensors along x; translation: of "
-           "light and near sensors along x")
+           "tilt_shift: shifts of far views in k sin(view angle), or of near sensors along x; "
+           "translation: shifts of the light and the near sensors along x")
       .unit("1/length or length")
       .only_of("covariance = tilt_shift and translation");
-  keys.add("pairs", spec.pairs, "light 1, view 1, light 2, view 2 of each pair in turn")
+  keys.add("pairs", spec.pairs,
+           "Angles of each pair, one pair after the other: light 1, view 1, light 2, view 2")
       .each_of(4, "light 1, view 1, light 2, view 2")
       .angle()
       .only_of("covariance = pairs");

@@ -16,8 +16,9 @@ Vec2 uniform_between(const Domain& box, double from, double to, RandomStream& ra
   return {x, from + random.uniform() * (to - from)};
 }
 
-/// A medium that varies, of points: of a uniform density that is nowhere exceeded, each is kept
-/// with the share that its place has of it.
+/// Draws points in a medium that varies, by thinning. Points are drawn with a uniform density that
+/// the medium nowhere exceeds. Each point is kept with the probability (local density) / (uniform
+/// density).
 Placement thinned(const Scene& scene, RandomStream& random) {
   const MediumProfile& profile = *scene.profile;
   PlacementRule dense = scene.placement;
@@ -30,14 +31,15 @@ Placement thinned(const Scene& scene, RandomStream& random) {
   return placement;
 }
 
-/// Disks of one material, and between which depths.
+/// Disks of one material and the depths between which they lie.
 struct Population {
   Scatterer scatterer;
   double from, to;
   std::size_t count;
 };
 
-/// In whole numbers, the largest disks first: they find no room among many small ones.
+/// Returns the populations of a scene, with integer numbers of disks. The largest disks come first,
+/// because they would not fit among many small ones.
 std::vector<Population> populations(const Scene& scene) {
   const auto whole = [](double mean) { return static_cast<std::size_t>(std::llround(mean)); };
   const auto* layers = dynamic_cast<const Layers*>(scene.profile.get());
@@ -56,8 +58,8 @@ std::vector<Population> populations(const Scene& scene) {
   return list;
 }
 
-/// A medium that varies, of disks: one after the other where there is room, centres as dense as
-/// the place asks.
+/// Random sequential addition of disks in a medium that varies. The density of the centres is
+/// proportional to the local density of the medium.
 class AddedDisks {
  public:
   AddedDisks(const Scene& scene, RandomStream& random)
@@ -77,7 +79,8 @@ class AddedDisks {
     std::uint64_t tries = 0;
     for (std::size_t placed = 0; placed < population.count;) {
       if (++tries == most_tries)
-        throw InputError("the disks cannot be packed one after the other; lower the density");
+        throw InputError(
+            "the disks cannot be packed by random sequential addition; lower the density");
       const Vec2 x = uniform_between(scene_.domain, population.from, population.to, random_);
       if (!wanted(x) || taken(x, population.scatterer.radius)) continue;
       grid_.insert(x, placement_.size());
@@ -85,7 +88,9 @@ class AddedDisks {
       ++placed;
     }
   }
-  /// Of a density map.
+  /// Draws whether to keep x as the centre of a disk. In a density map the probability is
+  /// proportional to the density. In layers it is 1, because each layer has its own number of
+  /// disks.
   bool wanted(Vec2 x) {
     const MediumProfile& profile = *scene_.profile;
     return profile.materials().size() > 1 ||
@@ -110,9 +115,7 @@ Placement draw_placement(const Scene& scene, RandomStream& random) {
   if (!scene.profile) return draw_placement(scene.domain, scene.scatterer, scene.placement, random);
   if (!scene.scatterer.is_disk()) return thinned(scene, random);
   if (scene.placement.kind == PlacementRule::Kind::equilibrium)
-    throw InputError("placement", "equilibrium",
-                     "is of media that do not vary; disks of others are placed one after the "
-                     "other: hard_disk");
+    throw InputError("placement", "equilibrium", "requires a uniform medium; use hard_disk");
   return AddedDisks(scene, random).placed();
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 const std::vector<double>& at_least_one(const Keys& keys, const std::vector<double>& numbers) {
   if (numbers.empty())
-    throw InputError(keys.name(numbers) + " = []: must hold at least one number");
+    throw InputError(keys.name(numbers) + " = []: must contain at least one number");
   return keys.read(numbers);
 }
 
@@ -23,11 +23,12 @@ Lights near_lights(const Keys& keys, const SceneSpec& spec) {
   return lights;
 }
 
-/// All angles with all positions of the focus.
+/// Returns a beam for every combination of an angle and a position of the focus.
 Lights beams(const Keys& keys, const SceneSpec& spec) {
   const double waist = *keys.read(spec.beam_waist);
   if (waist < spec.wavelength)
-    throw InputError("beam_waist", waist, "a paraxial beam is at least a wavelength wide");
+    throw InputError("beam_waist", waist,
+                     "must be at least one wavelength, because beams are paraxial");
   auto positions = keys.read(spec.beam_positions);
   if (positions.empty()) positions = {0};
   const double depth = keys.read(spec.beam_depth).value_or(0);
@@ -47,11 +48,11 @@ Light only_light(const Keys& keys, const SceneSpec& spec) {
   const Lights lights = requested_lights(keys, spec);
   if (lights.size() != 1)
     throw InputError("covariance", spec.covariance,
-                     "moves one light, not " + std::to_string(lights.size()));
+                     "requires one light, not " + std::to_string(lights.size()));
   return lights.front();
 }
 
-/// Far views, or the near sensors that take their place.
+/// Returns the near sensors if the key near_sensors is given, otherwise the far views.
 std::vector<View> requested_views(const Keys& keys, const SceneSpec& spec) {
   if (spec.near_sensors.empty()) return far_views(at_least_one(keys, spec.view_angles));
   std::vector<View> views;
@@ -69,22 +70,23 @@ void no_repeats(const std::string& key, std::vector<double> values) {
 CovarianceRequest memory_effect(const Keys& keys, const SceneSpec& spec) {
   if (at_least_one(keys, spec.light_angles).size() != 1)
     throw InputError("light_angles", spec.light_angles.size(),
-                     "memory_effect tilts one light: give one angle");
+                     "memory_effect requires one light: give one angle");
   if (!requested_lights(keys, spec).all(Light::Kind::plane))
     throw InputError(
         "covariance", "memory_effect",
-        "tilts a plane wave: use tilt_shift for a beam, translation for a near source");
+        "requires a plane wave; use tilt_shift for a beam, translation for a near source");
   no_repeats("tilts", at_least_one(keys, spec.tilts));
   no_repeats("view_angles", at_least_one(keys, spec.view_angles));
   return memory_effect_request(2 * std::numbers::pi / spec.wavelength, spec.light_angles[0],
                                spec.view_angles, spec.tilts);
 }
 
-/// A range counts from the reference, which therefore is one of the steps.
+/// Checks that a list of tilts or shifts contains the value 0, and no value twice. The value 0 is
+/// the reference, from which the range of a correlation is measured.
 void steps_from_zero(const std::string& key, const std::vector<double>& steps) {
   no_repeats(key, steps);
   if (std::find(steps.begin(), steps.end(), 0.0) == steps.end())
-    throw InputError(key, steps.front(), "the list must hold 0, the reference, too");
+    throw InputError(key, steps.front(), "the list must contain 0, the reference");
 }
 
 std::vector<View> moved_views(const Keys& keys, const SceneSpec& spec) {
@@ -108,7 +110,7 @@ CovarianceRequest translation(const Keys& keys, const SceneSpec& spec) {
   const Light light = only_light(keys, spec);
   if (light.kind == Light::Kind::plane)
     throw InputError("covariance", "translation",
-                     "moves a beam or a near source; for a plane wave use tilt_shift");
+                     "requires a beam or a near source; for a plane wave use tilt_shift");
   steps_from_zero("shifts", at_least_one(keys, spec.shifts));
   return translation_request(light, moved_views(keys, spec), spec.shifts);
 }
@@ -144,21 +146,24 @@ CovarianceRequest make_request(const Keys& keys, const SceneSpec& spec) {
 
 namespace {
 
-/// Near ends stand outside of the slab, on one side of the light's way alone: directions of the
-/// other fix what correlates.
-void check_near_ends(const CovarianceRequest& request, double depth) {
+/// Checks that near sources and sensors are outside the slab, and that not both the lights and the
+/// views are near. If the lights are near, the directions of the far views determine which fields
+/// correlate, and vice versa.
+void check_near_endpoints(const CovarianceRequest& request, double depth) {
   const bool near_lights = !request.lights.all(Light::Kind::plane);
   for (const Light& light : request.lights)
     if (light.kind == Light::Kind::point && light.point.z >= 0)
-      throw InputError("near_sources", light.point.z, "light enters a slab at z = 0: z < 0");
+      throw InputError("near_sources", light.point.z,
+                       "must be below 0, because light enters a slab at z = 0");
   for (const View& view : request.views) {
     if (!view.near) continue;
     if (near_lights)
       throw InputError(
-          "near_sensors: of a slab lit by a beam or a near source take far views; or "
-          "take a box");
+          "near_sensors: a slab lit by a beam or a near source requires far views; or "
+          "use a box");
     if (view.point.z >= 0 && view.point.z <= depth)
-      throw InputError("near_sensors", view.point.z, "stand outside of the slab: z < 0 or > depth");
+      throw InputError("near_sensors", view.point.z,
+                       "must be outside of the slab: z < 0 or > depth");
   }
 }
 
@@ -167,8 +172,9 @@ void check_near_ends(const CovarianceRequest& request, double depth) {
 void check_slab_request(const CovarianceRequest& request, double depth) {
   for (const Light& light : request.lights)
     if (light.kind != Light::Kind::point && std::cos(light.angle) <= 0)
-      throw InputError("light_angles", light.angle, "light enters a slab at z = 0: |angle| < pi/2");
-  if (has_near_ends(request)) return check_near_ends(request, depth);
+      throw InputError("light_angles", light.angle,
+                       "|angle| must be below pi/2, because light enters a slab at z = 0");
+  if (has_near_endpoints(request)) return check_near_endpoints(request, depth);
   if (request.kind == CovarianceRequest::Kind::tilt_shift)
     throw InputError("covariance", "tilt_shift",
                      "on an infinite slab only matched views correlate: use memory_effect, or a "

@@ -41,12 +41,13 @@ void check_start(const SceneField& scene, const Stage& stage, const RayStops& st
   const auto refuse = [&](const std::string& where) {
     throw InputError(name(number) + " starts at " + listed(start.x) + ": " + where);
   };
-  if (scene.grid && scene.grid->distance(start.x) > 0) refuse("outside of the grid");
-  if (!(index_at(scene, stage, start.x) > 0)) refuse("the field has no index above 0 there");
+  if (scene.grid && scene.grid->distance(start.x) > 0) refuse("must lie inside the grid");
+  if (!(index_at(scene, stage, start.x) > 0)) refuse("the index there must be above 0");
   for (const auto& surface : stops.surfaces)
     if (const auto* plane = std::get_if<Plane>(&surface);
         plane && plane->distance(start.x) > stops.location)
-      refuse("behind stop_plane = " + listed(plane->point) + ' ' + listed(plane->outwards));
+      refuse("must not lie behind stop_plane = " + listed(plane->point) + ' ' +
+             listed(plane->outwards));
 }
 
 double largest_coordinate(const std::vector<RayStart>& starts) {
@@ -78,7 +79,8 @@ class BundleTracer {
                            : make_ray_field(Homogeneous{stage.excess_in(part)}));
   }
 
-  /// Rays of equal steps whose ways are not kept may go side by side.
+  /// Whether rays can be traced in SIMD lanes. This requires fixed steps, no bodies and no stored
+  /// paths.
   bool has_lanes() const {
     return inside_->has_lanes() && stage_.bodies.empty() && !steps_.tolerance && path_points_ == 0;
   }
@@ -88,7 +90,7 @@ class BundleTracer {
     going.log.start(going.ray);
     return finish(going, follow(going));
   }
-  /// Rays [first, last).
+  /// Traces the rays with numbers from first to last - 1 in SIMD lanes.
   void trace_in_lanes(std::span<const RayStart> starts, std::size_t first, std::size_t last,
                       std::vector<TracedRay>& rays) const {
     InLanes bundle(*this, starts, first, last, rays);
@@ -115,7 +117,7 @@ class BundleTracer {
     std::uint64_t steps = 0;
   };
 
-  /// LanePool's work.
+  /// Provides a LanePool with the rays to trace (parameter Work of LanePool).
   class InLanes {
    public:
     InLanes(const BundleTracer& tracer, std::span<const RayStart> starts, std::size_t first,
@@ -148,7 +150,7 @@ class BundleTracer {
     bool careful(int lane, RayState& ray, double& index_mismatch) {
       Going& going = *going_[lane];
       going.ray = ray;
-      going.log.met(index_mismatch);
+      going.log.record_mismatch(index_mismatch);
       TraceLimits few = tracer_.limits(going);
       few.max_steps = steps_at_once;
       TraceEnd end = tracer_.inside_->follow(tracer_.surfaces_, few, going.log, going.ray);
@@ -166,7 +168,7 @@ class BundleTracer {
 
    private:
     static constexpr int steps_at_once = LanePool<InLanes>::steps_at_once;
-    static_assert(steps_at_once == RayLog::steps_unseen);
+    static_assert(steps_at_once == RayLog::steps_between_checks);
 
     const BundleTracer& tracer_;
     std::span<const RayStart> starts_;
@@ -194,7 +196,8 @@ class BundleTracer {
     return limits;
   }
   static std::uint64_t bit(int surface) { return std::uint64_t{1} << surface; }
-  /// Stop surfaces, and the grid, which a ray stays on one side of until it ends.
+  /// Returns, for each stop surface and for the box of the grid, the side on which the ray stays
+  /// until it ends.
   KnownSides sides_of_ends(const RayState& start) const {
     const Watch watch(surfaces_, {0, stops_.location}, start);
     KnownSides sides;
@@ -216,12 +219,12 @@ class BundleTracer {
     const bool is_stop = traced.status == RayStatus::surface;
     traced.surface = static_cast<std::uint64_t>(is_stop ? end.surface : number_of_stops());
     traced.transmittance = going.transmittance;
-    traced.end_slope = field_of(going.part, going.ray).gradient(going.ray.x).gradient.norm();
+    traced.end_derivative = field_of(going.part, going.ray).gradient(going.ray.x).gradient.norm();
     if (path_points_ > 0) traced.path = going.log.path().points(path_points_);
     return traced;
   }
 
-  /// From rim to rim and from body to body, until the ray ends.
+  /// Follows the ray across the rim of the field and the surfaces of bodies until it ends.
   TraceEnd follow(Going& going) const {
     constexpr int most_seams = 100'000;
     if (leaves_grid(going.ray)) return {.stop = Stop::surface, .surface = number_of_stops()};
@@ -231,10 +234,13 @@ class BundleTracer {
       if (has_ended(going, end)) return end;
       if (is_body(end.surface)) cross(going, end.surface - number_of_stops() + 1);
     }
-    throw InputError("max_length", stops_.max_length,
-                     name(going.number) + " meets the rim, or bodies, too often");
+    throw InputError(
+        "max_length", stops_.max_length,
+        name(going.number) +
+            " crosses the rim or body surfaces more than 100000 times; reduce max_length");
   }
-  /// A ray ends before the surface of a body that a stop surface coincides with.
+  /// Returns the stop surface that touches a body's surface at x, if there is one. A ray ends there
+  /// before it crosses the body's surface.
   std::optional<int> stop_in_contact(const Vec3& x) const {
     for (int i = 0; i < number_of_stops(); ++i)
       if (std::abs(distance(surfaces_[i], x)) <= regions_.contact(x)) return i;
@@ -249,7 +255,8 @@ class BundleTracer {
     going.transmittance *= std::exp(-mu_t * (going.ray.arc_length - before));
     return end;
   }
-  /// Not at the rim or a body.
+  /// Whether the ray has ended; false if it has only reached the rim of the field or a body. Throws
+  /// InputError if the ray is lost.
   bool has_ended(const Going& going, const TraceEnd& end) const {
     if (end.stop == Stop::lost || end.stop == Stop::steps) throw lost(going, end);
     const bool at_rim = scene_.rim && end.surface + 1 == static_cast<int>(surfaces_.size());
@@ -260,7 +267,8 @@ class BundleTracer {
     return body >= 0 && body < static_cast<int>(stage_.bodies.size());
   }
 
-  /// A body's surface, where the index jumps unless what is seen there is covered by another.
+  /// Refracts or reflects the ray at the surface of a body. Has no effect where another body covers
+  /// this surface.
   void cross(Going& going, Part body) const {
     RayState& ray = going.ray;
     const Part to = regions_.beyond(going.part, body, ray.x, ray.v.normalized());
@@ -283,7 +291,8 @@ class BundleTracer {
     if (plain_[part]) return *plain_[part];
     return is_outside(ray) ? *outside_ : *inside_;
   }
-  /// Where it was outside of the rim, in one way.
+  /// Traces a ray that starts outside the rim of the field up to the rim. Returns whether the ray
+  /// is then inside the rim.
   bool comes_inside(Going& going) const {
     if (leaves_grid(going.ray)) return false;
     if (!is_outside(going.ray)) return true;
@@ -292,7 +301,7 @@ class BundleTracer {
     return !has_ended(going, end) && !is_outside(going.ray);
   }
 
-  /// From its edge.
+  /// Whether the ray is at the edge of the grid and goes outwards.
   bool leaves_grid(const RayState& ray) const {
     return scene_.grid && scene_.grid->distance(ray.x) >= -stops_.location &&
            ray.v.dot(scene_.grid->normal(ray.x)) >= 0;
@@ -308,13 +317,14 @@ class BundleTracer {
   InputError lost(const Going& going, const TraceEnd& end) const {
     const std::string ray = name(going.number);
     if (end.stop == Stop::steps)
-      return InputError(
-          "max_length", stops_.max_length,
-          ray + " takes more than " + std::to_string(most_steps) + " steps; they may be longer");
+      return InputError("max_length", stops_.max_length,
+                        ray + " takes more than " + std::to_string(most_steps) +
+                            " steps; increase step or tolerance, or reduce max_length");
     const Vec3& x = going.ray.x;
     const std::string where = x.allFinite() ? ", near " + listed(x) : "";
     return InputError(
-        ray + " comes to where the index is not above 0, or changes too fast for the tolerance" +
+        ray +
+        " reaches a place where the index is not above 0 or varies too fast for the tolerance" +
         where);
   }
 
@@ -325,8 +335,9 @@ class BundleTracer {
   const RaySteps& steps_;
   std::size_t path_points_;
   std::vector<Surface> surfaces_;
-  std::unique_ptr<const RayField> inside_, outside_;    ///< of the rim
-  std::vector<std::unique_ptr<const RayField>> plain_;  ///< of each part but that of the field
+  std::unique_ptr<const RayField> inside_, outside_;  ///< fields inside and outside the rim
+  /// Uniform index of each region of the stage; null for the region that contains the index field.
+  std::vector<std::unique_ptr<const RayField>> plain_;
 };
 
 }  // namespace

@@ -12,39 +12,43 @@
 
 namespace flatspeckle::grin {
 
-/// Bodies that rays pass, as keys have them: those of render's stage.
+/// Scene keys of the bodies that rays pass through; `render` uses the same keys.
 struct RayBodyValues : FieldBodyValues {
   PlainBodyValues plain_bodies{};
 };
 
 void add_keys(Keys& keys, RayBodyValues& values);
 
-/// A stage around them, whose boundary rays need not know of. A field that fills a body loses its
-/// rim, box and symmetry, as rays see that body. Throws InputError.
+/// Makes the geometry (Stage) with the bodies given by these keys. The outer boundary of the stage
+/// does not affect rays. If the index field fills a body, the rim, grid box and symmetry of the
+/// field are removed, because the surface of the body replaces them. Throws InputError.
 Stage make_ray_stage(const Keys& keys, const RayBodyValues& values, SceneField& field);
 
-/// 0 where there is no field.
+/// Refractive index at x; 0 outside the field.
 double index_at(const SceneField& field, const Stage& stage, const Vec3& x);
 
-/// How a ray ended, by its number in the file.
+/// Reason why a ray ended; the dataset `status` contains these values.
 enum class RayStatus : std::uint64_t { surface, length, edge_of_grid };
 
 struct TracedRay {
   RayStatus status = RayStatus::length;
-  std::uint64_t surface = 0;  ///< number of it; that of all surfaces where it ended on none
+  /// Number of the stop surface on which the ray ended; the number of all stop surfaces if on none.
+  std::uint64_t surface = 0;
   std::uint64_t steps = 0;
   RayState end = {};
-  double index_mismatch = 0;  ///< largest ||v| - n| on the way (RayLog)
-  double transmittance = 1;   ///< what the surfaces and media of bodies leave of unpolarised light
-  double end_slope = 0;       ///< |grad n| at the end
+  double index_mismatch = 0;  ///< largest difference between |v| and n along the ray
+  /// Fraction of unpolarised light that the surfaces and media of the bodies transmit along the
+  /// ray.
+  double transmittance = 1;
+  double end_derivative = 0;  ///< |grad n| at the end of the ray
   RayInvariants first = {}, last = {};
   std::vector<Vec3> path = {};
 };
 
-/// At the bodies of the stage rays are refracted (Snell), or reflected where that is total.
-/// path_points: so many of each ray, evenly over its arc length, first and last included; or none.
-/// Throws InputError for a ray that starts behind a plane or outside of the field, or comes to
-/// where the index is not positive.
+/// Traces rays. The surfaces of the stage's bodies refract (Snell) or totally reflect them.
+/// path_points is the number of points stored per ray, equidistant in arc length and including both
+/// ends; 0 stores no points. Throws InputError for a ray that starts behind a stop plane or outside
+/// the field, or that reaches a place where the index is not positive.
 std::vector<TracedRay> trace_rays(const SceneField& scene, const Stage& stage,
                                   const RayStops& stops, const RaySteps& steps,
                                   const std::vector<RayStart>& starts, std::size_t path_points);

@@ -12,7 +12,8 @@ const DatasetTable rays_table{
     .name = "rays",
     .rows =
         {{"ray", Data::numbers, "", "1", "number of the ray"},
-         {"curve", Data::numbers, "", "1", "number of the curve, by optical path"},
+         {"curve", Data::numbers, "", "1",
+          "number of the curve; curves are sorted by optical path"},
          {"start/x", Data::real, "ray", "length", "x of the start"},
          {"start/y", Data::real, "ray", "length", "y of the start"},
          {"start/z", Data::real, "ray", "length", "z of the start"},
@@ -26,87 +27,99 @@ const DatasetTable rays_table{
          {"exit/dy", Data::real, "THING", "1", "y of the unit tangent at the end"},
          {"exit/dz", Data::real, "THING", "1", "z of the unit tangent at the end"},
          {"spot_radius", Data::real, "", "length",
-          "root mean square distance from their mean of the ends on a stop surface; of all where "
-          "there are none"},
+          "root mean square distance of the ray ends on a stop surface from their mean; of all "
+          "ends if no ray reaches a stop surface"},
          {"optical_path_spread", Data::real, "", "length",
-          "between the longest and the shortest optical path of the same rays"},
+          "difference between the longest and the shortest optical path of the rays that "
+          "spot_radius uses"},
          {"arc_length", Data::real, "THING", "length", "length of the curve"},
          {"optical_path", Data::real, "THING", "length", "integral of the index along the curve"},
-         {"time", Data::real, "THING", "s", "optical path over the speed of light"},
+         {"time", Data::real, "THING", "s", "optical path divided by the speed of light"},
          {"status", Data::count, "ray", "1",
           "0: ended on a stop surface, 1: at max_length, 2: at the edge of the grid"},
          {"surface", Data::count, "ray", "1",
-          "number of the surface: planes, spheres, boxes; of status 1 and 2, how many there "
-          "are"},
+          "number of the stop surface, in the order planes, spheres, boxes; for status 1 and 2 the "
+          "number of stop surfaces"},
          {"transmittance", Data::real, "ray", "1",
-          "part of unpolarised light's power that is left by reflection at bodies and by their "
-          "media"},
+          "fraction of the power of unpolarised light transmitted through the surfaces and media "
+          "of bodies"},
          {"steps", Data::count, "ray", "1", "steps of the integrator"},
          {"invariants/index_mismatch", Data::invariant, "ray", "1",
-          "largest difference of |v| and the index: after each step controlled by a tolerance, "
-          "before they are made equal; of equal steps, after every fourth and the last"},
+          "largest difference between |v| and the index, where v is the index times the unit "
+          "tangent; adaptive integration checks after each step, before |v| is rescaled, fixed "
+          "steps after every fourth step and the last"},
          {"invariants/angular_momentum", Data::real, "ray", "length",
-          "length of (x - centre) cross v, at the start"},
+          "magnitude of the angular momentum (x - centre) cross v at the start"},
          {"invariants/angular_momentum_change", Data::real, "ray", "length",
-          "how far it is off at the end"},
+          "magnitude of the change of the angular momentum from start to end"},
          {"invariants/axial_momentum", Data::real, "ray", "1",
-          "size of v along the axis, at the start"},
+          "magnitude of the component of v along the axis at the start"},
          {"invariants/axial_momentum_change", Data::real, "ray", "1",
-          "how far it is off at the end"},
+          "magnitude of the change of the axial component of v from start to end"},
          {"invariants/axial_rotation", Data::real, "ray", "length",
-          "size of the angular momentum along the axis, at the start"},
+          "magnitude of the component of the angular momentum along the axis at the start"},
          {"invariants/axial_rotation_change", Data::real, "ray", "length",
-          "how far it is off at the end"},
+          "magnitude of the change of the axial angular momentum from start to end"},
          {"invariants/transverse_momentum", Data::real, "ray", "1",
-          "length of v across the gradient, n sin(angle), at the start"},
+          "magnitude of the component of v perpendicular to the index gradient, n sin(angle), at "
+          "the start"},
          {"invariants/transverse_momentum_change", Data::real, "ray", "1",
-          "how far it is off at the end"},
-         {"image/ray", Data::scale, "", "1", "numbers of the rays that the image is of"},
+          "magnitude of the change of the transverse component of v from start to end"},
+         {"image/ray", Data::scale, "", "1", "numbers of the rays in the image"},
          {"image/x", Data::real, "image/ray", "length",
-          "of where rays meet the plane, from its point"},
-         {"image/y", Data::real, "image/ray", "length", "the same across"},
-         {"image/slope_x", Data::real, "image/ray", "1", "dx by the way along the normal"},
-         {"image/slope_y", Data::real, "image/ray", "1", "dy by the way along the normal"},
+          "x of the intersection with the plane, relative to the plane's point"},
+         {"image/y", Data::real, "image/ray", "length",
+          "y of the intersection with the plane, relative to the plane's point"},
+         {"image/slope_x", Data::real, "image/ray", "1",
+          "ray slope: dx per distance along the normal"},
+         {"image/slope_y", Data::real, "image/ray", "1",
+          "ray slope: dy per distance along the normal"},
          {"image/path_difference", Data::real, "image/ray", "length",
-          "optical path to the foot of the perpendicular from the spot's mean, less the mean of "
-          "those paths"},
+          "optical path of the ray to the foot of the perpendicular from the spot's centroid, "
+          "minus the mean over the rays"},
          {"image/least_path_difference", Data::real, "image/ray", "length",
-          "the same about image/best, where its mean square is least"},
+          "optical path difference about the point image/best_x, best_y, best_z, for which the "
+          "mean square is smallest"},
          {"image/distance", Data::real, "", "length",
-          "of the plane along its normal from image_plane"},
+          "distance along the normal from image_plane to the plane of the image; 0 without "
+          "refocus"},
          {"image/focus", Data::real, "", "length",
-          "the same of the plane where the spot is least; not of parallel rays"},
+          "distance from image_plane to the smallest spot, along the normal; absent for parallel "
+          "rays"},
          {"image/best_x", Data::real, "", "length",
-          "x of the point about which path differences are least; not of parallel rays"},
-         {"image/best_y", Data::real, "", "length", "y of it"},
-         {"image/best_z", Data::real, "", "length", "z of it"},
+          "x of the point about which path differences are smallest; absent for parallel rays"},
+         {"image/best_y", Data::real, "", "length",
+          "y of the point about which path differences are smallest"},
+         {"image/best_z", Data::real, "", "length",
+          "z of the point about which path differences are smallest"},
          {"image/spot_radius", Data::real, "", "length",
-          "root mean square distance from their mean on the plane"},
-         {"image/spot_extent", Data::real, "", "length", "the largest distance from it"},
+          "root mean square distance of the intersections from their centroid"},
+         {"image/spot_extent", Data::real, "", "length", "largest distance from the centroid"},
          {"image/path_difference_rms", Data::real, "", "length",
           "root mean square of image/path_difference"},
          {"image/least_path_difference_rms", Data::real, "", "length",
           "root mean square of image/least_path_difference"},
          {"spreading", Data::real, "curve", "length^2",
-          "|J|: area across the curve at its end per solid angle at its start"},
-         {"caustics", Data::count, "curve", "1", "caustics on the way"},
-         {"found", Data::count, "curve", "1", "trials that ended on it"},
-         {"path_point", Data::numbers, "", "1", "number of a point, evenly in arc length"},
+          "|J|: cross-sectional area of a thin tube of rays at the end of the curve per solid "
+          "angle at the start"},
+         {"caustics", Data::count, "curve", "1", "number of caustics along the curve"},
+         {"found", Data::count, "curve", "1", "number of trials that converged to the curve"},
+         {"path_point", Data::numbers, "", "1",
+          "number of a point; points are equidistant in arc length"},
          {"path/x", Data::real, "THING path_point", "length", "x of the points"},
          {"path/y", Data::real, "THING path_point", "length", "y of the points"},
          {"path/z", Data::real, "THING path_point", "length", "z of the points"},
          {"map_z", Data::scale, "", "length", "depth of the index map's points"},
          {"map_x", Data::scale, "", "length", "x of the index map's points"},
          {"map_y", Data::scale, "", "length", "y of the index map's points"},
-         {"index_map", Data::real, "ACROSS map_z", "1",
-          "index in a plane, 0 where there is no field"}},
-    .attributes = {{"index_map", "x", "float64", "where its plane lies, if across x"},
-                   {"index_map", "y", "float64", "where its plane lies, if across y"}},
+         {"index_map", Data::real, "ACROSS map_z", "1", "index in a plane; 0 outside the field"}},
+    .attributes = {{"index_map", "x", "float64", "x of the map's plane, if it is normal to x"},
+                   {"index_map", "y", "float64", "y of the map's plane, if it is normal to y"}},
     .roles = {{"THING", {"ray", "curve"}}, {"ACROSS", {"map_x", "map_y"}}}};
 
 namespace {
 
-/// name + "x", "y", "z"
+/// Writes the components of a vector under name + "x", "y", "z".
 template <class Things, class Value>
 void put_vectors(const ResultGroup& root, const std::string& name, const Things& things,
                  const Value& value) {
@@ -117,7 +130,8 @@ void put_vectors(const ResultGroup& root, const std::string& name, const Things&
 
 using Momentum = Vec3 (*)(const RayInvariants&);
 
-/// An invariant at the start, and how far the end is off it.
+/// Writes the magnitude of an invariant of the rays at their start, and the magnitude of its change
+/// from start to end.
 void put_invariant(const ResultGroup& root, const std::vector<TracedRay>& rays,
                    const std::string& name, Momentum value) {
   root.put("invariants/" + name,
@@ -127,8 +141,10 @@ void put_invariant(const ResultGroup& root, const std::vector<TracedRay>& rays,
            }));
 }
 
-/// Each ray must keep |v| = n. Errors of steps add up along it; of fixed steps none are known. So
-/// do roundings of places, which count in units of the longest step.
+/// Returns the deviation of each ray from |v| = n and the largest acceptable deviation. For
+/// adaptive steps this limit is a multiple of the tolerance, because step errors accumulate along
+/// the ray. Fixed steps have no error estimate, so their limit is constant. Both limits include the
+/// rounding of positions, measured in units of the longest step.
 std::vector<Invariant> index_mismatches(const RaySteps& steps, const std::vector<TracedRay>& rays) {
   constexpr double accumulated = 1000, of_fixed_steps = 1e-3;
   constexpr double rounding = 16 * std::numeric_limits<double>::epsilon();
@@ -170,7 +186,8 @@ void write_lengths(const ResultGroup& root, const Things& things, const End& end
            column(things, [&](const auto& t) { return path(t) * length_unit / light_speed; }));
 }
 
-/// A rectangle in z and one transverse axis at a value of the other.
+/// Rectangle of the index map, spanned by z and the transverse axis `up`. `at` is its coordinate
+/// along the other transverse axis, `out`.
 struct MapPlane {
   int up, out;
   double low_z, high_z, low, high, at;
@@ -186,7 +203,8 @@ MapPlane plane_of(const std::vector<TracedRay>& rays) {
   const Vec3 size = high - low;
   const int up = size[0] >= size[1] ? 0 : 1, out = 1 - up;
   const double length = size.maxCoeff(), rim = 0.02 * length;
-  // a thin bundle with as much again on either side; a straight ray, with a twentieth of its length
+  // Margin of the map on each side: at most half the width of a thin bundle, or 1/20 of the
+  // length of a straight ray
   const double margin = size[up] > 1e-6 * length
                             ? std::clamp(0.015 * length, 0.15 * size[up], 0.5 * size[up])
                             : 0.05 * length;
@@ -231,7 +249,7 @@ void write_index_map(ResultFile& file, const TraceScene& scene,
 
 }  // namespace
 
-std::vector<RayState> ends_to_tell(const std::vector<TracedRay>& rays) {
+std::vector<RayState> ends_to_print(const std::vector<TracedRay>& rays) {
   std::vector<RayState> all, on_surface;
   for (const TracedRay& ray : rays) {
     all.push_back(ray.end);
@@ -258,9 +276,9 @@ void write_rays(ResultFile& file, const TraceScene& scene, const std::vector<Tra
   put_vectors(root, "exit/", rays, [](const TracedRay& r) { return r.end.x; });
   put_vectors(root, "exit/d", rays, [](const TracedRay& r) { return r.end.v.normalized(); });
   write_lengths(root, rays, std::mem_fn(&TracedRay::end), scene.length_unit);
-  const auto told = ends_to_tell(rays);
-  root.put("spot_radius", spot_radius(told));
-  const auto paths = column(told, &RayState::optical_path);
+  const auto printed = ends_to_print(rays);
+  root.put("spot_radius", spot_radius(printed));
+  const auto paths = column(printed, &RayState::optical_path);
   const auto [shortest, longest] = std::ranges::minmax(paths);
   root.put("optical_path_spread", longest - shortest);
   root.put("status", column(rays, &TracedRay::status));

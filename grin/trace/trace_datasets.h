@@ -9,21 +9,22 @@ namespace flatspeckle::grin {
 
 extern const DatasetTable rays_table;
 
-/// Ends of the rays that came to a stop surface; of all where none did.
-std::vector<RayState> ends_to_tell(const std::vector<TracedRay>& rays);
-/// Root mean square distance from their mean.
+/// Returns the ends of the rays that reached a stop surface; if none did, of all rays.
+std::vector<RayState> ends_to_print(const std::vector<TracedRay>& rays);
+/// Returns the root mean square distance of the ends from their mean.
 double spot_radius(const std::vector<RayState>& ends);
 
-/// Of any rays: optical paths, ends, invariants.
+/// Writes the starts, ends, optical paths and invariants of rays.
 void write_rays(ResultFile& file, const TraceScene& scene, const std::vector<TracedRay>& rays);
 
 void write_image(ResultFile& file, const RayImage& image);
 
-/// Curves between two points, in the order of their optical paths, and how the trials went.
+/// Writes the curves between two points, sorted by optical path, and the outcomes of the trials.
 void write_connections(ResultFile& file, const TraceScene& scene, const FoundConnections& found);
 
-/// Stored points of rays or curves, and the index over the rectangle in z and the transverse axis
-/// that they span most, so that they can be drawn. The rays or curves must have been written.
+/// Writes the stored points of rays or curves for plots, and an index map in the plane of z and the
+/// transverse axis along which the points extend furthest. Call write_rays() or write_connections()
+/// first.
 void write_paths(ResultFile& file, const TraceScene& scene, const std::vector<TracedRay>& rays);
 
 }  // namespace flatspeckle::grin

@@ -16,7 +16,8 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-/// x and y of a plane across z; else as near to them as can be.
+/// Returns two perpendicular axes in the plane: x and y for a plane normal to z, otherwise axes
+/// close to these two.
 Eigen::Matrix<double, 3, 2> axes_across(const Vec3& normal) {
   const Vec3 guide = std::abs(normal[0]) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
   const Vec3 first = (guide - normal * normal.dot(guide)).normalized();
@@ -34,18 +35,21 @@ std::vector<std::uint64_t> rays_to_show(const std::vector<TracedRay>& rays) {
   return stopped.empty() ? all : stopped;
 }
 
-/// To the plane, along a ray's direction; where it is not straight, or never meets it, refused.
-double way_to(const Plane& plane, const TracedRay& ray, std::uint64_t number) {
+/// Returns the distance from a ray's end to the plane, along the ray's direction. Throws InputError
+/// if the index varies at the ray's end or the ray is parallel to the plane.
+double length_to(const Plane& plane, const TracedRay& ray, std::uint64_t number) {
   const Vec3 direction = ray.end.v.normalized();
   const double speed = plane.outwards.dot(direction);
   const auto refuse = [&](const std::string& why) {
     throw InputError("image_plane: ray " + std::to_string(number) + ' ' + why);
   };
-  if (!(std::abs(speed) > 1e-6)) refuse("runs along the plane");
-  const double way = -plane.distance(ray.end.x) / speed;
-  if (ray.end_slope * std::abs(way) > 1e-9)
-    refuse("ends where the index varies, and goes straight to the plane only where it does not");
-  return way;
+  if (!(std::abs(speed) > 1e-6)) refuse("is parallel to the plane: give another normal");
+  const double distance_to_plane = -plane.distance(ray.end.x) / speed;
+  if (ray.end_derivative * std::abs(distance_to_plane) > 1e-9)
+    refuse(
+        "ends where the index varies and cannot be extended straight to the plane: let it end in a "
+        "homogeneous region (stop_plane)");
+  return distance_to_plane;
 }
 
 Vec2 mean(const RayImage& image, Vec2 RayImage::Ray::*value) {
@@ -54,7 +58,8 @@ Vec2 mean(const RayImage& image, Vec2 RayImage::Ray::*value) {
   return sum / static_cast<double>(image.rays.size());
 }
 
-/// By least squares of the distances from the mean.
+/// Returns the distance along the normal to the smallest spot, where the mean square distance from
+/// the centroid is least; nullopt for parallel rays.
 std::optional<double> focus_of(const RayImage& image) {
   const Vec2 at = mean(image, &RayImage::Ray::at), slope = mean(image, &RayImage::Ray::slope);
   double both = 0, square = 0;
@@ -77,11 +82,12 @@ void measure_spot(RayImage& image) {
   image.spot_radius = std::sqrt(square);
 }
 
-/// How the path of a ray to the foot of the perpendicular from a point differs from the mean of
-/// all, and how that changes with the point.
+/// Difference between the optical path of a ray to the foot of the perpendicular from a point and
+/// the mean over all rays, and its derivative with respect to the point.
 struct PathDifference {
   double path;
-  Vec3 direction;  ///< times the index
+  Vec3 direction;  ///< derivative with respect to the point: direction times index, minus the mean
+                   ///< over all rays
 };
 std::vector<PathDifference> path_differences(const RayImage& image,
                                              const std::vector<TracedRay>& rays,
@@ -98,8 +104,9 @@ std::vector<PathDifference> path_differences(const RayImage& image,
   return found;
 }
 
-/// Of the point, by which their mean square becomes least. Where nothing depends on a direction, as
-/// of rays in a plane, none along it.
+/// Returns the shift of the reference point that minimises the mean square path difference. It has
+/// no component along directions in which the path differences do not change, for example
+/// perpendicular to the plane of a flat bundle.
 Vec3 least_shift(const std::vector<PathDifference>& differences) {
   Mat3 square = Mat3::Zero();
   Vec3 along = Vec3::Zero();
@@ -136,7 +143,8 @@ void check_index(const std::vector<TracedRay>& rays, const std::vector<std::uint
                      std::to_string(index(least)) + " to " + std::to_string(index(most)));
 }
 
-/// The side of each surface that both ends are on; points on a surface are on both.
+/// For each surface, the side on which both end points P and Q of the searched curves lie. A point
+/// on a surface counts as lying on both sides.
 class SameSides {
  public:
   SameSides(const SceneField& scene, const RayStops& stops, const CurveSearch& search)
@@ -149,31 +157,35 @@ class SameSides {
 
   Sides region() const { return {surfaces_, signs_, location_}; }
 
-  /// Whether the curve meets no surface on its way, also between the steps that are asked about.
+  /// Whether the curve crosses no surface. This also detects crossings between the steps at which
+  /// the search checks the region.
   bool holds(const RayField& field, const Vec3& from, const Connection& curve) const {
     const RaySteps steps{Sharma(), curve.sigma / curve.steps};
     RayLog log(steps, false);
     RayState ray = start_ray(field, from, curve.start_direction);
     field.follow(surfaces_, {curve.arc_length, location_}, log, ray);
-    return ray.arc_length > (1 - 1e-6) * curve.arc_length;  // its end may be on one
+    // The end of the curve may lie on a surface
+    return ray.arc_length > (1 - 1e-6) * curve.arc_length;
   }
 
  private:
-  /// 1: inside, -1: outside.
+  /// Returns 1 if both points lie inside the surface, -1 if both lie outside. Throws InputError
+  /// otherwise.
   double common_side(const Surface& surface, const Vec3& from, const Vec3& to) const {
     const double a = distance(surface, from), b = distance(surface, to);
     if (a <= location_ && b <= location_) return 1;
     if (std::holds_alternative<Plane>(surface))
-      throw InputError("connect", listed(a > location_ ? from : to), "is behind a stop_plane");
+      throw InputError("connect", listed(a > location_ ? from : to),
+                       "lies behind a stop_plane: move the point or the plane");
     if (a >= -location_ && b >= -location_) return -1;
     throw InputError("connect", listed(from) + ' ' + listed(to),
-                     "are on different sides of a stop surface");
+                     "lie on different sides of a stop surface; must lie on the same side");
   }
 
   void keep_inside(const Surface& surface, const CurveSearch& search, const std::string& what) {
     for (const Vec3& x : {search.from, search.to})
       if (distance(surface, x) > location_)
-        throw InputError("connect", listed(x), "is outside of " + what);
+        throw InputError("connect", listed(x), "must lie inside " + what);
     surfaces_.push_back(surface);
     signs_.push_back(1);
   }
@@ -183,21 +195,23 @@ class SameSides {
   double location_;
 };
 
-/// Trials that ended on curves that do not hold have left the region.
+/// Removes the curves for which holds(curve) is false; the trials that found them are counted as
+/// having left the region.
 template <class Holds>
 void sort_out(FoundConnections& found, const Holds& holds) {
   auto& outcomes = found.statistics.outcomes;
   auto& converged = outcomes[static_cast<int>(TrialOutcome::converged)];
   std::erase_if(found.curves, [&](const FoundConnection& one) {
     if (holds(one.curve)) return false;
-    const auto trials = std::min(converged, one.found);  // in a homogeneous field none ran
+    const auto trials = std::min(converged, one.found);  // a homogeneous field needs no trials
     converged -= trials;
     outcomes[static_cast<int>(TrialOutcome::left_region)] += trials;
     return true;
   });
 }
 
-/// Of a light's rays: starts, ends and columns, and points twice, as rays and as columns.
+/// Throws InputError if the rays do not fit into memory. Each ray needs a start, an end and result
+/// columns; each path point is stored twice, in its ray and in result columns.
 void check_memory(const TraceValues& values) {
   if (!values.starts.rays.empty()) return;
   constexpr double ray = 600, point = 2 * sizeof(Vec3);
@@ -207,11 +221,11 @@ void check_memory(const TraceValues& values) {
   if (bytes > 0.8 * memory)
     throw InputError("ray_count", values.starts.ray_count,
                      "with path_points = " + std::to_string(values.path_points) + " needs " +
-                         std::to_string(bytes / 1e9) + " GB of memory; there are " +
-                         std::to_string(memory / 1e9));
+                         std::to_string(bytes / 1e9) +
+                         " GB of memory; available: " + std::to_string(memory / 1e9));
 }
 
-/// Where rays start, or curves start and end.
+/// Returns the start points of the rays or, in a search for curves, their two end points.
 std::vector<Vec3> points_of(const TraceScene& scene) {
   if (scene.curves) return {scene.curves->from, scene.curves->to};
   std::vector<Vec3> points;
@@ -225,7 +239,8 @@ std::vector<Surface> surfaces_of(const Stage& stage) {
   return surfaces;
 }
 
-/// Nothing without `connect`.
+/// Returns the search for curves between the two points of the key `connect`; nullopt if this key
+/// is not given.
 std::optional<CurveSearch> make_curve_search(const Keys& keys, const CurveValues& values) {
   const auto& ends = keys.read(values.connect);
   if (ends.empty()) return std::nullopt;
@@ -236,7 +251,8 @@ std::optional<CurveSearch> make_curve_search(const Keys& keys, const CurveValues
   return search;
 }
 
-/// On the straight line between the points, as far as there is an index; 1 where there is none.
+/// Returns the largest index on the straight line between the end points; 1 if the line lies
+/// outside the field.
 double largest_index(const SceneField& scene, const CurveSearch& search) {
   constexpr int points = 101;
   double largest = 0;
@@ -264,7 +280,7 @@ void settle_field(TraceScene& scene, const Keys& keys, const TraceValues& values
   check_bodies(scene.stage);
 }
 
-/// Curves want shorter steps than rays, by default.
+/// Sets the integration steps. The default step of curves is shorter than the default step of rays.
 void settle_steps(TraceScene& scene, const Keys& keys, const TraceValues& values) {
   if (!scene.curves) {
     scene.steps = make_ray_steps(keys, values.stops, scene.field.scale);
@@ -279,12 +295,11 @@ void settle_steps(TraceScene& scene, const Keys& keys, const TraceValues& values
 
 void add_keys(Keys& keys, RayImageValues& values) {
   keys.group("Image of rays");
-  keys.add(
-          "image_plane", values.image_plane,
-          "x y z nx ny nz: spot, slopes and optical path differences of the rays on this plane, to "
-          "which they go straight on from where they end, or back")
+  keys.add("image_plane", values.image_plane,
+           "x y z nx ny nz: plane on which spot, ray slopes and optical path differences are "
+           "measured; rays are extended to it along straight lines, forward or backward")
       .exactly(6, "a point and a normal");
-  keys.add("refocus", values.refocus, "The plane moves along its normal to where the spot is least")
+  keys.add("refocus", values.refocus, "Move the plane along its normal to the smallest spot")
       .only_of("image_plane");
 }
 
@@ -295,8 +310,8 @@ std::optional<ImagePlane> make_image_plane(const Keys& keys, const RayImageValue
   return ImagePlane{{vector_of(numbers), normal}, keys.read(values.refocus)};
 }
 
-RayImage make_ray_image(const ImagePlane& asked, const std::vector<TracedRay>& rays) {
-  Plane plane = asked.plane;
+RayImage make_ray_image(const ImagePlane& requested, const std::vector<TracedRay>& rays) {
+  Plane plane = requested.plane;
   RayImage image;
   image.axes = axes_across(plane.outwards);
   const auto numbers = rays_to_show(rays);
@@ -304,14 +319,16 @@ RayImage make_ray_image(const ImagePlane& asked, const std::vector<TracedRay>& r
   for (const std::uint64_t number : numbers) {
     const RayState& end = rays[number].end;
     const Vec3 direction = end.v.normalized();
-    const Vec3 at = end.x + way_to(plane, rays[number], number) * direction;
+    const Vec3 at = end.x + length_to(plane, rays[number], number) * direction;
     image.rays.push_back({number, image.axes.transpose() * (at - plane.point),
                           image.axes.transpose() * direction / plane.outwards.dot(direction), 0,
                           0});
   }
   image.focus = focus_of(image);
-  if (asked.refocus) {
-    if (!image.focus) throw InputError("refocus: the rays are parallel, and meet nowhere");
+  if (requested.refocus) {
+    if (!image.focus)
+      throw InputError(
+          "refocus = true: the rays are parallel and have no focus; leave refocus out");
     image.distance = *image.focus;
     plane.point += image.distance * plane.outwards;
     for (auto& ray : image.rays) ray.at += image.distance * ray.slope;
@@ -331,9 +348,10 @@ double root_mean_square(const RayImage& image, double RayImage::Ray::*difference
 void add_keys(Keys& keys, CurveValues& values) {
   keys.group("Curves");
   keys.add("connect", values.connect,
-           "x y z x y z: instead of rays, the curves from the first point to the second")
+           "x y z x y z: find the ray curves from the first point to the second, instead of "
+           "tracing rays")
       .exactly(6, "six numbers x y z x y z");
-  keys.add("trials", values.trials, "Random starts in search of curves")
+  keys.add("trials", values.trials, "Number of random starts in the search for curves")
       .positive()
       .only_of("connect");
 }
@@ -347,9 +365,11 @@ void add_keys(Keys& keys, TraceValues& values) {
   add_keys(keys, values.image);
   keys.group("Result");
   keys.add("path_points", values.path_points,
-           "Points of each ray in the file, to be drawn, and an index map; 0: none")
+           "Number of points of each ray stored for plots, together with an index map; 0 stores "
+           "none")
       .from(0, 100'000);
-  keys.add("length_unit", values.length_unit, "What lengths are in, um or 1e-6, for times")
+  keys.add("length_unit", values.length_unit,
+           "Unit of length in metres, for example um or 1e-6; used for times of flight")
       .positive()
       .unit("m");
 }
@@ -359,7 +379,7 @@ TraceScene make_trace_scene(const Keys& keys, const TraceValues& values) {
   scene.length_unit = keys.read(values.length_unit);
   scene.path_points = static_cast<std::size_t>(keys.read(values.path_points));
   if (scene.path_points == 1)
-    throw InputError("path_points", 1, "must be 0 or at least 2: of the first point and the last");
+    throw InputError("path_points", 1, "must be 0 or at least 2, for the first and the last point");
   scene.curves = make_curve_search(keys, values.curves);
   if (!scene.curves) {
     check_memory(values);
@@ -387,7 +407,7 @@ FoundConnections find_connections(const TraceScene& scene, std::uint64_t seed) {
   const auto field = make_ray_field(scene.field.field);
   for (const Vec3& x : {search.from, search.to})
     if (!(index(*field, x) > 0))
-      throw InputError("connect", listed(x), "is where the field has no index above 0");
+      throw InputError("connect", listed(x), "must lie where the index of the field is above 0");
   RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), 0);
   FoundConnections found;
   found.curves =

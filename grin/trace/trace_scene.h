@@ -12,7 +12,7 @@
 
 namespace flatspeckle::grin {
 
-/// A plane at which the image of rays is looked at, as keys have it.
+/// Scene keys of the plane on which the spot of the rays is measured.
 struct RayImageValues {
   std::vector<double> image_plane{};
   bool refocus = false;
@@ -22,40 +22,47 @@ void add_keys(Keys& keys, RayImageValues& values);
 
 struct ImagePlane {
   Plane plane;
-  bool refocus;  ///< moved along its normal to where the spot is least
+  bool refocus;  ///< whether the plane moves along its normal to the smallest spot
 };
 
-/// Nothing where none is asked for. Throws InputError.
+/// Returns the plane on which the spot is measured; nullopt if the key image_plane is not given.
+/// Throws InputError.
 std::optional<ImagePlane> make_image_plane(const Keys& keys, const RayImageValues& values);
 
-/// Rays that end on a stop surface (all where none does), gone straight on to the plane from there,
-/// or back. Positions and slopes in the plane are along `axes`, from the plane's point.
-///
-/// Optical path differences are those at a sphere far away about a point P: the path of a ray to
-/// the foot of the perpendicular from P, less the mean of that of all rays. It is linear in P, so
-/// that the P of the least mean square is found by least squares.
+/// Intersections of rays with a plane. The rays that end on a stop surface (all rays if none does)
+/// are extended straight to the plane, forward or backward. Positions and slopes in the plane are
+/// components along `axes`, relative to the plane's point. Optical path differences refer to a
+/// distant reference sphere about a point P: the optical path of a ray to the foot of the
+/// perpendicular from P, minus the mean over all rays. The differences are linear in P, so that
+/// linear least squares gives the point P for which their mean square is smallest.
 struct RayImage {
   struct Ray {
     std::uint64_t number;
     Eigen::Vector2d at, slope;
-    double path_difference, least_path_difference;  ///< about the spot's mean; about best_point
+    /// Optical path differences if P is the centroid of the spot, and if P is best_point.
+    double path_difference, least_path_difference;
   };
   std::vector<Ray> rays;
   Eigen::Matrix<double, 3, 2> axes;
-  double distance = 0;             ///< of the plane from that asked for
-  std::optional<double> focus;     ///< where the spot is least; nothing for parallel rays
-  std::optional<Vec3> best_point;  ///< likewise
-  double spot_radius = 0;          ///< root mean square distance from the mean
-  double spot_extent = 0;          ///< largest
+  /// Distance of this plane from the plane given by the key, along the normal.
+  double distance = 0;
+  /// Distance along the normal from the plane of the key image_plane to the smallest spot; nullopt
+  /// for parallel rays.
+  std::optional<double> focus;
+  /// Point P with the smallest mean square path difference; nullopt for parallel rays.
+  std::optional<Vec3> best_point;
+  double spot_radius = 0;  ///< root mean square distance of the rays from their centroid
+  double spot_extent = 0;  ///< largest distance of a ray from the centroid
 };
 
-/// Throws InputError for rays along the plane, or that end where the index is not even.
+/// Computes the intersections of rays with a plane. Throws InputError for rays parallel to the
+/// plane and for rays that end where the index varies.
 RayImage make_ray_image(const ImagePlane& image, const std::vector<TracedRay>& rays);
 
-/// Of path differences.
+/// Returns the root mean square over the rays of the given member, one of the two path differences.
 double root_mean_square(const RayImage& image, double RayImage::Ray::*difference);
 
-/// The curves between two points as keys have them.
+/// Scene keys of the search for ray curves between two points.
 struct CurveValues {
   std::vector<double> connect{};
   std::int64_t trials = 1000;
@@ -66,15 +73,16 @@ void add_keys(Keys& keys, CurveValues& values);
 struct CurveSearch {
   Vec3 from, to;
   std::uint64_t trials;
-  std::optional<Sphere> ball = {};  ///< that curves stay in: a field's rim
+  std::optional<Sphere> ball = {};  ///< rim of the field, inside which curves must stay
 };
 
 struct FoundConnections {
-  std::vector<FoundConnection> curves;  ///< by optical path
+  std::vector<FoundConnection> curves;  ///< sorted by optical path
   ConnectionStatistics statistics;
 };
 
-/// Rays through an index field, or the curves between two points of it, as keys have them.
+/// Scene keys of the command `trace`: rays through an index field, or the ray curves between two
+/// points in it.
 struct TraceValues {
   IndexFieldValues field{};
   RayBodyValues bodies{};
@@ -90,26 +98,28 @@ void add_keys(Keys& keys, TraceValues& values);
 
 struct TraceScene {
   SceneField field;
-  Stage stage;  ///< of the bodies; its boundary stops nothing
+  Stage stage;  ///< geometry with the bodies; rays do not end at its outer boundary
   RayStops stops;
   RaySteps steps;
-  std::vector<RayStart> starts = {};  ///< none where curves are sought
+  /// Starts of rays; empty if curves between two points are searched
+  std::vector<RayStart> starts = {};
   std::optional<CurveSearch> curves = {};
-  std::optional<ImagePlane> image = {};  ///< of rays
-  std::size_t path_points = 0;           ///< of each ray or curve; 0: none
-  double length_unit = 1;                ///< metres in a unit of length
+  std::optional<ImagePlane> image = {};
+  std::size_t path_points = 0;  ///< number of stored points of each ray or curve; 0: none
+  double length_unit = 1;       ///< metres per unit of length
 };
 
-/// Both throw InputError; of values alone, all must be of use.
+/// Makes the scene. Throws InputError for invalid values. The overload without `keys` also throws
+/// it for values that no part of the scene uses.
 TraceScene make_trace_scene(const Keys& keys, const TraceValues& values);
 TraceScene make_trace_scene(const TraceValues& values);
 
 std::vector<TracedRay> trace_rays(const TraceScene& scene);
 
-/// Curves that stay on the side of every stop surface, and within the ball or grid, that both
-/// points are on. Throws InputError.
+/// Finds the ray curves between the two points that cross no stop surface and stay within the ball
+/// or grid of the field. Throws InputError.
 FoundConnections find_connections(const TraceScene& scene, std::uint64_t seed);
-/// Each curve as a ray of its length, for its points.
+/// Traces each curve as a ray of the same length, which stores points along the curve.
 std::vector<TracedRay> rays_along(const TraceScene& scene, const FoundConnections& found);
 
 }  // namespace flatspeckle::grin

@@ -15,58 +15,64 @@ const DatasetTable fit_table{
     .rows =
         {{"parameter", Data::numbers, "", "1", "number of the free key"},
          {"parameter_2", Data::numbers, "", "1", "number of the second free key"},
-         {"parameter_name", Data::text, "parameter", "", "its name"},
+         {"parameter_name", Data::text, "parameter", "", "name of the free key"},
          {"estimate", Data::estimate, "parameter", "", "the value that fits best"},
          {"lower_bound", Data::real, "parameter", "", "least value that is accepted"},
          {"upper_bound", Data::real, "parameter", "", "largest value that is accepted"},
          {"known", Data::count, "parameter", "1",
-          "0 where the error is a quarter of the distance of the bounds or more"},
+          "1 if the error is less than a quarter of the distance between the bounds, else 0"},
          {"parameter_covariance", Data::real, "parameter parameter_2", "",
           "covariance of the estimates' errors"},
          {"chance_covariance", Data::real, "parameter parameter_2", "",
-          "of a model by Monte Carlo: what chance in it has added to that covariance"},
+          "part of parameter_covariance from the sampling noise of a Monte Carlo model"},
          {"neglected_covariance", Data::real, "parameter parameter_2", "",
-          "of a model by Monte Carlo: what it neglects of waves has added to that covariance"},
+          "part of parameter_covariance from the wave effects that a Monte Carlo model neglects"},
          {"parameter_correlation", Data::real, "parameter parameter_2", "1",
           "correlation of the estimates' errors"},
          {"worst_combination", Data::real, "parameter", "1",
-          "the combination that is known least, of length 1, in distances of the bounds' "
-          "coordinates"},
-         {"derived", Data::numbers, "", "1", "number of what follows from the parameters"},
-         {"derived_name", Data::text, "derived", "", "its name"},
-         {"derived_value", Data::estimate, "derived", "", "its value"},
+          "least determined combination of coordinates, a vector of length 1; unit: the distance "
+          "between the bounds"},
+         {"derived", Data::numbers, "", "1", "number of the derived quantity"},
+         {"derived_name", Data::text, "derived", "", "name of the derived quantity"},
+         {"derived_value", Data::estimate, "derived", "", "value of the derived quantity"},
          {"measurement", Data::numbers, "", "1", "number of the measurement"},
-         {"measurement_name", Data::text, "measurement", "", "its file"},
+         {"measurement_name", Data::text, "measurement", "", "file of the measurement"},
          {"datum", Data::numbers, "", "1", "number of the measured value"},
-         {"datum_measurement", Data::count, "datum", "1", "number of its measurement"},
-         {"datum_curve", Data::count, "datum", "1", "number of its curve, over all"},
+         {"datum_measurement", Data::count, "datum", "1",
+          "number of the measurement that contains the value"},
+         {"datum_curve", Data::count, "datum", "1",
+          "number of the curve that contains the value, counted over all measurements"},
          {"datum_observable", Data::text, "datum", "", "what was measured"},
          {"datum_angle", Data::real, "datum", "rad",
-          "tilt, of an intensity view, else light; 0 of delays and exposures"},
+          "tilt; view angle of intensities; light angle of powers; 0 for delays and exposures"},
          {"datum_time", Data::real, "datum", "1",
-          "delay or exposure, in one unit of time; 0 of what has none"},
+          "delay or exposure, all in the same unit of time; 0 for other values"},
          {"measured", Data::estimate, "datum", "", "measured value"},
-         {"model", Data::real, "datum", "", "the same of the medium that fits best"},
-         {"pull", Data::real, "datum", "1", "measured less model, in standard errors"},
+         {"model", Data::real, "datum", "", "value for the medium that fits best"},
+         {"pull", Data::real, "datum", "1", "measured - model, in standard errors"},
          {"residual", Data::real, "datum", "1",
-          "model less measured in standard errors, made independent: chi^2 is the sum of squares"},
+          "model - measured, transformed to independent standard errors; chi^2 is the sum of "
+          "squares"},
          {"iteration", Data::numbers, "", "1", "number of the accepted step"},
-         {"trace_parameter", Data::real, "iteration parameter", "", "value there"},
-         {"trace_chi_squared", Data::real, "iteration", "1", "chi^2 there"},
-         {"trace_cpu_s", Data::real, "iteration", "s", "processor time until there"},
+         {"trace_parameter", Data::real, "iteration parameter", "",
+          "value of the parameter at this step"},
+         {"trace_chi_squared", Data::real, "iteration", "1", "chi^2 at this step"},
+         {"trace_cpu_s", Data::real, "iteration", "s", "processor time until this step"},
          {"invariants/derivatives", Data::invariant, "", "1",
-          "difference between derivatives of the residuals and finite differences, by the "
-          "parameter that these determine best, relative"}},
-    .attributes = {{"", "chi_squared", "float64", "sum of the squared residuals"},
-                   {"", "degrees_of_freedom", "float64",
-                    "mean of chi_squared where the medium is right: values less parameters, or "
-                    "less where their errors are strongly correlated"},
-                   {"", "condition", "float64",
-                    "largest over least eigenvalue of the information, parameters in distances of "
-                    "their bounds; absent where a combination is not known at all"},
-                   {"", "numerical_error", "float64",
-                    "largest numerical error of the model, in standard errors; 0 by Monte Carlo"},
-                   {"", "degeneracy", "text", "what is known well, and what is not"}}};
+          "relative difference between the derivatives of the residuals and finite differences, by "
+          "the parameter that the residuals determine best"}},
+    .attributes = {
+        {"", "chi_squared", "float64", "sum of the squared residuals"},
+        {"", "degrees_of_freedom", "float64",
+         "expected chi_squared if the medium is correct: values minus parameters, or less if the "
+         "errors of the values are strongly correlated"},
+        {"", "condition", "float64",
+         "ratio of the largest to the least eigenvalue of the information, with parameters in "
+         "units of the distance between their bounds; absent if a combination is not determined at "
+         "all"},
+        {"", "numerical_error", "float64",
+         "largest numerical error of the model, in standard errors; 0 for Monte Carlo"},
+        {"", "degeneracy", "text", "which parameters are well and which are poorly determined"}}};
 
 namespace {
 
@@ -80,7 +86,7 @@ void write_parameters(const ResultGroup& root, const FitTask& task, const Medium
   root.put("known", std::vector<std::uint64_t>(fit.known.begin(), fit.known.end()));
   root.put("parameter_covariance", row_major(fit.covariance));
   if (task.paths) {
-    root.put("chance_covariance", row_major(fit.by_chance));
+    root.put("chance_covariance", row_major(fit.by_sampling));
     root.put("neglected_covariance", row_major(fit.by_neglect));
   }
   root.put("parameter_correlation", row_major(fit.correlation));
@@ -123,7 +129,7 @@ void write_data(const ResultGroup& root, const FitTask& task, const MediumFit& f
   if (task.moving()) root.put("datum_time", times);
   root.put("measured", values, errors);
   root.put("model", row_major(fit.model));
-  root.put("pull", row_major(fit.pulls));
+  root.put("pull", row_major(fit.standardized_residuals));
   root.put("residual", row_major(fit.residuals));
 }
 
@@ -171,7 +177,7 @@ void write_fit(ResultFile& file, const FitTask& task, const MediumFit& fit) {
   write_parameters(root, task, fit);
   write_data(root, task, fit);
   write_trace(root, fit);
-  if (fit.slope) root.check("invariants/derivatives", *fit.slope);
+  if (fit.derivative_check) root.check("invariants/derivatives", *fit.derivative_check);
   root.attribute("chi_squared", fit.chi_squared);
   root.attribute("degrees_of_freedom", fit.degrees_of_freedom);
   if (std::isfinite(fit.condition)) root.attribute("condition", fit.condition);

@@ -11,7 +11,7 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// What describes a medium besides its keys.
+/// A quantity that is derived from the properties of a medium.
 struct DerivedRow {
   const char *name, *unit;
   double (*value)(const Medium&);
@@ -36,7 +36,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A function of each parameter at its coordinate.
+/// Applies a member function of FreeParameter, such as value(), to the coordinate of each
+/// parameter.
 VectorXd of_each_parameter(const FitTask& task, const VectorXd& coordinates,
                            double (FreeParameter::*function)(double) const) {
   VectorXd found = coordinates;
@@ -45,7 +46,7 @@ VectorXd of_each_parameter(const FitTask& task, const VectorXd& coordinates,
   return found;
 }
 
-/// Of the first curve's medium.
+/// Returns the derived quantities of the medium of the first curve.
 std::vector<Derived> derived_at(const FitTask& task, const VectorXd& at,
                                 const MatrixXd& covariance) {
   const MovingSpec& spec = task.measurements.front().curves.front().scene;
@@ -62,8 +63,9 @@ std::vector<Derived> derived_at(const FitTask& task, const VectorXd& at,
   BoundedLeastSquares as_problem = bounds_of(task.free);
   as_problem.residuals = values;
   const VectorXd here = values(at);
-  const MatrixXd slopes = jacobian(as_problem, at, here);
-  const VectorXd error = (slopes * covariance * slopes.transpose()).diagonal().cwiseSqrt();
+  const MatrixXd derivatives = jacobian(as_problem, at, here);
+  const VectorXd error =
+      (derivatives * covariance * derivatives.transpose()).diagonal().cwiseSqrt();
   std::vector<Derived> derived;
   for (Index r = 0; r < count; ++r) {
     const DerivedRow& row = rows[static_cast<std::size_t>(r)];
@@ -86,23 +88,28 @@ BoundedLeastSquares problem_of(const FitTask& task, const SlabModel& model, cons
   return problem;
 }
 
-/// The likelihood of fields is not defined where their covariance, or its square, vanishes.
+/// Throws InputError if the modelled covariance of the fields is so small that it or its square
+/// underflows to 0. The likelihood is then not defined.
 void require_light(const VectorXd& covariance) {
   constexpr double least = 1e-140;
   if (!(covariance.cwiseAbs().maxCoeff() > least))
     throw InputError(
-        "measurement: no light reaches the views of such patterns in the middle of the ranges of "
-        "free; the medium there is too deep or absorbs too much");
+        "measurement: if all free keys are in the middle of their ranges, no light reaches the "
+        "detection directions of the patterns; choose ranges in which the medium is thinner or "
+        "absorbs less");
 }
 
-/// Of residuals that `data` has made independent, as far as its covariance does.
+/// Returns the expected chi^2 of the whitened residuals. The values vary with the covariance
+/// FitData::scatter(), but are whitened by the shrunk covariance.
 double degrees_of_freedom(const LeastSquaresFit& fit, const FitData& data) {
   return expected_chi_squared(data.whitened(data.whitened(data.scatter()).transpose()),
                               fit.jacobian);
 }
 
-/// Other starts are gone on from where the best one does not end in a likely medium. The search is
-/// by as many ordinates as a thousandth of the values needs; it goes on where errors ask for more.
+/// Fits with as many ordinates as necessary. The first search uses the number of ordinates that
+/// gives a precision of a thousandth of the values. If the errors of the measurements require a
+/// higher precision, a second search follows with more ordinates. Only the best start is used,
+/// unless its fit is unlikely (is_likely()).
 LeastSquaresFit refined_fit(const FitTask& task, const BoundedLeastSquares& problem,
                             SlabModel& model, const FitData& data, MediumFit& fit) {
   constexpr double share = 0.05, tolerance = 1e-3, rough = 1e-3;
@@ -123,12 +130,13 @@ LeastSquaresFit refined_fit(const FitTask& task, const BoundedLeastSquares& prob
   return best;
 }
 
-/// Of fields: least squares with errors as the best medium gives them, until that stays the same;
-/// there the likelihood is largest.
+/// Maximises the likelihood of measured fields. The least-squares fit is repeated, each time with
+/// the errors that follow from the best medium so far, until this medium no longer changes.
 LeastSquaresFit likeliest_fit(const FitTask& task, const BoundedLeastSquares& problem,
                               const SlabModel& model, LeastSquaresFit best, FitData& data) {
   constexpr int most = 20;
-  constexpr double still = 1e-4, tolerance = 1e-6;  // squares, in standard errors
+  constexpr double still = 1e-4,
+                   tolerance = 1e-6;  // still: squared length of a step, in standard errors
   for (int i = 0; i < most; ++i) {
     data = data.about(model.values(media_at(task, best.parameters)));
     LeastSquaresFit next =
@@ -165,8 +173,8 @@ void put_information(const FitTask& task, const Information& known, const Vector
 
 MatrixXd covariance_of_values(const FitTask& task, const VectorXd& coordinates,
                               const MatrixXd& covariance) {
-  const VectorXd slopes = of_each_parameter(task, coordinates, &FreeParameter::slope);
-  return slopes.asDiagonal() * covariance * slopes.asDiagonal();
+  const VectorXd derivatives = of_each_parameter(task, coordinates, &FreeParameter::derivative);
+  return derivatives.asDiagonal() * covariance * derivatives.asDiagonal();
 }
 
 bool is_likely(double chi_squared, double degrees_of_freedom) {
@@ -178,8 +186,8 @@ void check(const FitTask& task) {
   const std::size_t free = task.free.size();
   if (static_cast<Index>(free) > data.values().size())
     throw InputError("free", free,
-                     "parameters from " + std::to_string(data.values().size()) +
-                         " values: must not be more than these");
+                     "must not exceed the number of measured values, " +
+                         std::to_string(data.values().size()) + "; free fewer keys");
   if (task.paths) return check_paths(task);
   SlabModel(curves_of(task), media_at(task, middle(task)));
 }
@@ -196,10 +204,10 @@ MediumFit fit_medium(const FitTask& task) {
   put_information(task, information(problem, best.jacobian), best.parameters, fit);
   fit.model = model.values(media_at(task, best.parameters));
   fit.residuals = best.residuals;
-  fit.pulls = (data.values() - fit.model).cwiseQuotient(data.errors());
+  fit.standardized_residuals = (data.values() - fit.model).cwiseQuotient(data.errors());
   fit.chi_squared = best.chi_squared();
   fit.degrees_of_freedom = degrees_of_freedom(best, data);
-  fit.slope = check_slope(problem, best);
+  fit.derivative_check = check_derivative(problem, best);
   fit.converged = best.converged;
   fit.reversed = model.reversed();
   fit.trace = best.trace;

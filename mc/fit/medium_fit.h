@@ -11,64 +11,72 @@
 
 namespace flatspeckle::mc {
 
-/// What follows from the parameters, and how well it is known.
+/// A quantity derived from the parameters, with its error.
 struct Derived {
   std::string name, unit;
   double value = 0, error = 0;
 };
 
 struct MediumFit {
-  Eigen::VectorXd coordinates;  ///< of the estimates
+  Eigen::VectorXd coordinates;  ///< estimates, as coordinates (FreeParameter)
   Eigen::VectorXd estimates, errors;
   Eigen::MatrixXd covariance, correlation;
-  double condition = 0;   ///< of the information; infinite where a combination is not known
-  Eigen::VectorXd worst;  ///< known combination of the parameters, in distances of their bounds
-  std::vector<bool>
-      known;  ///< better than the bounds tell: by less than a quarter of their distance
+  /// Condition number of the Fisher information; infinite if a combination of the parameters is not
+  /// determined.
+  double condition = 0;
+  /// Least determined combination of the parameters, in units of the distances between their
+  /// bounds.
+  Eigen::VectorXd worst;
+  /// For each parameter, whether its error is below a quarter of the distance between its bounds.
+  std::vector<bool> known;
   std::vector<Derived> derived;
-  Eigen::VectorXd model;      ///< of all measurements, one after the other
-  Eigen::VectorXd residuals;  ///< whitened: independent, in standard errors
-  Eigen::VectorXd pulls;      ///< (measured - model) / error of each value
+  Eigen::VectorXd model;      ///< model values for all measurements, concatenated
+  Eigen::VectorXd residuals;  ///< whitened residuals: independent, in units of standard errors
+  Eigen::VectorXd standardized_residuals;  ///< (measured - model) / error of each value
   double chi_squared = 0;
-  /// Its mean if the medium is right: values less parameters, or less where their errors are so
-  /// correlated that some combinations of them hardly count.
+  /// Expected chi^2 if the medium is correct: the number of values minus the number of parameters.
+  /// It is less if the errors of the values are so strongly correlated that some combinations
+  /// hardly contribute.
   double degrees_of_freedom = 0;
-  std::optional<Invariant> slope;  ///< of the derivatives, by transport
-  double numerical = 0;            ///< largest numerical error of the model, in standard errors
-  // By Monte Carlo, parts of the covariance: of chance, and of what paths neglect of waves.
-  Eigen::MatrixXd by_chance, by_neglect;
-  double paths = 0;  ///< by Monte Carlo: those of each run at the best medium
+  std::optional<Invariant> derivative_check;  ///< check of the derivatives; only for transport
+  double numerical = 0;  ///< largest numerical error of the model, in standard errors
+  // Only for Monte Carlo: the parts of `covariance` that come from sampling noise of the model and
+  // from neglected wave effects.
+  Eigen::MatrixXd by_sampling, by_neglect;
+  double paths = 0;  ///< only for Monte Carlo: number of paths of each run at the best medium
   bool converged = false, reversed = false;
-  std::vector<LeastSquaresFit::Step> trace;  ///< with values of the parameters
+  /// Accepted steps of the search. They contain values of the parameters, not coordinates.
+  std::vector<LeastSquaresFit::Step> trace;
 };
 
-/// Throws InputError for what the measurements cannot tell, or the scene cannot be.
+/// Throws InputError if the measurements do not determine the parameters, or the scene is not
+/// valid.
 void check(const FitTask& task);
 
-/// Least squares of all measurements at once. Throws InputError.
+/// Fits all measurements at once by least squares. Throws InputError.
 MediumFit fit_medium(const FitTask& task);
 
-/// Least squares by Monte Carlo, in any medium: the errors of the model count beside those of the
-/// measurements, and paths become more until they add no more than the stated share. Throws
-/// InputError.
+/// Fits by least squares with a Monte Carlo model, in any medium. The errors of the model are added
+/// to those of the measurements. Paths are sampled until sampling noise adds at most the fraction
+/// PathSettings::share to the variances of the estimates. Throws InputError.
 MediumFit fit_by_paths(const FitTask& task);
 
-/// Throws InputError for what paths cannot tell.
+/// Throws InputError for measurements that the Monte Carlo model does not support.
 void check_paths(const FitTask& task);
 
-/// Values of the parameters at coordinates.
+/// Returns the values of the parameters at these coordinates.
 Eigen::VectorXd values_at(const FitTask& task, const Eigen::VectorXd& coordinates);
 
-/// What follows of the parameters from their information about a point: estimates, errors, what is
-/// known, what is derived.
+/// Sets the members of `fit` that follow from the Fisher information at a point: estimates, errors,
+/// which parameters are determined, and derived quantities.
 void put_information(const FitTask& task, const Information& known,
                      const Eigen::VectorXd& coordinates, MediumFit& fit);
 
-/// Of coordinates, as one of values.
+/// Transforms a covariance of coordinates to one of values.
 Eigen::MatrixXd covariance_of_values(const FitTask& task, const Eigen::VectorXd& coordinates,
                                      const Eigen::MatrixXd& covariance);
 
-/// Whether chi^2 is no more than noise makes it, to four standard deviations.
+/// Whether chi^2 is consistent with noise, within four standard deviations.
 bool is_likely(double chi_squared, double degrees_of_freedom);
 
 }  // namespace flatspeckle::mc

@@ -25,13 +25,16 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Sizes of a value's errors and the angle that light is turned by.
+/// Errors of one measured value due to wave effects that the Monte Carlo model neglects: `common`
+/// is the same in all views, `own` depends on the view. angle: angle from the illumination to the
+/// view.
 struct NeglectedPart {
   double common = 0, own = 0;
   double angle = 0;
 };
 
-/// The two shares of what is neglected.
+/// Neglected wave effects as fractions of an intensity: `common` is the fraction that is the same
+/// in all views, `own` the fraction that depends on the view.
 struct NeglectedShares {
   double common, own;
 
@@ -57,7 +60,8 @@ NeglectedPart part_of(const Curve& curve, const Medium& medium, std::size_t entr
   return {(shares.common + shares.own) * (still - value)};
 }
 
-/// Of all values of one measurement.
+/// Returns the covariance of the neglected errors of all values of one measurement. width: angle
+/// between two views up to which NeglectedPart::own is nearly the same in both.
 MatrixXd covariance_of(const std::vector<NeglectedPart>& parts, double width) {
   const Index size = std::ssize(parts);
   MatrixXd found(size, size);
@@ -71,18 +75,20 @@ MatrixXd covariance_of(const std::vector<NeglectedPart>& parts, double width) {
   return found;
 }
 
-/// How fast amplitudes vary with the angle.
+/// Returns the angular width within which scattering amplitudes vary.
 double width_of(const Scene& scene) {
   const double size = scene.scatterer.is_disk() ? scene.k * scene.scatterer.radius : 1;
   return 1 / std::max(1.0, size);
 }
 
-/// Covariance of what paths neglect of waves in values of all curves, as the documented bias has it
-/// (Allowance). Of an intensity it is a share: that of crossed paths, refraction and correlated
-/// positions the same in all views; that of near zones and of a box that guides alike in views that
-/// are nearer to each other than 1/(k a). Of a correlation C it is that share of 1 - C, in all
-/// alike. 0 of power, of media that are but a phase function, and of measurements that paths have
-/// made themselves.
+/// Returns the covariance of the errors due to neglected wave effects, for the values of all
+/// curves. They are estimated from the documented bias of Monte Carlo (Allowance). The error of an
+/// intensity is a fraction of the value. The fractions for crossed paths, refraction and correlated
+/// positions are the same in all views. Those for near zones and for a box that guides light are
+/// nearly the same only in views closer to each other than 1/(k a), with the radius a of the
+/// scatterers. The error of a correlation C is the sum of all fractions times 1 - C,
+/// and is fully correlated between all values. There are no such errors for power, for media given
+/// only by a phase function, and for measurements simulated by Monte Carlo.
 MatrixXd neglected_covariance(const FitTask& task, const Media& media, const VectorXd& values) {
   MatrixXd all = MatrixXd::Zero(values.size(), values.size());
   Index first = 0;
@@ -104,15 +110,18 @@ MatrixXd neglected_covariance(const FitTask& task, const Media& media, const Vec
 
 constexpr double first_paths = 10000;
 
-/// Least squares at one medium, the errors of the model added to those of the measurements.
+/// The least-squares problem at one medium of the search. The errors of the model are added to
+/// those of the measurements.
 struct Round {
   SampledModel model;
-  FitData data;  ///< with errors as this model has them
+  FitData data;  ///< measurements; errors of measured fields follow from this model
   MatrixXd noise, neglected;
-  Eigen::LLT<MatrixXd> root;  ///< of the covariance of all errors
-  LeastSquaresFit at;         ///< whitened by it
-  MatrixXd fisher;            ///< less what chance in the slopes adds
-  double excess = 0;          ///< that, in the combination where it is most, over the rest
+  Eigen::LLT<MatrixXd> root;  ///< Cholesky factor of the covariance of all errors
+  LeastSquaresFit at;         ///< residuals and jacobian, whitened by `root`
+  /// Fisher information, without the contribution of noise in the derivatives.
+  MatrixXd fisher;
+  /// Largest ratio of the noise contribution to `fisher`, over all combinations of parameters.
+  double excess = 0;
 
   Round(const VectorXd& coordinates, SampledModel sampled, MatrixXd errors, const FitData& measured)
       : model(std::move(sampled)),
@@ -122,7 +131,7 @@ struct Round {
         root(data.covariance() + noise + neglected) {
     at.parameters = coordinates;
     at.residuals = root.matrixL().solve(model.values - data.values());
-    at.jacobian = root.matrixL().solve(model.slopes);
+    at.jacobian = root.matrixL().solve(model.derivatives);
     const Index size = model.values.size();
     const MatrixXd full = at.jacobian.transpose() * at.jacobian,
                    added = model.added_information(root.solve(MatrixXd::Identity(size, size)));
@@ -134,8 +143,8 @@ struct Round {
     fisher = excess < 0.5 ? MatrixXd(full - added) : full;
   }
 
-  /// -2 log likelihood, but for a constant.
-  double unlikelihood() const {
+  /// Returns -2 times the log likelihood, up to a constant.
+  double deviance() const {
     const MatrixXd& triangle = root.matrixLLT();
     return at.chi_squared() + 2 * triangle.diagonal().array().log().sum();
   }
@@ -145,16 +154,16 @@ struct Round {
     return expected_chi_squared(root.matrixL().solve(half.transpose()), at.jacobian);
   }
 
-  /// What errors of the model, noise or neglected, add to the covariance of the estimates'
-  /// coordinates.
+  /// Returns the contribution of errors of the model to the covariance of the estimated
+  /// coordinates. errors: covariance of noise or of neglected effects.
   MatrixXd by(const MatrixXd& errors) const {
     const MatrixXd inverse = inverse_symmetric(at.jacobian.transpose() * at.jacobian);
-    const MatrixXd estimator = inverse * root.solve(model.slopes).transpose();
+    const MatrixXd estimator = inverse * root.solve(model.derivatives).transpose();
     return estimator * errors * estimator.transpose();
   }
 };
 
-/// The search for the medium.
+/// Search for the medium that fits best, with the Monte Carlo model.
 class PathSearch {
  public:
   explicit PathSearch(const FitTask& task)
@@ -175,12 +184,12 @@ class PathSearch {
   }
 
  private:
-  /// By few paths: those that are likeliest.
+  /// Returns the most likely of the starts. The likelihood is evaluated with few paths.
   std::vector<VectorXd> starts() {
     constexpr std::size_t most = 3;
     std::multimap<double, VectorXd> ranked;
     for (const VectorXd& start : grid_of_starts(task_))
-      ranked.emplace(round(start, first_paths).unlikelihood(), start);
+      ranked.emplace(round(start, first_paths).deviance(), start);
     std::vector<VectorXd> best;
     for (const auto& [unlikely, start] : ranked)
       if (best.size() < most) best.push_back(start);
@@ -191,7 +200,7 @@ class PathSearch {
     model_.move(at);
     return more(at, paths);
   }
-  /// Where it is already.
+  /// Continues to sample the present medium until each run has this number of paths.
   Round more(const VectorXd& at, double paths) {
     model_.sample(paths);
     SampledModel model = model_.model();
@@ -201,22 +210,26 @@ class PathSearch {
     return {at, std::move(model), std::move(neglected), data_};
   }
 
-  /// Of the errors of the parameters: the largest share that chance in the model adds.
+  /// Returns the largest fraction that sampling noise of the model adds to the variance of a
+  /// parameter.
   double share(const Round& round) const {
     const Information known = information_of(bounds_, round.fisher);
-    const VectorXd chance = round.by(round.noise).diagonal(),
-                   rest = (known.covariance.diagonal() - chance).cwiseMax(1e-3 * chance);
-    return std::max(chance.cwiseQuotient(rest).maxCoeff(), round.excess);
+    const VectorXd sampling_variance = round.by(round.noise).diagonal(),
+                   rest = (known.covariance.diagonal() - sampling_variance)
+                              .cwiseMax(1e-3 * sampling_variance);
+    return std::max(sampling_variance.cwiseQuotient(rest).maxCoeff(), round.excess);
   }
 
   bool out_of_time() const {
     return task_.paths->seconds && clock_.seconds() > *task_.paths->seconds;
   }
 
-  /// Steps of Levenberg and Marquardt. One that is shorter than the errors needs no look at where
-  /// it leads, for the model is linear there: it is the end, or calls for more paths.
+  /// Searches by Levenberg-Marquardt steps from a start. If a step is shorter than the errors, the
+  /// model is nearly linear over the step and is not evaluated at the end of the step. The search
+  /// then ends at that point or, if the noise of the model is too large, samples more paths.
   MediumFit from(const VectorXd& start, std::size_t number) {
-    constexpr double far = 4, near = 1, most_damping = 1e12;  // squares, in standard errors
+    // far and near: squared length of a step, in standard errors
+    constexpr double far = 4, near = 1, most_damping = 1e12;
     std::vector<LeastSquaresFit::Step> trace;
     const FitStep last = last_made(start, number, trace);
     double paths = last.paths, damping = last.damping;
@@ -238,7 +251,7 @@ class PathSearch {
       }
       const VectorXd next = here.at.parameters + step;
       Round there = round(next, paths);
-      if (length < far || there.unlikelihood() <= here.unlikelihood()) {
+      if (length < far || there.deviance() <= here.deviance()) {
         here = std::move(there);
         damping = std::max(damping / 10, 1e-12);
       } else {
@@ -249,7 +262,8 @@ class PathSearch {
     return ended(here, VectorXd::Zero(start.size()), paths, false, std::move(trace));
   }
 
-  /// Where the search from a start stands, after the steps that were made before.
+  /// Returns the state that an earlier run had reached in the search from this start, or the
+  /// initial state. Appends the earlier steps to `trace`.
   FitStep last_made(const VectorXd& start, std::size_t number,
                     std::vector<LeastSquaresFit::Step>& trace) {
     FitStep last{number, 0, first_paths, 1e-3, 0, 0, start};
@@ -268,15 +282,15 @@ class PathSearch {
     MediumFit fit;
     const VectorXd at = here.at.parameters + step;
     put_information(task_, information_of(bounds_, here.fisher), at, fit);
-    fit.by_chance = covariance_of_values(task_, at, here.by(here.noise));
+    fit.by_sampling = covariance_of_values(task_, at, here.by(here.noise));
     fit.by_neglect = covariance_of_values(task_, at, here.by(here.neglected));
-    fit.model = here.model.values + here.model.slopes * step;
+    fit.model = here.model.values + here.model.derivatives * step;
     fit.residuals = here.at.residuals + here.at.jacobian * step;
     fit.chi_squared = fit.residuals.squaredNorm();
     fit.degrees_of_freedom = here.degrees_of_freedom();
     const VectorXd errors =
         (here.data.errors().cwiseAbs2() + (here.noise + here.neglected).diagonal()).cwiseSqrt();
-    fit.pulls = (here.data.values() - fit.model).cwiseQuotient(errors);
+    fit.standardized_residuals = (here.data.values() - fit.model).cwiseQuotient(errors);
     fit.paths = paths;
     fit.converged = converged;
     trace.push_back({at, fit.chi_squared, process_cpu_seconds()});
@@ -290,7 +304,7 @@ class PathSearch {
   PathModel model_;
   BoundedLeastSquares bounds_;
   Stopwatch clock_;
-  int kept_ = 0;  ///< iterations that were told before
+  int kept_ = 0;  ///< number of iterations that an earlier run reported
 };
 
 }  // namespace

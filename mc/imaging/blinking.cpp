@@ -17,12 +17,14 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// What makes points shine shares no random numbers with their fields and the camera.
+/// Returns the seed of the excitation, whose random numbers are independent of those of the fields
+/// and the camera.
 std::uint64_t seed_of_excitation(std::uint64_t seed) {
   return seed ^ 0x9e3779b97f4a7c15U;
 }
 
-/// A plane wave from the other side of the box, and sensors where the points are.
+/// Returns a request for the light that a plane wave, incident on the opposite side of the box,
+/// sends to the points of the object.
 CovarianceRequest at_points(const LineScene& line) {
   const Lights light{plane_wave(line.object_depth < 0 ? std::numbers::pi : 0)};
   std::vector<View> views;
@@ -60,7 +62,7 @@ std::vector<double> brightness_in(const LineScene& line, std::span<const double>
   return brightness;
 }
 
-/// Over the mean of all.
+/// Divides all frames by their common mean.
 void scale(std::vector<std::vector<double>>& frames) {
   double sum = 0;
   for (const auto& frame : frames)
@@ -82,7 +84,8 @@ std::vector<std::vector<double>> light_of(const LineScene& line, std::span<const
   return frames;
 }
 
-/// Over the frames with light, before the camera.
+/// Sets the measured and the expected squared contrast, averaged over the frames with light, before
+/// camera noise.
 void note_contrast(Blinked& made, const LineScene& line) {
   const std::size_t points = line.object.x.size();
   double lit = 0;
@@ -162,13 +165,13 @@ Blinked blinked(const LineScene& line, const BlinkingTask& task, std::span<const
   note_contrast(made, line);
   for (std::size_t f = 0; f < task.frames; ++f) {
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::camera), medium * task.frames + f);
-    expose(made.frames[f], task.unmixing.noise, random);
+    expose(made.frames[f], task.separation.noise, random);
   }
-  if (!task.unmixes) return made;
-  made.found = unmixed(made.frames, task.unmixing);
+  if (!task.separates) return made;
+  made.found = separated_sources(made.frames, task.separation);
   made.pattern_match = matches(line, field, made.found.factors.pattern);
   made.score = score(shifts(line), made.found.object(),
-                     task.unmixing.resolution_grains * made.found.grain, MirrorImage::no);
+                     task.separation.resolution_grains * made.found.grain, MirrorImage::no);
   return made;
 }
 

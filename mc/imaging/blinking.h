@@ -10,66 +10,72 @@
 #include "flatland/scene/scene.h"
 #include "mc/imaging/line_camera.h"
 #include "mc/imaging/recovery/image_score.h"
-#include "mc/imaging/unmixing/unmixing.h"
+#include "mc/imaging/separation/separation.h"
 
 namespace flatspeckle::mc {
 
-/// How bright points are in the frames of a medium, [frame][point], over their own brightness: a
-/// pure function of the medium's number.
+/// Function that returns the brightness of the points in all frames of one medium, [frame][point],
+/// as a factor of the brightness of each point in the object. The result depends only on the number
+/// of the medium.
 using BrightnessDraw = std::function<std::vector<double>(std::uint64_t medium)>;
 
-/// Each point shines in a share `lit` of the frames, by chance.
+/// Returns a BrightnessDraw that lights each point in each frame with the probability `lit`,
+/// independently of all others.
 BrightnessDraw random_subsets(std::size_t frames, std::size_t points, double lit,
                               std::uint64_t seed);
 
-/// Light that makes points shine.
+/// Light that excites the points (fluorescence).
 struct Excitation {
-  BrightnessDraw draw;              ///< |u|^2 at each point over its mean over the points
-  std::vector<double> correlation;  ///< C_I of the light at pairs of points (0, 1), (0, 2), ...
+  BrightnessDraw draw;  ///< |u|^2 at each point, divided by its expected mean over the points
+  /// C_I of the exciting light at pairs of points (0, 1), (0, 2), ...
+  std::vector<double> correlation;
 };
 
-/// How it is drawn.
+/// Settings for sampling the excitation.
 struct ExcitationTask {
   std::size_t frames = 1;
   std::uint64_t paths = 20000, seed = 1;
   int threads = 1;
 };
 
-/// Speckle of a plane wave that comes through the medium to the object's line, another in each
-/// frame: Gaussian fields at the points, of the covariance that light paths have. medium: at the
-/// light's wavelength. Alone, a point's brightness is distributed exponentially. Throws Interrupted
-/// once a signal has come (catch_interrupts).
+/// Returns the excitation by the speckle of a plane wave that is transmitted through the medium to
+/// the line of the object, independent in each frame. The fields at the points are Gaussian, with a
+/// covariance estimated from light paths. The brightness of each single point is therefore
+/// distributed exponentially. medium: the medium at the wavelength of the excitation. Throws
+/// Interrupted after a signal (catch_interrupts).
 Excitation speckle_excitation(Scene medium, const LineScene& line, const ExcitationTask& task);
 
-/// Frames of one medium in which points differ in brightness.
+/// Settings for the frames of one medium if the brightness of the points varies between frames.
 struct BlinkingTask {
-  BrightnessDraw draw;  ///< none: points do not blink
+  BrightnessDraw draw;  ///< empty: points do not blink
   std::size_t frames = 1;
-  std::vector<double> correlation = {};  ///< as Excitation's, of excitation by speckle
-  UnmixingTask unmixing;
-  bool unmixes = true;
+  std::vector<double> correlation = {};  ///< Excitation::correlation, for excitation by speckle
+  SeparationTask separation;
+  bool separates = true;
 };
 
-/// One medium.
+/// Frames of one medium with varying brightness, and the sources separated from them.
 struct Blinked {
-  std::vector<std::vector<double>> frames;  ///< in units of the light's mean over all
-  std::vector<double> brightness;           ///< [frame][point], the draw's
+  std::vector<std::vector<double>> frames;  ///< in units of the mean of the light over all frames
+  std::vector<double> brightness;           ///< drawn brightness, [frame][point]
   double square = 0;                        ///< mean squared contrast of the frames
-  double expected_square = 0;  ///< of Gaussian speckle of the brightness that was drawn
-  Unmixed found;
-  ImageScore score;  ///< not mirrored
-  std::vector<double>
-      pattern_match;  ///< of each point: correlation of its speckle with a pattern's
+  /// Squared contrast expected for Gaussian speckle with the drawn brightness.
+  double expected_square = 0;
+  SeparatedSources found;
+  ImageScore score;  ///< score of `found`, without mirroring
+  /// For each point, the largest correlation of its speckle with any of the separated patterns.
+  std::vector<double> pattern_match;
 };
 
-/// field: of the points in this medium, [point][pixel].
+/// Simulates the frames of one medium and separates the sources. field: fields of the points in
+/// this medium, [point][pixel].
 Blinked blinked(const LineScene& line, const BlinkingTask& task, std::span<const Complex> field,
                 std::uint64_t medium, std::uint64_t seed);
 
-/// The mean of all frames.
+/// Returns the mean of all frames.
 std::vector<double> mean_frame(const std::vector<std::vector<double>>& frames);
 
-/// The camera's noise in the mean of so many frames.
+/// Returns the camera's noise in the mean of `frames` frames.
 CameraNoise noise_of_mean(const CameraNoise& noise, std::size_t frames);
 
 }  // namespace flatspeckle::mc

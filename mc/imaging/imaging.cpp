@@ -16,7 +16,7 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// A stream as the distributions of the standard library want it.
+/// Adapts a RandomStream to the distributions of the standard library.
 struct Bits {
   using result_type = std::uint64_t;
   static constexpr result_type min() { return 0; }
@@ -25,10 +25,11 @@ struct Bits {
   RandomStream& stream;
 };
 
-/// Of an autocorrelation without noise.
+/// Expected heights of the peaks in an autocorrelation without noise, with the symbols of
+/// peaks_over_noise(): a_ij of all pairs, a_0, and 2 sum of a_ij^2.
 struct Peaks {
   std::vector<double> pairs;
-  double alone = 0, squares = 0;  ///< a_0; 2 sum of a_ij^2
+  double alone = 0, squares = 0;
 
   Peaks(const LineObject& object, const std::vector<double>& correlation, double background) {
     const std::vector<double>& b = object.brightness;
@@ -52,7 +53,8 @@ RunState run(const BatchJob& job, std::uint64_t samples, int threads, const char
   return state;
 }
 
-/// Of |u|^2 over its smooth envelope, all points together.
+/// Returns E|u|^4 / (E|u|^2)^2, averaged over the points, where |u|^2 is divided by its smooth
+/// envelope.
 double fourth_moment(std::span<const Complex> field, std::size_t points) {
   const std::size_t pixels = field.size() / points;
   std::vector<double> intensity(pixels);
@@ -64,7 +66,7 @@ double fourth_moment(std::span<const Complex> field, std::size_t points) {
   return 1 + sum / static_cast<double>(points);
 }
 
-/// What the camera has of one medium.
+/// Camera frames of one medium.
 struct ExposedFrames {
   std::vector<double> frame, reference;
   double fourth_moment = 0;
@@ -102,7 +104,7 @@ void divide_by_reference(ImagedMedium& medium, const LineScene& line, const Imag
       psnr(point_picture(shifts(line), lags, medium.deconvolved.grain), medium.deconvolved.picture);
 }
 
-/// What would fill the memory.
+/// Releases the memory of the frames and patterns.
 void drop_frames(Blinked& blinked) {
   blinked.frames.clear();
   blinked.found.factors.pattern.resize(0, 0);
@@ -129,7 +131,7 @@ ImagedMedium imaged_one(const LineScene& line, const ImagingTask& task, const Fi
   return medium;
 }
 
-/// Pairs of points (0, 1), (0, 2), ..., then each point and the reference.
+/// Pairs of points (0, 1), (0, 2), ..., then pairs of each point with the reference, by index.
 using Pairs = std::vector<std::pair<std::size_t, std::size_t>>;
 Pairs pairs_of(const LineScene& line) {
   const std::size_t points = line.object.x.size();
@@ -141,7 +143,7 @@ Pairs pairs_of(const LineScene& line) {
   return pairs;
 }
 
-/// x of either.
+/// Returns the positions x of both points of a pair.
 std::pair<double, double> places_of(const LineScene& line,
                                     std::pair<std::size_t, std::size_t> pair) {
   std::vector<double> x = line.object.x;
@@ -149,7 +151,9 @@ std::pair<double, double> places_of(const LineScene& line,
   return {x[pair.first], x[pair.second]};
 }
 
-/// Pairs of channels, then the intensities of either, for each place and pair.
+/// Returns a request with three entries for each position on the camera and each pair of points:
+/// the covariance of the two channels, then their two intensities. places: positions as fractional
+/// pixels.
 CovarianceRequest pair_request(const LineScene& line, const Pairs& pairs,
                                const std::vector<double>& places) {
   CovarianceRequest request;
@@ -172,7 +176,8 @@ CovarianceRequest pair_request(const LineScene& line, const Pairs& pairs,
   return request;
 }
 
-/// [place][pair]: mean over the places.
+/// Returns C_I of each pair, averaged over the positions on the camera. entries: values of the
+/// entries of pair_request(), [place][pair].
 std::vector<Complex> mean_correlations(std::span<const Complex> entries, std::size_t places) {
   const std::size_t pairs = entries.size() / (3 * places);
   std::vector<Complex> mean(pairs);
@@ -185,7 +190,7 @@ std::vector<Complex> mean_correlations(std::span<const Complex> entries, std::si
   return mean;
 }
 
-/// Some pixels of the camera.
+/// Returns the scene with at most `most` pixels.
 LineScene with_fewer_pixels(LineScene line, std::size_t most) {
   line.camera.pixels = std::min(line.camera.pixels, most);
   return line_scene(std::move(line.scene), std::move(line.object), line.object_depth, line.camera,
@@ -258,7 +263,7 @@ std::vector<ImagedMedium> imaged(const LineScene& line, const ImagingTask& task,
   BatchJob job;
   job.size = 1;
   job.run = [&](std::uint64_t number, std::span<Complex>) {
-    // there are always two batches
+    // a run has at least two batches, even for one repeat
     if (number < task.repeats) media[number] = imaged_one(line, task, draw, number);
   };
   run(job, task.repeats, task.threads, "frames");

@@ -17,42 +17,46 @@
 #include "mc/imaging/recovery/frame_statistics.h"
 #include "mc/imaging/recovery/line_spectrum.h"
 #include "mc/imaging/recovery/recovery_datasets.h"
-#include "mc/imaging/unmixing/unmixing.h"
+#include "mc/imaging/separation/separation.h"
 
 namespace flatspeckle::mc {
 
 const DatasetTable blinking_table{
     .name = "blinking",
-    .rows = {{"blinking_frame", Data::numbers, "", "1", "number of the frame of a medium"},
-             {"source", Data::numbers, "", "1", "number of the source"},
-             {"frames", Data::real, "blinking_frame camera_place", "1",
-              "of the first medium, in units of the mean of the light of all"},
-             {"point_brightness", Data::real, "blinking_frame point", "1",
-              "of each point in the first medium's frames, over its own brightness"},
-             {"pair_excitation", Data::real, "pair", "1",
-              "C_I of the light that excites two points (speckle)"},
-             {"frame_contrast", Data::estimate, "", "1",
-              "of single frames before the camera: root of the mean square"},
-             {"expected_frame_contrast", Data::real, "", "1",
-              "of Gaussian speckle of points as bright as they were drawn"},
-             {"singular_value", Data::real, "repeat blinking_frame", "1",
-              "of the frames over their mean, the camera's noise white where it is known, largest "
-              "first"},
-             {"noise_level", Data::real, "repeat", "1", "singular values above it are sources"},
-             {"source_count", Data::count, "repeat", "1", "sources that the singular values tell"},
-             {"factor_residual", Data::real, "repeat", "1",
-              "rms of what the factors leave, over the light's"},
-             {"source_pattern", Data::real, "source camera_place", "1",
-              "of each source alone in the first medium, mean 1"},
-             {"source_x", Data::real, "repeat source", "length",
-              "of the sources that are placed to each other, from the first; not mirrored"},
-             {"source_brightness", Data::real, "repeat source", "1",
-              "mean over the frames, relative; 0 where the source has no place"},
-             {"pattern_match", Data::real, "repeat point", "1",
-              "correlation of each point's speckle with the pattern most like it"},
-             {"sources_share", Data::real, "repeat", "1",
-              "points that have a source within a grain, not mirrored"},
-             {"sources_success", Data::estimate, "", "1", "media in which all points have"}}};
+    .rows = {
+        {"blinking_frame", Data::numbers, "", "1", "number of the frame of a medium"},
+        {"source", Data::numbers, "", "1", "number of the source"},
+        {"frames", Data::real, "blinking_frame camera_place", "1",
+         "all frames of the first medium, in units of the mean of the light over these frames"},
+        {"point_brightness", Data::real, "blinking_frame point", "1",
+         "brightness of each point in the frames of the first medium, relative to "
+         "object_brightness"},
+        {"pair_excitation", Data::real, "pair", "1",
+         "C_I of the light that excites two points (speckle)"},
+        {"frame_contrast", Data::estimate, "", "1",
+         "contrast of single frames before camera noise: root of the mean square"},
+        {"expected_frame_contrast", Data::real, "", "1",
+         "contrast expected for Gaussian speckle with the drawn brightness"},
+        {"singular_value", Data::real, "repeat blinking_frame", "1",
+         "singular values of the frames divided by their mean, largest first; the camera's noise "
+         "is whitened if it is known"},
+        {"noise_level", Data::real, "repeat", "1",
+         "threshold: singular values above it count as sources"},
+        {"source_count", Data::count, "repeat", "1", "number of singular values above noise_level"},
+        {"factor_residual", Data::real, "repeat", "1",
+         "rms residual of the factorisation, divided by the rms of the light"},
+        {"source_pattern", Data::real, "source camera_place", "1",
+         "speckle pattern of each source in the first medium, mean 1"},
+        {"source_x", Data::real, "repeat source", "length",
+         "positions of the sources of the largest group, relative to the first; not mirrored"},
+        {"source_brightness", Data::real, "repeat source", "1",
+         "relative brightness, mean over the frames; 0 for sources outside the largest group"},
+        {"pattern_match", Data::real, "repeat point", "1",
+         "correlation of each point's speckle with the most similar pattern"},
+        {"sources_share", Data::real, "repeat", "1",
+         "fraction of the points that have a source within a grain, without mirroring"},
+        {"sources_success", Data::estimate, "", "1",
+         "fraction of the media in which all points have such a source"}}};
 
 FrameContrast frame_contrast(const std::vector<ImagedMedium>& media) {
   const auto mean = [&](double Blinked::*square) {
@@ -74,7 +78,8 @@ void write_first(const ResultGroup& root, const Blinked& first, std::size_t poin
   root.put("point_brightness", std::span(first.brightness).first(first.frames.size() * points));
 }
 
-/// Values of each medium's placed sources, zeros where it has fewer.
+/// Writes positions and brightness of the sources of the largest group in each medium, padded with
+/// zeros.
 void write_places(const ResultGroup& root, const std::vector<ImagedMedium>& media,
                   std::size_t sources, double length_of_pixel) {
   const auto of_object = [&](double scale, std::vector<double> LineObject::*member) {
@@ -114,8 +119,8 @@ void write_sources(const ResultGroup& root, const LineScene& line,
   root.put("source_pattern", pattern);
 }
 
-/// Means over a power x of mean 1 that is distributed exponentially, of x / (x + e), its square,
-/// and x / (x + e)^2.
+/// Means over an exponentially distributed power x of mean 1: response is the mean of x / (x + e),
+/// square the mean of its square, noise the mean of x / (x + e)^2.
 struct FilterMeans {
   double response = 0, square = 0, noise = 0;
 
@@ -130,19 +135,21 @@ struct FilterMeans {
   }
 };
 
-/// Of a picture before it is made.
+/// Predicted picture, and its noise.
 struct Expected {
   std::vector<double> picture;
-  double noise = 0;  ///< variance of each of its values
+  double noise = 0;  ///< variance of each value of the picture
 };
 
-/// What a frame consists of.
+/// Composition of a frame, for expected_psnr().
 struct Shares {
-  LineObject at;                    ///< shifts
-  std::vector<double> coefficient;  ///< of each point: its share of the light times C_I
-  std::vector<double> speckle;      ///< power by frequency of all speckle and of the reference's
-  double other = 0;                 ///< of speckle that the reference knows nothing of
-  double white = 0;                 ///< of the camera's noise
+  LineObject at;                    ///< points, with their shifts in pixels
+  std::vector<double> coefficient;  ///< for each point: its fraction of the light times C_I
+  /// Power spectrum of the speckle of the reference, and also of each point.
+  std::vector<double> speckle;
+  /// Power of the speckle that is uncorrelated with that of the reference, in units of `speckle`.
+  double other = 0;
+  double white = 0;  ///< power of the camera's noise
 };
 
 Complex spectrum_of(const Shares& of, double frequency) {
@@ -168,10 +175,10 @@ Expected expected(const Shares& of, const LineSpectrum& spectra, double regulari
     spectrum[m] = filter.response * object;
     if (m > 0) spectrum[n - m] = std::conj(spectrum[m]);
     const double scatter = filter.square - filter.response * filter.response,
-                 strange = (of.speckle[m] * of.other + of.white) / power[m],
+                 uncorrelated = (of.speckle[m] * of.other + of.white) / power[m],
                  both_signs = m == 0 || 2 * m == n ? 1 : 2;
     result.noise +=
-        both_signs * (std::norm(object) * scatter + blur * blur * strange * filter.noise);
+        both_signs * (std::norm(object) * scatter + blur * blur * uncorrelated * filter.noise);
   }
   result.noise /= static_cast<double>(n) * static_cast<double>(n);
   result.picture = spectra.line(std::move(spectrum));
@@ -239,7 +246,7 @@ void write_prediction(const ResultGroup& root, const LineScene& line, const Imag
   if (expected.success) root.put("predicted_success", *expected.success);
 }
 
-/// Writes what the views of all media show.
+/// Writes frames of all media, and results from them.
 void write_frames(ResultFile& file, const ResultGroup& root, const LineScene& line,
                   const ImagingTask& task, const std::vector<ImagedMedium>& media) {
   const double moved = magnification(line), length_of_pixel = 1 / std::abs(moved);
@@ -265,34 +272,38 @@ void write_blinking(ResultFile& file, const LineScene& line, const ImagingTask& 
   root.put("frame_contrast", contrast.found.value, contrast.found.error);
   root.put("expected_frame_contrast", contrast.expected);
   if (!task.blinking.correlation.empty()) root.put("pair_excitation", task.blinking.correlation);
-  if (task.blinking.unmixes) write_sources(root, line, media);
+  if (task.blinking.separates) write_sources(root, line, media);
 }
 
 const DatasetTable picture_table{
     .name = "picture",
-    .rows = {{"picture_x", Data::scale, "", "length", "place on the object's line"},
-             {"reference_x", Data::real, "", "length", "of the reference point"},
-             {"reference_frame", Data::real, "repeat camera_place", "1",
-              "of the reference point alone, in units of the light's mean"},
-             {"true_picture", Data::real, "picture_x", "1",
-              "the object, a Gaussian as wide as a grain for each point"},
-             {"picture", Data::real, "repeat picture_x", "1",
-              "frames divided by their reference; the scale is free"},
-             {"psnr", Data::real, "repeat", "1",
-              "dB: the largest value of the true picture over the rms difference"},
-             {"mean_psnr", Data::estimate, "", "1", "mean over the media, of two or more"},
-             {"predicted_psnr", Data::real, "", "1", "without pictures, of Wiener's filter"},
-             {"iteration", Data::numbers, "", "1", "number of the step (richardson_lucy)"},
-             {"residual", Data::real, "repeat iteration", "1",
-              "rms of what the frame differs by from picture and reference, over its mean"},
-             {"reference_correlation", Data::estimate, "point", "1",
-              "C_I of each point's speckle and the reference's, from light paths"}}};
+    .rows = {
+        {"picture_x", Data::scale, "", "length", "place on the object's line"},
+        {"reference_x", Data::real, "", "length", "x of the reference point"},
+        {"reference_frame", Data::real, "repeat camera_place", "1",
+         "frame of the reference point alone, in units of the light's mean"},
+        {"true_picture", Data::real, "picture_x", "1",
+         "the object, with a Gaussian as wide as a grain for each point"},
+        {"picture", Data::real, "repeat picture_x", "1",
+         "frames deconvolved by their reference; the scale is arbitrary"},
+        {"psnr", Data::real, "repeat", "1",
+         "peak signal-to-noise ratio in dB: largest value of true_picture over the rms difference"},
+        {"mean_psnr", Data::estimate, "", "1",
+         "mean of psnr over the media, if there are at least two"},
+        {"predicted_psnr", Data::real, "", "1", "psnr predicted for the Wiener filter"},
+        {"iteration", Data::numbers, "", "1", "number of the iteration (richardson_lucy)"},
+        {"residual", Data::real, "repeat iteration", "1",
+         "rms difference between the frame and the reference convolved with the object, over the "
+         "mean"},
+        {"reference_correlation", Data::estimate, "point", "1",
+         "C_I between the speckle of each point and of the reference, from light paths"}}};
 
-/// A point's speckle is that of the reference, shifted, times C_I (to_reference), and something
-/// else of variance 1 - C_I^2; that part of the frame is lost, too, whose speckle has left the
-/// reference's. Speckle has a triangle as its power spectrum, up to the grains that
-/// the camera can see; the power of one frequency is distributed exponentially, over which the
-/// filter's response and what it lets through are averaged. Shot and read noise are white.
+/// The speckle of a point is modelled as that of the reference, shifted and multiplied by C_I
+/// (to_reference), plus an uncorrelated part of variance 1 - C_I^2. Speckle that is shifted beyond
+/// the end of the reference frame also counts as uncorrelated. The power spectrum of speckle is a
+/// triangle (speckle_power()). The power at one frequency is distributed exponentially; the
+/// response of the filter and the noise that passes it are averaged over this distribution. Shot
+/// and read noise are white.
 double expected_psnr(const LineScene& line, const ImagingTask& task,
                      const ImagingPrediction& prediction) {
   const auto to_reference = real_parts(prediction.to_reference.value);
@@ -354,44 +365,53 @@ void write_pictures(ResultFile& file, const LineScene& line, const ImagingTask& 
 
 const DatasetTable imaging_table{
     .name = "image",
-    .rows = {{"camera_place", Data::scale, "", "PLACE", "pixels: x, or sines of directions"},
-             {"repeat", Data::numbers, "", "1",
-              "number of the medium, or of several, by the key average"},
-             {"point", Data::numbers, "", "1", "number of the point of the object"},
-             {"sought", Data::numbers, "", "1", "number of the point that was looked for"},
-             {"pair", Data::numbers, "", "1", "number of the pair of points (0, 1), (0, 2), ..."},
-             {"distance", Data::scale, "", "length", "lag of the camera in lengths of the object"},
-             {"object_x", Data::real, "point", "length", "the object"},
-             {"object_brightness", Data::real, "point", "1", "relative"},
-             {"frame", Data::real, "repeat camera_place", "1",
-              "of the first medium, in units of the light's mean"},
-             {"autocorrelation", Data::real, "repeat distance", "1",
-              "<dI dI'> / <I>^2 of the frame without its envelope, mean over the repeat's media"},
-             {"mean_autocorrelation", Data::estimate, "distance", "1", "mean over the media"},
-             {"contrast", Data::real, "repeat", "1",
-              "standard deviation over mean, without envelope"},
-             {"mean_contrast", Data::estimate, "", "1", "root of its mean square over the media"},
-             {"gaussian_contrast", Data::real, "", "1",
-              "of the object's Gaussian speckle: 1/sqrt(N) for N equal points without background"},
-             {"fourth_moment", Data::estimate, "", "1",
-              "E|u|^4 / (E|u|^2)^2 of the points' fields; Gaussian: 2"},
-             {"grains", Data::real, "repeat", "1", "independent speckle grains in the frame"},
-             {"noise", Data::real, "repeat", "1", "standard deviation of the autocorrelation"},
-             {"found_x", Data::real, "repeat sought", "length", "from the first, mirrored or not"},
-             {"found_brightness", Data::real, "repeat sought", "1", "relative, mean 1"},
-             {"found_share", Data::real, "repeat", "1", "points that were found within a grain"},
-             {"brightness_match", Data::real, "repeat", "1",
-              "correlation of the brightness found with the true one"},
-             {"success", Data::estimate, "", "1", "media in which all points were found"},
-             {"pair_distance", Data::real, "pair", "length", "of two points of the object"},
-             {"pair_correlation", Data::estimate, "pair", "1",
-              "C_I of their speckles, from light paths"},
-             {"predicted_success", Data::real, "", "1",
-              "probability that all points are found, from the pairs' signals alone"},
-             {"pair_signal", Data::real, "pair", "1",
-              "height of their peak in a frame's autocorrelation over its noise, predicted"}},
+    .rows =
+        {{"camera_place", Data::scale, "", "PLACE", "pixels: x, or sines of directions"},
+         {"repeat", Data::numbers, "", "1",
+          "number of the medium, or of the group of media that the key average defines"},
+         {"point", Data::numbers, "", "1", "number of the point of the object"},
+         {"sought", Data::numbers, "", "1", "number of the sought point"},
+         {"pair", Data::numbers, "", "1", "number of the pair of points (0, 1), (0, 2), ..."},
+         {"distance", Data::scale, "", "length", "lag on the camera, as a distance on the object"},
+         {"object_x", Data::real, "point", "length", "x of the object's points"},
+         {"object_brightness", Data::real, "point", "1", "relative brightness"},
+         {"frame", Data::real, "repeat camera_place", "1",
+          "frame of each repeat (of its first medium if it has several; with blinking, the mean of "
+          "its frames), in units of the light's mean"},
+         {"autocorrelation", Data::real, "repeat distance", "1",
+          "<dI dI'> / <I>^2 of the frame divided by its envelope, mean over the media of a repeat"},
+         {"mean_autocorrelation", Data::estimate, "distance", "1",
+          "mean of autocorrelation over the repeats"},
+         {"contrast", Data::real, "repeat", "1",
+          "standard deviation over mean of the frame divided by its envelope"},
+         {"mean_contrast", Data::estimate, "", "1",
+          "root mean square of the contrast over the repeats"},
+         {"gaussian_contrast", Data::real, "", "1",
+          "contrast of the object's Gaussian speckle: 1/sqrt(N) for N equal points without "
+          "background"},
+         {"fourth_moment", Data::estimate, "", "1",
+          "E|u|^4 / (E|u|^2)^2 of the points' fields; Gaussian: 2"},
+         {"grains", Data::real, "repeat", "1", "number of independent speckle grains in the frame"},
+         {"noise", Data::real, "repeat", "1", "standard deviation of the autocorrelation"},
+         {"found_x", Data::real, "repeat sought", "length",
+          "positions of the found points relative to the first, mirrored or not"},
+         {"found_brightness", Data::real, "repeat sought", "1",
+          "brightness of the found points, mean 1"},
+         {"found_share", Data::real, "repeat", "1",
+          "fraction of the points that were found within a grain"},
+         {"brightness_match", Data::real, "repeat", "1",
+          "correlation of the brightness found with the true one"},
+         {"success", Data::estimate, "", "1",
+          "fraction of the repeats in which all points were found"},
+         {"pair_distance", Data::real, "pair", "length", "distance of two points of the object"},
+         {"pair_correlation", Data::estimate, "pair", "1",
+          "C_I of the speckles of the two points, from light paths"},
+         {"predicted_success", Data::real, "", "1",
+          "probability that all points are found, predicted from the signals of the pairs"},
+         {"pair_signal", Data::real, "pair", "1",
+          "predicted height of the pair's peak in the autocorrelation, divided by the noise"}},
     .attributes = {{"frame", "magnification", "float64",
-                    "pixels that the picture moves by for a length of the object"}},
+                    "shift of the picture in pixels per length of the object"}},
     .roles = {{"PLACE", {"1", "length"}}}};
 
 void write_imaging(ResultFile& file, const LineScene& line, const ImagingTask& task,

@@ -10,29 +10,31 @@ namespace flatspeckle::mc {
 
 extern const DatasetTable blinking_table;
 
-/// Contrast of single frames: root of the mean square over the media, and what Gaussian speckle of
-/// the brightness that was drawn should have.
+/// Contrast of single frames: the root mean square over the media, and the value expected for
+/// Gaussian speckle with the drawn brightness of the points.
 struct FrameContrast {
   MeanOverMedia found;
   double expected = 0;
 };
 FrameContrast frame_contrast(const std::vector<ImagedMedium>& media);
 
-/// Of media whose frames show all points as sources, as success_rate().
+/// Returns the fraction of media in which all points are found as sources. The error is estimated
+/// as in success_rate().
 MeanOverMedia sources_success(const std::vector<ImagedMedium>& media);
 
-/// Frames in which points blink, beside what write_imaging() has written.
+/// Writes frames in which points blink, in addition to the output of write_imaging().
 void write_blinking(ResultFile& file, const LineScene& line, const ImagingTask& task,
                     const std::vector<ImagedMedium>& media);
 
 extern const DatasetTable picture_table;
 
-/// PSNR in dB that a picture by Wiener's filter is expected to have, without one, of a scene with a
-/// reference.
+/// Returns the peak signal-to-noise ratio, in dB, that is expected for a picture deconvolved with
+/// the Wiener filter. The scene must have a reference; no frames are simulated.
 double expected_psnr(const LineScene& line, const ImagingTask& task,
                      const ImagingPrediction& prediction);
 
-/// Pictures of frames that were divided by a reference, beside what write_imaging() has written.
+/// Writes pictures from frames deconvolved by a reference, in addition to the output of
+/// write_imaging().
 void write_pictures(ResultFile& file, const LineScene& line, const ImagingTask& task,
                     const std::vector<ImagedMedium>& media, const ImagingPrediction& prediction);
 

@@ -12,7 +12,7 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// From a line to the box; negative inside.
+/// Returns the distance from a line at the depth z to the box; negative if the line is inside.
 double distance_to(const Domain& domain, double z) {
   return std::max(-z, z - domain.depth);
 }
@@ -24,7 +24,7 @@ void require_outside(const Scene& medium, const std::string& key, double z) {
                          ", by more than a scatterer's radius");
 }
 
-/// Of the camera by which a sine moves what it sees.
+/// Returns the displacement of speckle on the camera, per unit sine of the tilt of the light.
 double length_of_sine(const LineScene& line) {
   return line.camera.depth ? distance_to(line.scene.domain, *line.camera.depth) : 1;
 }

@@ -11,9 +11,9 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// Level that the largest of a Gaussian field of unit variance exceeds with a probability of one
-/// half, where the logarithm of the expected number of maxima above u is log_volume + (m - 1) ln(u)
-/// - u^2 / 2 (Adler, The Geometry of Random Fields).
+/// Returns the level that the maximum of a Gaussian field of unit variance in m dimensions exceeds
+/// with a probability of one half. The logarithm of the expected number of maxima above u is
+/// log_volume + (m - 1) ln(u) - u^2 / 2 (Adler, The Geometry of Random Fields).
 double median_of_largest(double log_volume, double m) {
   const double wanted = log_volume - std::log(std::numbers::ln2);
   double low = std::sqrt(std::max(m - 1, 0.0)), high = low + 100;
@@ -35,7 +35,7 @@ PairTable by_points(std::span<const double> signals, std::size_t points) {
   return of;
 }
 
-/// Of pairs' signals.
+/// Sum of the signals (peak heights over noise) of some pairs of points, and sum of their squares.
 struct Sums {
   double plain = 0, squares = 0;
 
@@ -46,8 +46,8 @@ struct Sums {
   double evidence(bool weighted) const { return weighted ? squares : plain; }
 };
 
-/// Takes the points away one by one, each the one whose remaining pairs bring least; the sums of
-/// what is taken, after each.
+/// Removes the points one by one, each time the point whose remaining pairs contribute least.
+/// Returns, for each step, the sums over all pairs that have been removed so far.
 std::vector<Sums> least_sums(const PairTable& signal, bool weighted) {
   const std::size_t n = signal.size();
   std::vector<Sums> left(n), taken;
@@ -77,12 +77,13 @@ double log_binomial(double n, double m) {
   return std::lgamma(n + 1) - std::lgamma(m + 1) - std::lgamma(n - m + 1);
 }
 
-/// Pairs of n points of which at least one is among m of them.
+/// Returns the number of pairs among n points that contain at least one of m given points.
 double pairs_of(double n, double m) {
   return m * (2 * n - m - 1) / 2;
 }
 
-/// As median_of_largest() wants it, of objects that have m of n points elsewhere.
+/// Returns the argument `log_volume` of median_of_largest() for the noise in the sums of all
+/// objects with m of n points at wrong positions.
 double log_volume(double n, double m, double places) {
   const double which = m + 1 < n ? log_binomial(n, m) : -std::numbers::ln2,
                determinant = (m - 1) * std::log(n) + std::log(n - m) - m * std::log(pairs_of(n, m)),
@@ -91,15 +92,17 @@ double log_volume(double n, double m, double places) {
          m * std::log(turns / std::sqrt(10.0)) - (m + 1) / 2 * std::log(turns);
 }
 
-/// Objects that lack so many pairs of the true one, in a field of so many dimensions.
+/// A class of wrong objects: the number of true pairs that they lack, and the dimensions and
+/// `log_volume` of the field of noise in their sums (median_of_largest()).
 struct Others {
   double pairs = 0, dimensions = 0, log_volume = 0;
 };
 
-/// That noise and chance meetings with the true peaks do not raise another object above the true
-/// one.
+/// Returns the probability that the true object has a larger sum than all objects of a class. The
+/// sums of wrong objects contain noise and random coincidences with the true peaks.
 double truth_wins(const Sums& lost, const Others& other, double places, bool weighted) {
-  constexpr double of_square = 2.0 / 3;  // integral of a peak's square over that of the peak
+  // integral of a squared peak, divided by the integral of the peak
+  constexpr double of_square = 2.0 / 3;
   const double root = weighted ? std::sqrt(lost.squares) : std::sqrt(other.pairs);
   if (root == 0) return 0;
   const double met = lost.plain / std::max(places, 1.0),
@@ -112,12 +115,13 @@ double truth_wins(const Sums& lost, const Others& other, double places, bool wei
   return normal_distribution(truth - others);
 }
 
-/// With m of n points elsewhere.
+/// Returns the probability that no object with m of n points at wrong positions is selected.
 double points_stay(const Sums& lost, double m, double n, double places, bool weighted) {
   return truth_wins(lost, {pairs_of(n, m), m, log_volume(n, m, places)}, places, weighted);
 }
 
-/// That no cut between neighbours lets one side move, or be mirrored, as a whole.
+/// Returns the probability that no object is selected in which all points on one side of a cut
+/// through the line are moved or mirrored as a whole.
 double groups_stay(const PairTable& signal, std::span<const double> x, double places,
                    bool weighted) {
   std::vector<std::size_t> along(x.size());
@@ -136,10 +140,11 @@ double groups_stay(const PairTable& signal, std::span<const double> x, double pl
   return stay;
 }
 
-/// That no point is taken for its mirror image between two others.
+/// Returns the probability that no object is selected in which one point is mirrored at the centre
+/// between two others.
 double points_unmirrored(const PairTable& signal, bool weighted) {
   const std::size_t n = signal.size();
-  if (n < 4) return 1;  // three points that are mirrored are the same object
+  if (n < 4) return 1;  // three points and their mirror image are the same object
   double winners = 0;
   for (std::size_t k = 0; k < n; ++k) {
     Sums all;
@@ -208,7 +213,8 @@ double mean_grains(const std::vector<ImagedMedium>& media) {
 
 FrameGrains frame_grains(const LineScene& line, const ImagingTask& task) {
   const auto frames = static_cast<double>(task.average);
-  constexpr double of_speckle = 1.5;  // grains over what a triangle as its spectrum is wide
+  // Number of grains of the size grain_of() divided by most_grains(): these grains are 2/3 as long.
+  constexpr double of_speckle = 1.5;
   return {of_speckle * most_grains(line) * frames, task.recovery.noise,
           static_cast<double>(line.camera.pixels) * frames};
 }

@@ -11,7 +11,8 @@ namespace {
 
 using Values = std::vector<Complex>;
 
-/// Of [1 + change][entry], without change first: [change][changing entry].
+/// Returns the covariances after each change, [change][entry < changing_entries()], from all
+/// quantities of the job, [1 + change][entry]. The first quantity is the covariance without change.
 Values changed(const CovarianceRequest& request, const Values& all) {
   const std::size_t entries = request.entries.size();
   Values covariance;
@@ -20,7 +21,7 @@ Values changed(const CovarianceRequest& request, const Values& all) {
   return covariance;
 }
 
-/// The same over intensities without change.
+/// Returns ChangeEstimates::correlation from all quantities of the job, [1 + change][entry].
 Values correlation(const CovarianceRequest& request, const Values& all) {
   const std::size_t entries = request.entries.size(), count = changing_entries(request);
   const Values covariance = changed(request, all);

@@ -4,19 +4,25 @@
 
 namespace flatspeckle::mc {
 
-/// How a field differs from another besides its light and view.
+/// Difference of time or frequency between the two fields of a covariance entry, in addition to
+/// their different lights and views.
 struct FieldChange {
-  double delay = 0;  ///< k^2 D tau: recorded later, as the scatterers diffuse (brownian.h)
-  /// Of its wavenumber, relative; its view is turned so that transverse momenta match. Attenuation
-  /// and scattering stay those of k.
+  /// k^2 D tau, if the second field is recorded a time tau later while the scatterers diffuse with
+  /// the diffusion constant D (brownian.h).
+  double delay = 0;
+  /// Relative difference of the wavenumber of the second field from k. The view of the second field
+  /// is turned so that transverse momenta match (conventions, C39). Attenuation and scattering keep
+  /// their values at k.
   double shift = 0;
 };
 
-/// Of a job whose quantities are the covariance, then the same where the second field of each entry
-/// has changed. Of a request for intensities, [change][channel]: the covariances, and those over
-/// the intensity without change, 0 where there is none. Of one for a memory effect: the covariances
-/// of the reference with the tilted and changed field, [change][tilt][view], and C_E,
-/// [change][tilt] (C19). magnitude: |correlation|, with the error of the modulus alone.
+/// Estimates from a job whose first quantity is the covariance, followed by the covariance for each
+/// change of the second field (delay or frequency shift). For an intensity request, `covariance` is
+/// [change][channel], and `correlation` is the covariance divided by the intensity without change
+/// (0 if that intensity is 0). For a memory-effect request, `covariance` is the covariance of the
+/// reference with the tilted and changed field, [change][tilt][view], and `correlation` is C_E,
+/// [change][tilt] (C19). `magnitude` is |correlation|; its error does not include the error of the
+/// phase.
 struct ChangeEstimates {
   Estimate covariance, correlation, magnitude;
 };

@@ -14,9 +14,9 @@ namespace {
 
 using Values = std::vector<Complex>;
 
-constexpr std::size_t stencil = 4;  ///< nodes of a cubic
+constexpr std::size_t stencil = 4;  ///< number of points that determine a cubic polynomial
 
-/// Through the nodes around an interval, in Lagrange's form.
+/// Cubic polynomial through the four nodes around an interval, in Lagrange's form.
 class Cubic {
  public:
   Cubic(const std::vector<double>& x, const std::vector<double>& y, std::size_t interval) {
@@ -89,7 +89,8 @@ void check_exposure(const Exposure& exposure, const std::vector<double>& delays)
     const bool covered = std::ranges::any_of(delays, [&](double delay) { return delay >= time; });
     if (!covered || reaching < 4)
       throw InputError("exposures", time,
-                       "must not exceed the longest of the delays, and have four of them below");
+                       "must not exceed the longest delay; at least four delays above 0 must be "
+                       "shorter than the exposure");
   }
 }
 
@@ -114,7 +115,7 @@ Estimate squared_contrast(const CovarianceRequest& request, const PathJob& job,
 
 const DatasetTable contrast_table{
     "contrast",
-    {{"exposure", Data::scale, "", "1", "time of exposure, in units of the delays"},
+    {{"exposure", Data::scale, "", "1", "exposure time, in the unit of the delays"},
      {"squared_contrast", Data::estimate, "exposure LIGHT VIEW", "1",
       "squared contrast K^2 of the speckle after an exposure"}},
     {{"squared_contrast", "beta", "float64", "K^2 of still scatterers"}}};

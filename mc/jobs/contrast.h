@@ -8,28 +8,34 @@
 
 namespace flatspeckle::mc {
 
-/// Speckle that is exposed for a time T while scatterers move (laser speckle contrast imaging):
+/// Recording of speckle with an exposure time T while the scatterers move (laser speckle contrast
+/// imaging). If g1(tau) is the field correlation after a delay tau, the squared contrast is
 ///   K^2(T) = (2 beta / T) int_0^T |g1(tau)|^2 (1 - tau / T) dtau.
 struct Exposure {
-  std::vector<double> times;  ///< T, in units of the delays
-  double beta = 1;            ///< K^2 of still scatterers: speckles per pixel, polarizations
+  std::vector<double> times;  ///< exposure times T, in the unit of the delays
+  /// K^2 if the scatterers do not move. It is below 1 if a pixel contains several speckles or
+  /// polarizations.
+  double beta = 1;
 };
 
-/// Throws InputError where delays do not reach the times, or lie too far apart for them.
+/// Throws InputError if an exposure time exceeds the longest delay, or if fewer than four delays
+/// are shorter than an exposure time.
 void check_exposure(const Exposure& exposure, const std::vector<double>& delays);
 
-/// K^2, [time][channel].
+/// Returns estimates of K^2, [exposure time][channel].
 Estimate squared_contrast(const CovarianceRequest& request, const PathJob& job,
                           const GroupedSums& sums, const std::vector<double>& delays,
                           const Exposure& exposure);
 
-/// The same integral of any curve: squares at delays, of which 0 is known to have 1. Their
-/// logarithm is interpolated by cubic polynomials of the delay's root: exact where they decay as
-/// exp(-t), exp(-sqrt(t)) or their product.
+/// Returns K^2 (see Exposure) for the exposure time `time` and beta = 1. squares: |g1|^2 at the
+/// delays, normalised to 1 at delay 0. The logarithm of |g1|^2 is interpolated by cubic polynomials
+/// in the square root of the delay t. This is exact if |g1|^2 decays as exp(-t), exp(-sqrt(t)) or
+/// their product.
 double exposed(const std::vector<double>& delays, const std::vector<double>& squares, double time);
 
-/// Delays from which K^2 of these times follows to 3e-4, of decays of these kinds, Gaussian ones
-/// and those of slabs.
+/// Returns delays at which |g1|^2 must be given so that exposed() computes K^2 at these exposure
+/// times with an error of 3e-4. This error holds for the decays for which exposed() is exact, for
+/// Gaussian decays and for the decays of slabs.
 std::vector<double> exposure_delays(const std::vector<double>& times);
 
 extern const DatasetTable contrast_table;

@@ -55,7 +55,8 @@ std::vector<Invariant> power_balance(const FluxJob& job, const GroupedSums& sums
 
 namespace {
 
-/// Over the rays of a light that meet a medium that varies.
+/// Returns the mean transmittance of a varying medium over all rays of an illumination that enter
+/// the medium.
 double mean_transmittance(const Scene& scene, double light) {
   const Vec2 w = direction(light);
   const LightAperture aperture(scene.domain, w);
@@ -77,7 +78,8 @@ double direct_transmittance(const Scene& scene, double light) {
   if (scene.profile) return mean_transmittance(scene, light);
   if (domain.kind == Domain::Kind::slab)
     return std::exp(-scene.medium.mu_t * domain.depth / cosine);
-  // Seen along the light, chords rise from 0 to the longest, stay, and fall again.
+  // Across the beam, the length of the chords rises linearly from 0 to its maximum, stays constant,
+  // and falls to 0 again.
   const double face = domain.width * cosine, side = domain.depth * sine;
   const double longest = scene.medium.mu_t * domain.area() / std::max(face, side);
   const double rising = longest > 0 ? -std::expm1(-longest) / longest : 1;
@@ -102,15 +104,16 @@ const DatasetTable flux_table{
      {"direct_transmittance", Data::estimate, "light_angle", "1",
       "share of the light that meets no scatterer"},
      {"invariants/power", Data::invariant, "light_angle", "1",
-      "how far all shares and the direct transmittance are from adding up to 1"},
+      "deviation from 1 of the sum of all shares and the direct transmittance"},
      {"exit_angle", Data::scale, "", "rad",
-      "middle of the bin of exit directions, from +z; in space of polar angles"},
+      "centre of the bin of exit angles, measured from +z; in space a polar angle"},
      {"exit_radiance", Data::estimate, "light_angle exit_angle", "1/rad",
       "share of the light scattered out per radian of exit direction"}}};
 
 namespace {
 
-/// Of bins over (-pi, pi), in space over (0, pi).
+/// Returns the centres of equal bins of the exit angle, from -pi to pi in 2D and from 0 to pi in
+/// 3D.
 std::vector<double> middles(std::size_t bins, int dimension) {
   std::vector<double> angles;
   for (std::size_t bin = 0; bin < bins; ++bin) {

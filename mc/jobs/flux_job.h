@@ -15,8 +15,8 @@
 
 namespace flatspeckle::mc {
 
-/// The part of a domain's outline that a plane wave along `light` enters through: a face and, of a
-/// box, a side.
+/// The part of a domain's outline through which a plane wave along `light` enters: a face and, for
+/// a box, a side.
 class LightAperture {
  public:
   LightAperture(const Domain& domain, Vec2 light)
@@ -26,11 +26,13 @@ class LightAperture {
         face_(is_slab_ ? std::abs(light.z) : domain.width * std::abs(light.z)),
         side_(is_slab_ ? 0 : domain.depth * std::abs(light.x)) {}
 
-  // Widths across the light; of a slab per unit length.
+  // Projected widths of the face and the side, perpendicular to the light; for a slab, per unit
+  // length of the face.
   double face() const { return face_; }
   double side() const { return side_; }
 
-  /// The point at a share of the way across; of a slab one stands for all.
+  /// Returns the entry point at a fraction `share` of the projected width of face and side, in this
+  /// order. In a slab one point represents all.
   Vec2 at(double share) const {
     const double z = light_.z > 0 ? 0 : domain_.depth;
     if (is_slab_) return {0, z};
@@ -46,38 +48,42 @@ class LightAperture {
   double face_, side_;
 };
 
-/// The sums of one light in a FluxJob: these shares, then the bins of the exit angle.
+/// Positions of the power shares in the sums of one illumination in a FluxJob. The bins of the exit
+/// angle follow them.
 enum FluxShare : std::size_t { reflected, transmitted, through_sides, absorbed, flux_shares };
 
-/// The classical smooth Monte Carlo: intensity without phases. Shares are of the power of a light
-/// that meets the medium.
+/// Job that computes where the power of each illumination goes, without phases. Shares are
+/// fractions of the power that is incident on the medium.
 struct FluxJob {
-  BatchJob batches;  ///< samples: light paths of each light
+  BatchJob batches;  ///< a sample is one light path of each illumination
   std::size_t lights = 0, angle_bins = 0;
   std::string plan;
-  double angles = 2 * std::numbers::pi;  ///< that the bins cover
+  double angles = 2 * std::numbers::pi;  ///< range of exit angles that the bins cover, in radians
 };
 
-/// Scattered light per light: its shares that leave through the face z = 0, the face z = depth and
-/// the sides of a box, and what is absorbed. With the direct transmittance they add up to 1.
+/// Fractions of each illumination that are scattered out through the face z = 0, the face z = depth
+/// and the sides of a box, or absorbed. With direct_transmittance() these shares add up to 1.
 struct FluxEstimates {
   Estimate reflectance, transmittance, side_loss, absorptance;
-  Estimate exit_radiance;  ///< [light][angle bin]: share per radian of exit angle, in space polar
+  /// Share per radian of the exit angle (in 3D: of the polar angle), [light][angle bin]
+  Estimate exit_radiance;
 };
 FluxEstimates flux_estimates(const FluxJob& job, const GroupedSums& sums);
 
-/// How far the shares of each light, with what is not scattered (direct), are from adding up to 1.
-/// None of them follows from the others, so that a wrong one shows. Limits are the errors of
-/// solutions, and Student's quantile of samples (outlier_errors).
+/// Returns, for each illumination, the deviation from 1 of the sum of its shares and its direct
+/// transmittance (`direct`). The shares are estimated independently, so an error in one of them
+/// changes the sum. The limit of the deviation is the sum of the errors of the shares for a
+/// deterministic solution, and outlier_errors() standard errors for samples.
 std::vector<Invariant> power_balance(const FluxJob& job, const GroupedSums& sums,
                                      const std::vector<double>& direct);
 
 extern const DatasetTable flux_table;
-/// With the axes of lights and exit directions.
+/// Writes the estimates and their axes, the illuminations and the exit angles.
 void write_flux(ResultFile& file, const Scene& scene, const FluxEstimates& flux);
 
-/// Share of a light that crosses the medium unscattered and not absorbed (ballistic), in closed
-/// form.
+/// Returns the fraction of an illumination that crosses the medium neither scattered nor absorbed
+/// (ballistic light). This fraction has a closed form unless the medium varies. light: angle of the
+/// illumination.
 double direct_transmittance(const Scene& scene, double light);
 std::vector<double> direct_transmittances(const Scene& scene);
 

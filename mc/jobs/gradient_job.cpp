@@ -15,7 +15,8 @@ namespace {
 
 using Values = std::vector<Complex>;
 
-/// [parameter][entry] with the optical depth last.
+/// Returns an estimator of the derivatives, [parameter][entry]. The last parameter is the optical
+/// depth.
 Estimator gradient_of(const PathJob& job, double depth) {
   return
       [all = job.all, entries = job.entries, depth](double samples, std::span<const Complex> sums) {
@@ -26,7 +27,7 @@ Estimator gradient_of(const PathJob& job, double depth) {
       };
 }
 
-/// What f makes of the estimates of each parameter, one after the other.
+/// Applies f to the estimates of each parameter and concatenates the results.
 Estimate each(const Estimate& all, std::size_t parameters,
               const std::function<Estimate(const Estimate&)>& f) {
   const std::size_t size = all.value.size() / parameters;
@@ -38,24 +39,24 @@ Estimate each(const Estimate& all, std::size_t parameters,
 CorrelationGradient memory_effect_gradient(const CovarianceRequest& request,
                                            const GroupedSums& sums, const GradientJob& job) {
   const std::size_t parameters = job.parameters.size(), entries = request.entries.size();
-  const Estimate slopes = jackknife(sums, [&](double samples, std::span<const Complex> total) {
+  const Estimate derivatives = jackknife(sums, [&](double samples, std::span<const Complex> total) {
     const Values covariance = job.field.covariance(samples, total);
     const Values gradient = job.gradient(samples, total);
     Values all;
     for (std::size_t p = 0; p < parameters; ++p) {
       const auto along = std::span(gradient).subspan(p * entries, entries);
-      const Values slope = directional_slope(
+      const Values derivative = directional_derivative(
           [&](const Values& moved) { return correlation_and_ranges(request, moved); }, covariance,
           along);
-      all.insert(all.end(), slope.begin(), slope.end());
+      all.insert(all.end(), derivative.begin(), derivative.end());
     }
     return all;
   });
   CorrelationGradient gradient;
   const std::size_t tilts = request.tilts.size();
-  for (std::size_t first = 0; first < slopes.value.size(); first += tilts + 1) {
-    append(gradient.correlation, part(slopes, first, tilts));
-    append(gradient.range, part(slopes, first + tilts, 1));
+  for (std::size_t first = 0; first < derivatives.value.size(); first += tilts + 1) {
+    append(gradient.correlation, part(derivatives, first, tilts));
+    append(gradient.range, part(derivatives, first + tilts, 1));
   }
   return gradient;
 }
@@ -89,12 +90,13 @@ GradientJob gradient_job(const PathJob& paths, const std::vector<BulkParameter>&
 void check_gradient(const Scene& scene) {
   if (scene.medium.mu_s == 0)
     throw InputError("gradient: a medium that does not scatter has no derivatives");
-  if (scene.domain.kind == Domain::Kind::slab && has_near_ends(scene.request))
-    throw InputError("gradient: a slab needs plane waves and far views");
+  if (scene.domain.kind == Domain::Kind::slab && has_near_endpoints(scene.request))
+    throw InputError("gradient: domain = slab requires plane waves and far views");
   constexpr std::size_t most = 20000;
   if (scene.request.entries.size() > most)
-    throw InputError("gradient: " + std::to_string(scene.request.entries.size()) +
-                     " entries of the covariance are too many, at most " + std::to_string(most));
+    throw InputError("gradient: the covariance has " +
+                     std::to_string(scene.request.entries.size()) +
+                     " entries, but must have at most " + std::to_string(most));
 }
 
 GradientEstimates gradient_estimates(const Scene& scene, const GroupedSums& sums,
@@ -102,7 +104,7 @@ GradientEstimates gradient_estimates(const Scene& scene, const GroupedSums& sums
   GradientEstimates gradient{jackknife(sums, job.gradient), {}};
   if (scene.request.kind != CovarianceRequest::Kind::memory_effect) return gradient;
   gradient.effect = memory_effect_gradient(scene.request, sums, job);
-  for (Complex& slope : gradient.effect.range.value) slope *= scene.domain.depth;
+  for (Complex& derivative : gradient.effect.range.value) derivative *= scene.domain.depth;
   for (double& error : gradient.effect.range.error) error *= scene.domain.depth;
   return gradient;
 }
@@ -110,10 +112,10 @@ GradientEstimates gradient_estimates(const Scene& scene, const GroupedSums& sums
 const DatasetTable gradient_table{
     .name = "gradient",
     .rows = {{"parameter", Data::numbers, "", "1",
-              "what derivatives are by: see the attribute names"}},
+              "index of a parameter of the derivatives; the attribute names contains its name"}},
     .attributes = {
         {"parameter", "names", "texts",
-         "mu_t, g, albedo, radius, index, optical_depth, as far as the scene has them"}}};
+         "the parameters of the scene: some of mu_t, g, albedo, radius, index, optical_depth"}}};
 
 void write_gradient(ResultFile& file, const CovarianceRequest& request, const GradientJob& job,
                     const GradientEstimates& gradient) {

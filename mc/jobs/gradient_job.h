@@ -15,10 +15,11 @@
 
 namespace flatspeckle::mc {
 
-/// Derivative of what f makes of entries, along that of the entries, by a central difference.
+/// Returns the derivative of f(entries + t * along) with respect to t at t = 0, by a central
+/// difference.
 template <typename F>
-std::vector<Complex> directional_slope(const F& f, std::span<const Complex> entries,
-                                       std::span<const Complex> along) {
+std::vector<Complex> directional_derivative(const F& f, std::span<const Complex> entries,
+                                            std::span<const Complex> along) {
   const auto largest = [](std::span<const Complex> values) {
     double most = 0;
     for (const Complex value : values) most = std::max(most, std::abs(value));
@@ -31,48 +32,53 @@ std::vector<Complex> directional_slope(const F& f, std::span<const Complex> entr
     for (std::size_t e = 0; e < values.size(); ++e) values[e] += by * along[e];
     return f(values);
   };
-  std::vector<Complex> slope = moved(step);
+  std::vector<Complex> derivative = moved(step);
   const std::vector<Complex> below = moved(-step);
-  for (std::size_t i = 0; i < slope.size(); ++i) slope[i] = (slope[i] - below[i]) / (2 * step);
-  return slope;
+  for (std::size_t i = 0; i < derivative.size(); ++i)
+    derivative[i] = (derivative[i] - below[i]) / (2 * step);
+  return derivative;
 }
 
-/// Derivatives of a scene's covariance from the paths that estimate it: the integrand of C14 is
-/// differentiated, the density that the paths are drawn from is not. The parameters are mu_t, g and
-/// albedo where they describe the scatterers as a bulk (all for hg, no g for points), of cylinders
-/// mu_t, radius and index, and the optical depth, mu_t times the depth, at fixed depth.
+/// Job for a covariance and its derivatives, from the same paths. Only the integrand of C14 is
+/// differentiated, not the density from which paths are sampled. The parameters are mu_t, g and
+/// albedo for scatterer = hg, mu_t and albedo for points and other bulk scatterers, mu_t, radius
+/// and index for cylinders, and in all cases the optical depth, mu_t times the depth, at fixed
+/// depth.
 struct GradientJob : PathJob {
   std::vector<std::string> parameters;
-  Estimator gradient;  ///< [parameter][entry]
+  Estimator gradient;  ///< estimator of the derivatives, [parameter][entry]
 };
 
-/// What a scene's paths are differentiated by; the optical depth follows from mu_t. Of cylinders
-/// with a structure factor, which their size would change, mu_t alone.
+/// Returns the parameters of a scene's derivatives, without the optical depth, which follows from
+/// mu_t. Cylinders with a structure factor have only mu_t, because a change of their size would
+/// change the structure factor.
 std::vector<BulkParameter> bulk_parameters(const Scene& scene);
 
-/// Of a job whose quantities after the covariance are derivatives by the parameters, mu_t first.
+/// Adds the estimator of the derivatives to a job. The quantities of the job are the covariance,
+/// then its derivatives with respect to `parameters`; the first parameter must be mu_t.
 GradientJob gradient_job(const PathJob& job, const std::vector<BulkParameter>& parameters,
                          const Scene& scene);
 
-/// Throws InputError for a scene that does not scatter or a request of too many entries.
+/// Throws InputError if the scene does not scatter or its request has too many entries.
 void check_gradient(const Scene& scene);
 
-/// Derivatives of what memory_effect() gives: of C_E, [parameter][tilt], and of the range,
-/// [parameter]: 0 where it is censored.
+/// Derivatives of the results of memory_effect(): of the field correlation C_E, [parameter][tilt],
+/// and of the range (half-width), [parameter]. The derivatives of a censored range are 0.
 struct CorrelationGradient {
   Estimate correlation, range;
 };
 
-/// Derivatives of all that a gradient's file has, [parameter] first; range of q L.
+/// All derivatives that a result file contains, with the parameter as first index. effect.range
+/// contains derivatives of q L, where L is the depth and q the half-width.
 struct GradientEstimates {
   Estimate entries;
-  CorrelationGradient effect;  ///< of a memory_effect request
+  CorrelationGradient effect;  ///< for memory_effect requests
 };
 GradientEstimates gradient_estimates(const Scene& scene, const GroupedSums& sums,
                                      const GradientJob& job);
 
 extern const DatasetTable gradient_table;
-/// The request's axes must have been written.
+/// Writes the derivatives. The axes of the request must have been written before.
 void write_gradient(ResultFile& file, const CovarianceRequest& request, const GradientJob& job,
                     const GradientEstimates& gradient);
 

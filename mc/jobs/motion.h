@@ -4,20 +4,22 @@
 
 namespace flatspeckle::mc {
 
-/// How scatterers move in a time that the delays count: they diffuse, k^2 D per unit of delay, and
-/// flow along. Materials of a medium that varies may have their own share of both.
+/// Motion of the scatterers: diffusion with the diffusion constant D, and flow. Rates are per unit
+/// of delay. In a varying medium each material may multiply the diffusion and the velocity by its
+/// own factors (MaterialMotion).
 struct Motion {
-  double diffusion = 1;
-  Vec2 velocity{};   ///< length per unit of delay
-  double shear = 0;  ///< of the velocity along x, per depth
+  double diffusion = 1;  ///< k^2 D per unit of delay
+  Vec2 velocity{};       ///< length per unit of delay
+  double shear = 0;      ///< shear rate: growth of velocity_x per unit of depth
 
-  /// Diffusion alone, 1 everywhere: delays are k^2 D tau.
+  /// Whether the scatterers only diffuse, with k^2 D = 1 everywhere. A delay is then the value k^2
+  /// D tau after a time tau.
   bool only_diffuses(const Scene& scene) const {
     return diffusion == 1 && velocity == Vec2{} && shear == 0 && !scene.profile;
   }
 };
 
-/// That of a scene at a place.
+/// Motion of a scene's scatterers at a given position.
 class LocalMotion {
  public:
   LocalMotion(const Scene& scene, const Motion& motion)

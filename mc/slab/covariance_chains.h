@@ -13,25 +13,27 @@
 
 namespace flatspeckle::mc {
 
-/// A pair of lights and a pair of views whose paths contribute to an entry.
+/// A pair of illuminations and a pair of views. Pairs of paths that connect the first illumination
+/// to the first view, and the second to the second, contribute to an entry of the request.
 template <typename Direction>
 struct ChainOf {
   PairOf<Direction> lights, views;
   std::size_t entry;
 };
 
-/// Returns the ladder chains of all entries and, with `reversed`, their reversed paths (C38). The
-/// wavenumber of the second field is larger by the fraction `shift`; second views are turned so
-/// that transverse momenta match, which must leave them above the horizon.
+/// Returns the ladder chains of all entries and, if `reversed`, also those with the second path
+/// reversed (C38). The wavenumber of the second field is larger by the fraction `shift`. The view
+/// of the second field is turned so that the transverse momenta of lights and views match; the sine
+/// of its new direction must be less than 1.
 template <typename Geometry>
 auto chains(const RequestOf<typename Geometry::Direction>& request, bool reversed, double shift) {
-  using Ends = PairOf<typename Geometry::Direction>;
+  using PairOfEndpoints = PairOf<typename Geometry::Direction>;
   std::vector<ChainOf<typename Geometry::Direction>> all;
   for (std::size_t e = 0; e < request.entries.size(); ++e) {
     const Channel a = request.channels[request.entries[e].a],
                   b = request.channels[request.entries[e].b];
-    const Ends lights{request.lights[a.light], request.lights[b.light]};
-    Ends views{request.views[a.view], request.views[b.view]};
+    const PairOfEndpoints lights{request.lights[a.light], request.lights[b.light]};
+    PairOfEndpoints views{request.views[a.view], request.views[b.view]};
     if (shift != 0) views.second = Geometry::matched(lights, views, shift);
     all.push_back({lights, views, e});
     if (reversed)
@@ -42,7 +44,8 @@ auto chains(const RequestOf<typename Geometry::Direction>& request, bool reverse
   return all;
 }
 
-/// Chains of one transverse momentum on one angular grid; links index the distinct pairs.
+/// Chains with the same transverse momentum and the same angular grid. Each chain is a Link, which
+/// refers to its pair of illuminations and its pair of views by index.
 template <typename Geometry>
 struct ChainGroup {
   using Pairs = std::vector<PairOf<typename Geometry::Direction>>;
@@ -66,6 +69,7 @@ Eigen::Index listed(std::vector<Pair>& list, const Pair& pair) {
   return number;
 }
 
+/// Groups chains by transverse momentum and angular grid.
 template <typename Geometry, typename Number>
 std::vector<ChainGroup<Geometry>> grouped(
     const SlabOf<Geometry, Number>& slab,

@@ -13,11 +13,12 @@ namespace flatspeckle::mc {
 const DatasetTable numerical_table{
     .name = "numerical",
     .rows = {},
-    .attributes = {{"", "errors", "text", "what the errors are, where they are not statistical"}}};
+    .attributes = {{"", "errors", "text", "meaning of the errors, if they are not statistical"}}};
 
 double Changes::error() const {
-  constexpr double slowest = 3;  // all further changes, of changes that hardly decay
-  constexpr double usual = 0.3;  // the next change
+  // Estimated sum of all further changes, in units of the last change, if the changes hardly decay.
+  constexpr double slowest = 3;
+  constexpr double usual = 0.3;  // ratio of a change to the previous one
   if (!are_enough()) return slowest * last;
   const double left = (1 + slowest) * last < slowest * before ? last / (before - last) : slowest,
                decay = std::isinf(first) ? usual
@@ -53,12 +54,13 @@ std::vector<double> scales(const std::vector<Entry>& entries, std::span<const Co
   return scale;
 }
 
-std::vector<double> scales_with_slopes(const std::vector<Entry>& entries,
-                                       std::span<const Complex> values) {
+std::vector<double> scales_with_derivatives(const std::vector<Entry>& entries,
+                                            std::span<const Complex> values) {
   auto scale = scales(entries, values.first(entries.size()));
   if (values.size() == entries.size()) return scale;
-  const auto slope = scales(entries, values.last(entries.size()));
-  for (std::size_t e = 0; e < entries.size(); ++e) scale.push_back(std::max(scale[e], slope[e]));
+  const auto derivative_scale = scales(entries, values.last(entries.size()));
+  for (std::size_t e = 0; e < entries.size(); ++e)
+    scale.push_back(std::max(scale[e], derivative_scale[e]));
   return scale;
 }
 

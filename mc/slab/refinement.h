@@ -16,72 +16,87 @@
 
 namespace flatspeckle::mc {
 
-/// How far a solution without chance is refined: until it agrees with that of a quarter fewer
-/// ordinates to a relative tolerance.
+/// Settings for the refinement of a deterministic solution. The number of ordinates is increased
+/// until the solution agrees, within a relative tolerance, with the solution on a quarter fewer
+/// ordinates.
 struct Refinement {
   double tolerance = 1e-6;
-  int least_order = 5;  ///< nodes of a panel
-  /// Of both ways; the error tells what is missing. 0: one solution, in space one step.
+  int least_order = 5;  ///< least number of nodes per panel
+  /// Largest number of ordinates, downward and upward together. If refinement ends because this
+  /// number is reached, the error includes the remaining difference. 0: one solution without
+  /// refinement in the plane; one step of refinement in space.
   int most_ordinates = 1500;
 
-  /// Where small tolerances are asked for, fewer nodes have never been enough.
+  /// Returns the number of nodes per panel of the first solution. For small tolerances fewer than 7
+  /// have never been sufficient.
   int first_order() const { return std::max(least_order, tolerance > 1e-5 ? 5 : 7); }
   static int next_order(int order) { return (4 * order + 2) / 3; }
 };
 
-/// Holds what the last refinements have changed a value by, infinite where there were not so many.
+/// Changes of a value by the last three refinements, the most recent in `last`; infinite for
+/// refinements that have not taken place.
 struct Changes {
   double last = std::numeric_limits<double>::infinity(), before = last, first = last;
 
   void add(double change) { *this = {change, last, before}; }
-  /// One small change may be chance: two at the least are needed.
+  /// Whether there were at least two changes, because a single small one may be accidental.
   bool are_enough() const { return std::isfinite(before); }
-  /// The error that is left: all further changes of a geometric series, where they decay slowly,
-  /// and as much as the changes before the last promise of it.
+  /// Returns an estimate of the remaining error: the last change or, if changes decay slowly, the
+  /// sum of all further changes as a geometric series. It is at least the value that the two
+  /// earlier changes predict for the last change.
   double error() const;
 };
 
-/// Values and their errors, each as a number that is added to its value.
+/// Values and their errors. An error is a complex number of the same unit as its value
+/// (error_of()).
 struct Refined {
   std::vector<Complex> value, error;
-  int ordinates = 0;  ///< the most that any part has needed
+  int ordinates = 0;  ///< largest number of ordinates in any part of the solution
 
   void append(const Refined& other);
 };
 
-/// Turns errors by 120 degrees: those of two values that are divided do not cancel then, in the
-/// modulus and in the phase, also where one of them is turned twice.
+/// Factor that rotates the phase of an error by 120 degrees. If the errors of two values differ in
+/// phase by 120 or 240 degrees, they do not cancel in the modulus or in the phase of the ratio of
+/// the values.
 constexpr Complex turn_of_errors(-0.5, std::numbers::sqrt3 / 2);
 
-/// An error of this size: of an intensity along it, of what is divided by intensities turned.
+/// Returns an error of modulus `size`. For an intensity it has the phase of the value. For other
+/// entries, which are later divided by intensities, its phase is rotated against that of the value
+/// (turn_of_errors).
 Complex error_of(const Entry& entry, Complex value, double size);
 
-/// What the tolerance of each value is relative to, where values are those of one solution.
+/// Function that returns the scale of each value of a solution: the magnitude to which the
+/// tolerance of that value is relative.
 using Scales = std::function<std::vector<double>(std::span<const Complex> values)>;
 
-/// The largest error over its scale; 0 where a scale is 0.
+/// Returns the largest ratio of an error to its scale. Values with a scale of 0 are skipped.
 double worst_error(const Refined& refined, const std::vector<double>& scales);
 
-/// What the tolerance of each entry is relative to: its value, or the root of its two intensities
-/// (or that which there is) where that is more.
+/// Returns the scale of each entry: its modulus or, if that is larger, the geometric mean of the
+/// intensities of its two channels. If only one of the two intensities is among the entries, it is
+/// used instead of the mean.
 std::vector<double> scales(const std::vector<Entry>& entries, std::span<const Complex> values);
 
-/// The same of values per entry that may be followed by derivatives, which are as the entry or the
-/// derivative, whichever is more.
-std::vector<double> scales_with_slopes(const std::vector<Entry>& entries,
-                                       std::span<const Complex> values);
+/// Returns the scales of the entries and, if derivatives follow the values, of the derivatives. The
+/// scale of a derivative is the one that scales() returns for it or for its entry, whichever is
+/// larger.
+std::vector<double> scales_with_derivatives(const std::vector<Entry>& entries,
+                                            std::span<const Complex> values);
 
-/// Values, then derivatives by parameter/unit: those by the parameter.
+/// Converts derivatives by the ratio parameter / unit to derivatives by the parameter. all: values,
+/// followed by as many derivatives.
 Refined by_parameter(Refined all, double unit);
 
-/// A solution as a job of two batches, the values plus and minus their errors: what the
-/// statistics of batches call the standard error of any function of them is its error then.
-/// Solved when the first batch runs. The relative error of the job is the worst of any value, which
-/// is more than the tolerance where that is not reached.
+/// Makes a job of two batches from a deterministic solution. The first batch contains the values
+/// plus their errors, the second the values minus their errors. The batch statistics of any
+/// function of the values then return its numerical error. `solve` is called when the first batch
+/// runs. The relative error of the job is that of worst_error(); it exceeds the tolerance if the
+/// refinement did not reach the tolerance.
 BatchJob two_batches(std::size_t size, const std::function<Refined()>& solve, const Scales& scales);
 
 extern const DatasetTable numerical_table;
-/// Says of a result, or of a group of it, that its errors are such.
+/// Records in a result file, or in one of its groups, that the errors are numerical.
 void write_numerical(ResultFile& file, const std::string& group = "");
 
 }  // namespace flatspeckle::mc

@@ -19,7 +19,7 @@
 #include "mc/slab/adding/slab.h"
 #include "mc/slab/adding/space.h"
 #include "mc/slab/covariance_chains.h"
-#include "mc/slab/finite_ends.h"
+#include "mc/slab/near_endpoints.h"
 
 namespace flatspeckle::mc {
 
@@ -32,7 +32,8 @@ Scene slab_of_layer(Scene scene, const Material& material) {
   return scene;
 }
 
-/// Layers that do not scatter have the law of one that does.
+/// Returns the layers of a scene. A layer that does not scatter is given the scattering law of one
+/// that does.
 template <typename Geometry>
 std::vector<SlabLayerOf<Geometry, double>> layers_of(const Scene& scene, const Layers& layers,
                                                      double delay) {
@@ -52,7 +53,7 @@ std::vector<SlabLayerOf<Geometry, double>> layers_of(const Scene& scene, const L
   return list;
 }
 
-/// Nodes of a panel, and the highest mode of direction.
+/// Resolution of a solution: nodes per panel, and the highest azimuthal mode.
 struct Resolution {
   int order, modes;
 
@@ -60,10 +61,11 @@ struct Resolution {
   Resolution finer_modes() const { return {order, Refinement::next_order(modes)}; }
 };
 
-/// Per link of a group: values, and for Dual<double> then derivatives.
+/// Contribution of each link of a ChainGroup, followed by their derivatives for Dual<double>.
 struct Solution {
   std::vector<Complex> value;
-  int ordinates = 0;  ///< of both ways, times azimuthal functions that are coupled
+  /// Number of unknowns: ordinates, downward and upward, times coupled azimuthal functions.
+  int ordinates = 0;
 };
 
 double largest_change(const std::vector<Complex>& a, const std::vector<Complex>& b,
@@ -74,7 +76,7 @@ double largest_change(const std::vector<Complex>& a, const std::vector<Complex>&
   return largest;
 }
 
-/// Groups of chains, each refined until it is done.
+/// Refines each group of chains until it has converged.
 template <typename Geometry, typename Number>
 class CovarianceRefiner {
  public:
@@ -110,19 +112,22 @@ class CovarianceRefiner {
   struct Part {
     Group group;
     Resolution at;
-    Solution coarse, finer, wider;  ///< at that resolution, with finer order and with more modes
+    /// Solutions with the resolutions `at`, at.finer_order() and at.finer_modes().
+    Solution coarse, finer, wider;
     std::vector<Complex> value;
-    bool done = false, near = false;  ///< near: the last step came close to the tolerance
-    bool moved = false;               ///< to a resolution at which it has not been solved
-    double imbalance = 0;             ///< of what lights scatter on the ordinates, relative
+    /// done: the part has converged. near: the last change was at most 100 times the tolerance.
+    bool done = false, near = false;
+    bool moved = false;    ///< whether no solution at the resolution `at` exists yet
+    double imbalance = 0;  ///< relative error of the power scattered to the ordinates (imbalance())
   };
 
-  /// Paths of two scatterings have a closed form in the plane.
+  /// Whether paths with two scatterings are computed separately. This is possible in the plane, for
+  /// a single layer.
   bool scatters_twice_apart() const {
     return Geometry::has_double_scattering && slab_.layers.size() == 1;
   }
 
-  /// Paths of one scattering, per entry.
+  /// Returns the contribution of paths with one scattering to each entry.
   std::vector<C> scattered_once() const {
     std::vector<C> values;
     for (const auto& [lights, views, entry] :
@@ -148,7 +153,8 @@ class CovarianceRefiner {
     return values;
   }
 
-  /// Solves what is not done, on grids that are made once.
+  /// Calls solve_part for the parts that have not converged. Parts with equal foci share one
+  /// angular grid for each order, the number of nodes per panel.
   template <typename Solve>
   void solve(const Solve& solve_part) {
     std::vector<Part*> open;
@@ -183,9 +189,9 @@ class CovarianceRefiner {
       part.value[i] += part.wider.value[i] - part.coarse.value[i];
   }
 
-  /// By how much the power that ordinates receive of light, or of a view turned round, that is
-  /// scattered once differs from what is scattered, relative; of laws with a sharp peak, which
-  /// ordinates may not resolve.
+  /// Returns the largest relative error of the power that an illumination, or a reversed view,
+  /// scatters to all ordinates together, compared with the exact scattered power. It is evaluated
+  /// only for laws with a sharp peak, which the ordinates may not resolve.
   double imbalance(const Group& group, int order) const {
     double worst = 0;
     for (const auto& ordinates : grids_.at({group.foci, order})->layers()) {
@@ -204,7 +210,8 @@ class CovarianceRefiner {
     return worst;
   }
 
-  /// Of two scatterings and more, or where those of two are apart, of three.
+  /// Returns the contribution of paths with two or more scatterings, or with three or more if paths
+  /// with two scatterings are computed separately.
   Solution solved(const Group& group, Resolution at) const {
     const Discrete& discrete = *grids_.at({group.foci, at.order});
     const DirectionModesOf<Geometry, Number> modes(slab_, discrete, at.modes, group.momentum,
@@ -239,11 +246,12 @@ class CovarianceRefiner {
             slab_.departure};
   }
 
-  /// Once how large the entries are is known.
+  /// Adds the contribution of paths with two scatterings. A first solution must exist, because the
+  /// tolerance is relative to the magnitude of the entries.
   void add_double_scattering() {
     if constexpr (Geometry::has_double_scattering) {
       constexpr double part_of_tolerance = 0.01;
-      const auto scale = scales_with_slopes(request_.entries, sum(&Part::value));
+      const auto scale = scales_with_derivatives(request_.entries, sum(&Part::value));
       const auto& layer = slab_.layers.front();
       const auto scattered_twice = layer.albedo * layer.albedo;
       const double tolerance =
@@ -261,10 +269,11 @@ class CovarianceRefiner {
     }
   }
 
-  /// Those whose last two resolutions agree, or that would become too large, are done.
+  /// Marks a part as converged if its solutions at the last two resolutions agree, or if the next
+  /// solution would be too large. Chooses the next resolution of the other parts.
   void settle() {
     const double tolerance = refinement_.tolerance / 2;
-    const auto of_entries = scales_with_slopes(request_.entries, sum(&Part::value));
+    const auto of_entries = scales_with_derivatives(request_.entries, sum(&Part::value));
     for (Part& part : parts_) {
       if (part.done) continue;
       std::vector<double> scale;
@@ -274,7 +283,7 @@ class CovarianceRefiner {
                    by_modes = largest_change(part.wider.value, part.coarse.value, scale),
                    worst = std::max(by_order, by_modes);
       const int size = std::max(part.finer.ordinates, part.wider.ordinates);
-      // One small difference may be chance: the one before must have been small too.
+      // One small difference may be accidental: the previous one must have been small too.
       part.done = (worst <= tolerance && part.near) || 4 * size > 3 * refinement_.most_ordinates;
       part.near = worst <= 100 * tolerance;
       if (!part.done)
@@ -290,7 +299,7 @@ class CovarianceRefiner {
     if (!part.moved) part.coarse = refine_order ? part.finer : part.wider;
   }
 
-  /// To entries what their links give.
+  /// Adds the contribution of each link of a group to the entry that the link refers to.
   void add(std::vector<Complex>& entries, const Group& group,
            const std::vector<Complex>& values) const {
     for (std::size_t i = 0; i < values.size(); ++i) entries[entry_of(group, i)] += values[i];
@@ -311,7 +320,8 @@ class CovarianceRefiner {
     return request_.entries[i % request_.entries.size()];
   }
 
-  /// Intensities of one wavelength are real, which solutions are but for their errors.
+  /// Returns the values of the entries. Intensities at one wavelength are real; their imaginary
+  /// parts, which are within the errors, are removed.
   std::vector<Complex> values() const {
     auto all = sum(&Part::value);
     for (std::size_t i = 0; i < all.size(); ++i)
@@ -319,8 +329,9 @@ class CovarianceRefiner {
     return all;
   }
 
-  /// Returns the last changes, and of sharp peaks also what their imbalance makes of each entry. A
-  /// small change may be chance: no error is smaller than half the tolerance.
+  /// Returns the errors of the entries: the last change and, for phase functions with a sharp peak,
+  /// the effect of imbalance(). No error is smaller than half the tolerance, because a small change
+  /// may be accidental.
   std::vector<Complex> errors() const {
     const auto fine = sum(&Part::value);
     auto coarse = few_;
@@ -329,7 +340,7 @@ class CovarianceRefiner {
       add(coarse, part.group, part.coarse.value);
       lost = std::max(lost, part.imbalance);
     }
-    const auto scale = scales_with_slopes(request_.entries, fine);
+    const auto scale = scales_with_derivatives(request_.entries, fine);
     std::vector<Complex> all;
     for (std::size_t i = 0; i < fine.size(); ++i) {
       const double size = std::max(std::abs(fine[i] - coarse[i]) + lost * scale[i],
@@ -344,7 +355,9 @@ class CovarianceRefiner {
   const Slab& slab_;
   const Request& request_;
   Refinement refinement_;
-  std::vector<Complex> few_;  ///< paths of one scattering, and those of two that are apart
+  /// Contribution of paths with one scattering, and of those with two if these are computed
+  /// separately.
+  std::vector<Complex> few_;
   std::vector<Part> parts_;
   std::map<GridKey, std::unique_ptr<Discrete>> grids_;
   int ordinates_ = 0;
@@ -366,16 +379,16 @@ Refined changing_covariance(const Scene& scene, bool reversed, const Refinement&
                             BulkParameter parameter) {
   const auto slab = slab_of<Geometry>(scene);
   const auto& layer = slab.layers.front();
-  const auto slope = bulk_slope<Geometry>(scene, layer.law, parameter);
+  const auto derivative = bulk_derivative<Geometry>(scene, layer.law, parameter);
   const SlabOf<Geometry, Dual<double>> changing{
       slab.k,
       slab.mu_t,
       slab.depth,
-      {{layer.mu_t, layer.depth, {layer.albedo, slope.albedo}, slope.law}},
-      {{1, -slope.log_mu_t}}};
+      {{layer.mu_t, layer.depth, {layer.albedo, derivative.albedo}, derivative.law}},
+      {{1, -derivative.log_mu_t}}};
   return by_parameter(
       slab_covariance(changing, directions_of<Geometry>(scene.request), reversed, refinement),
-      slope.unit);
+      derivative.unit);
 }
 
 }  // namespace
@@ -408,8 +421,8 @@ Refined slab_covariance(const Scene& scene, bool reversed, const Refinement& ref
   const std::size_t entries = scene.request.entries.size();
   if (scene.medium.mu_s == 0)
     return {std::vector<Complex>(entries), std::vector<Complex>(entries), 0};
-  if (has_near_ends(scene.request))
-    return finite_ends_covariance(scene, refinement, [&](const Scene& of_plane_waves) {
+  if (has_near_endpoints(scene.request))
+    return near_endpoint_covariance(scene, refinement, [&](const Scene& of_plane_waves) {
       return slab_covariance(of_plane_waves, reversed, refinement, change);
     });
   const auto covariance = scene.medium.dimension == 3 ? changed_covariance<SpaceGeometry>
@@ -417,11 +430,11 @@ Refined slab_covariance(const Scene& scene, bool reversed, const Refinement& ref
   return covariance(scene, reversed, refinement, change);
 }
 
-Refined slab_slopes(const Scene& scene, bool reversed, const Refinement& refinement,
-                    BulkParameter parameter) {
-  const auto slopes = scene.medium.dimension == 3 ? changing_covariance<SpaceGeometry>
-                                                  : changing_covariance<PlaneGeometry>;
-  return slopes(scene, reversed, refinement, parameter);
+Refined slab_derivatives(const Scene& scene, bool reversed, const Refinement& refinement,
+                         BulkParameter parameter) {
+  const auto derivatives = scene.medium.dimension == 3 ? changing_covariance<SpaceGeometry>
+                                                       : changing_covariance<PlaneGeometry>;
+  return derivatives(scene, reversed, refinement, parameter);
 }
 
 template Refined slab_covariance(const SlabOf<PlaneGeometry, double>&, const RequestOf<double>&,

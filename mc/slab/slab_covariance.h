@@ -8,29 +8,32 @@
 
 namespace flatspeckle::mc {
 
-/// A scene's slab; of Layers, of which one at the least scatters, a layer each. delay: of
-/// scatterers that diffuse as the scene states, of which each layer has its share.
+/// Makes the slab of a scene. If the scene has Layers, each becomes a layer of the slab; at least
+/// one must scatter. delay: FieldChange::delay, which is multiplied by the diffusion factor of each
+/// layer.
 template <typename Geometry>
 SlabOf<Geometry, double> slab_of(const Scene& scene, double delay = 0);
 
-/// The covariance of C14 and C18 on a slab in the plane or, as the scene says, of scalar waves in
-/// space (C41), per entry of the request, as linear transport of pairs at one transverse frequency
-/// (conventions, C35 to C40): what covariance_job() estimates, single scattering in closed form.
-/// Layers are of plane waves in far views. reversed: with reversed paths (C38). The tolerance is
-/// relative to the entry, or to the root of its two intensities (or that which the request has)
-/// where that is more. change: of the second field of each entry.
+/// Returns the covariance of each entry of the request for a slab in the plane (C14, C18) or, if
+/// the scene's dimension is 3, for scalar waves in space (C41). covariance_job() estimates the same
+/// quantity by Monte Carlo. This function solves the linear transport of field pairs at one
+/// transverse frequency (C35 to C40), with single scattering in closed form. Layers require plane
+/// waves and far views. reversed: whether to include reversed paths (C38). change: change of the
+/// second field of each entry. The tolerance is relative to scales().
 Refined slab_covariance(const Scene& scene, bool reversed, const Refinement& refinement,
                         const FieldChange& change = {});
 
-/// Values per entry, then derivatives by a parameter: exact, of the doubling itself. The tolerance
-/// of a derivative is relative to the entry where that is more than what a relative change of the
-/// parameter makes. The slab scatters, and has no layers.
-Refined slab_slopes(const Scene& scene, bool reversed, const Refinement& refinement,
-                    BulkParameter parameter);
+/// Returns the values of the entries, then their derivatives by a parameter, computed by exact
+/// differentiation of the doubling method. Let d be a derivative times unit_of() of the parameter.
+/// The tolerance of d is relative to d or to the entry, whichever is larger. The slab must scatter
+/// and have no layers.
+Refined slab_derivatives(const Scene& scene, bool reversed, const Refinement& refinement,
+                         BulkParameter parameter);
 
-/// The same of a slab and directions, per length or area. Ordinates, and in space modes of the
-/// azimuth, are refined until each alone changes nothing. Number: double, Complex for two
-/// frequencies, or Dual<double>, whose derivatives follow the values.
+/// Returns the covariance per illuminated length or area for a request given by directions.
+/// Ordinates and, in space, azimuthal modes are refined until refining either of them changes no
+/// entry by more than the tolerance. Number: double; Complex for fields at two frequencies; or
+/// Dual<double>, which appends the derivatives to the values.
 template <typename Geometry, typename Number>
 Refined slab_covariance(const SlabOf<Geometry, Number>& slab,
                         const RequestOf<typename Geometry::Direction>& request, bool reversed,

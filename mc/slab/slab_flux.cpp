@@ -22,15 +22,16 @@ namespace {
 
 using std::numbers::pi;
 
-/// Whether a light goes into directions of an interval; of one along its end, a half does.
+/// Returns 1 if a direction lies in an interval, 0 if not, and one half if it is an end of the
+/// interval.
 double share_between(double light, double from, double to) {
   constexpr double rounding = 1e-12;
   if (std::abs(light - from) < rounding || std::abs(light - to) < rounding) return 0.5;
   return from < light && light < to ? 1 : 0;
 }
 
-/// Of a slab in the plane: power that leaves through a face per ordinate, over its weight and the
-/// power that enters, of directions with sin > 0, and of their mirror images.
+/// Light that leaves a slab in the plane through each face, at the ordinates. `right` contains the
+/// directions with positive sine, `left` their mirror images about z.
 class PlaneExits {
  public:
   using Discrete = DiscreteSlabOf<PlaneGeometry, double>;
@@ -39,16 +40,18 @@ class PlaneExits {
   PlaneExits(const Discrete& discrete, double light)
       : grid_(discrete.grid()), light_(light), reflected_(grid_.size()), transmitted_(reflected_) {}
 
-  /// Along the light itself.
+  /// Sets the share of the power that leaves in the beam, in the direction of the illumination.
   void add_straight(double share) { straight_ = share; }
-  /// What leaves in a function of direction: 0 even, 1 odd.
+  /// Adds the leaving light that is an even (function 0) or an odd (function 1) function of the
+  /// angle.
   void add(int function, const LayerResponseOf<double>& leaving) {
     reflected_.add(function, leaving.up);
     transmitted_.add(function, leaving.down);
   }
   double reflected() const { return within(-pi, -pi / 2) + within(pi / 2, pi); }
   double transmitted() const { return within(-pi / 2, pi / 2); }
-  /// Exit angles, -pi <= from < to <= pi, quadrant by quadrant.
+  /// Returns the share of the incident power that leaves between two exit angles, -pi <= from < to
+  /// <= pi. It is the sum over the four quadrants.
   double within(double from, double to) const {
     return quadrant(transmitted_.right, from, to) + quadrant(transmitted_.left, -to, -from) +
            quadrant(reflected_.right, pi - to, pi - from) +
@@ -83,13 +86,14 @@ class PlaneExits {
   Face reflected_, transmitted_;
 };
 
-/// Eigen's own makes gcc 12 warn of AVX-512's header.
+/// Returns the scalar product. Eigen's own causes gcc 12 to print warnings about the AVX-512
+/// header.
 double sum_of_products(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-/// Of a slab in space: power that leaves through a face over what enters, all, and per radian of
-/// the polar angle at the ordinates.
+/// Light that leaves a slab in space. The vectors power_ and per_radian_ convert the unknowns at
+/// the ordinates to shares of the incident power, in total and per radian of the polar angle.
 class SpaceExits {
  public:
   using Discrete = DiscreteSlabOf<SpaceGeometry, double>;
@@ -102,7 +106,7 @@ class SpaceExits {
         per_radian_(power_.array() * grid_.angle().array().sin() * grid_.cosine().array() /
                     discrete.root().array().square()) {}
 
-  /// Along the light itself.
+  /// Sets the share of the power that leaves in the beam, in the direction of the illumination.
   void add_straight(double share) { straight_ = share; }
   void add(int, const LayerResponseOf<double>& leaving) {
     up_ = leaving.up.row(0).real();
@@ -110,12 +114,14 @@ class SpaceExits {
   }
   double reflected() const { return sum_of_products(up_, power_); }
   double transmitted() const { return sum_of_products(down_, power_) + straight_; }
-  /// Exit angles, 0 <= from < to <= pi.
+  /// Returns the share of the incident power that leaves between two exit angles, 0 <= from < to <=
+  /// pi.
   double within(double from, double to) const {
     const auto radiance = [this](const Eigen::VectorXd& exit) -> Eigen::VectorXd {
       return exit.cwiseProduct(per_radian_);
     };
-    // A light along the axis has no directions on the other side of the first interval's end.
+    // Light along the z axis is counted as a whole in the interval that begins at 0, because polar
+    // angles are not negative.
     const double along = light_ == 0 ? (from == 0 ? 1 : 0) : share_between(light_, from, to);
     return sum_of_products(grid_.interval_integrals(from, to), radiance(down_)) +
            sum_of_products(grid_.interval_integrals(pi - to, pi - from), radiance(up_)) +
@@ -128,10 +134,12 @@ class SpaceExits {
   Eigen::VectorXd power_, per_radian_, up_, down_;
 };
 
-/// A beam that crosses layers, less what it loses on the way but for what their peaks scatter.
+/// A beam that has crossed the layers. Light that is scattered into the forward peak of a phase
+/// function remains in the beam.
 struct UnscatteredLight {
-  double transmitted = 1, unscattered = 1, absorbed = 0;  ///< shares
-  double thickness = 0;  ///< the optical depth of the layers, by the same extinction
+  /// Fractions of the incident power: in the beam; not scattered at all; absorbed.
+  double transmitted = 1, unscattered = 1, absorbed = 0;
+  double thickness = 0;  ///< optical depth of the layers, without the scattering into forward peaks
 };
 
 template <typename Geometry>
@@ -148,17 +156,17 @@ UnscatteredLight through_layers(const SlabOf<Geometry, double>& slab, double lig
   return beam;
 }
 
-/// What a beam scatters in each layer, and a view that collects all that radiance loses by
-/// absorption.
+/// Returns, for each layer, the radiance that the first scattering of the beam adds, and a view
+/// whose signal is the absorbed power.
 template <typename Geometry>
-std::vector<EndWavesOf<double>> flux_ends(const SlabOf<Geometry, double>& slab,
-                                          const DiscreteSlabOf<Geometry, double>& discrete,
-                                          double light) {
+std::vector<EndpointWavesOf<double>> flux_endpoints(
+    const SlabOf<Geometry, double>& slab, const DiscreteSlabOf<Geometry, double>& discrete,
+    double light) {
   const Eigen::Index n = discrete.grid().size(), functions = Geometry::flux_modes + 1;
-  std::vector<EndWavesOf<double>> ends;
+  std::vector<EndpointWavesOf<double>> endpoints;
   for (std::size_t l = 0; l < slab.layers.size(); ++l) {
     const auto& ordinates = discrete.layers()[l];
-    const double extinction = 1 - ordinates.not_turned();
+    const double extinction = 1 - ordinates.peak_scattering();
     const Eigen::VectorXd lost = (1 - ordinates.albedo()) * ordinates.all_directions();
     Rows down(1, functions * n), up = down, absorbed = Rows::Zero(1, functions * n);
     for (int m = 0; m < functions; ++m) {
@@ -167,13 +175,13 @@ std::vector<EndWavesOf<double>> flux_ends(const SlabOf<Geometry, double>& slab,
       up.middleCols(m * n, n) = backward.transpose();
       absorbed.middleCols(m * n, n).real() = lost.transpose();
     }
-    ends.push_back(
+    endpoints.push_back(
         {{{-extinction / std::cos(light)}, {0}, down, up}, {{0}, {0}, absorbed, absorbed}});
   }
-  return ends;
+  return endpoints;
 }
 
-/// Shares of one light as the sums of a FluxJob.
+/// Shares of the power of one illumination, in the same order as the sums of a FluxJob.
 struct FluxSolution {
   std::vector<Complex> shares;
   int ordinates;
@@ -184,11 +192,12 @@ FluxSolution solved(SlabOf<Geometry, double> slab, double light, std::size_t bin
   for (auto& layer : slab.layers) layer.law = layer.law.truncated(kept_moments(order));
   const UnscatteredLight beam = through_layers(slab, light);
   auto foci = light_foci({light, light}, slab.width());
-  // What a thin slab scatters changes where its path along a direction is a mean free path.
+  // In a thin slab radiance varies rapidly near the directions in which the path through the slab
+  // is about one mean free path long.
   foci.push_back({pi / 2, beam.thickness});
   const typename Exits::Discrete discrete(slab, foci, order);
   const DirectionModesOf<Geometry, double> modes(slab, discrete, Geometry::flux_modes,
-                                                 flux_ends(slab, discrete, light));
+                                                 flux_endpoints(slab, discrete, light));
   FluxSolution found{std::vector<Complex>(flux_shares + bins),
                      static_cast<int>(2 * discrete.grid().size())};
   found.shares[absorbed] = beam.absorbed;
@@ -211,10 +220,11 @@ FluxSolution solved(SlabOf<Geometry, double> slab, double light, std::size_t bin
   return found;
 }
 
-/// What the tolerance of each share of one light is relative to: itself, and for bins all that
-/// leaves, a hundred times, for peaks of large disks would take a hundred times as long.
+/// Returns the magnitude to which the tolerance of each share of one illumination is relative. For
+/// bins of the exit angle it is a hundred times the power that leaves, because resolving the peaks
+/// of large disks would take a hundred times as long. For other shares it is the share itself.
 std::vector<double> scales_of_shares(std::span<const Complex> shares) {
-  constexpr double least = 1e-290;  // where digits are lost
+  constexpr double least = 1e-290;  // smaller numbers lose digits
   std::vector<double> scale;
   for (const Complex share : shares.first(flux_shares))
     scale.push_back(std::max(std::abs(share), least));
@@ -223,7 +233,9 @@ std::vector<double> scales_of_shares(std::span<const Complex> shares) {
   return scale;
 }
 
-/// Of one light. solve: of panels with so many nodes, at most `most_order` and what follows it.
+/// Refines the shares of one illumination until they have converged, or until the number of nodes
+/// per panel is at least most_order. solve: returns the solution with a given number of nodes per
+/// panel.
 template <typename Solve>
 Refined refined_shares(const Refinement& refinement, int order, int most_order,
                        const Solve& solve) {
@@ -251,7 +263,7 @@ Refined refined_flux(const Scene& scene, std::size_t bins, const Refinement& ref
   blas_single_thread();
   const auto slab = slab_of<Geometry>(scene);
   const int order = std::max(refinement.first_order(), slab.least_order());
-  // Beyond, the moments of a sharp peak are refined no more.
+  // Beyond this order the number of kept moments of a sharp peak no longer increases.
   const bool sharp =
       std::ranges::any_of(slab.layers, [](const auto& one) { return one.law.has_sharp_peak(); });
   const int most_order = sharp ? most_order_of_moments : refinement.most_ordinates;
@@ -302,7 +314,7 @@ FluxJob slab_flux_job(const Scene& scene, std::size_t angle_bins, const Refineme
         for (std::size_t first = 0; first < all.size(); first += shares) {
           const auto own = scales_of_shares(all.subspan(first, shares));
           scales.insert(scales.end(), own.begin(), own.begin() + flux_shares);
-          scales.resize(scales.size() + angle_bins);  // bins have errors of their own
+          scales.resize(scales.size() + angle_bins);  // scale 0: bins are skipped
         }
         return scales;
       });

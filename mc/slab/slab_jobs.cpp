@@ -19,24 +19,26 @@ namespace {
 void require_layers(const Scene& scene) {
   if (!scene.profile) return;
   if (dynamic_cast<const Layers*>(scene.profile.get()) == nullptr)
-    throw InputError("method", "transport", "of a medium that varies takes layers alone");
-  if (has_near_ends(scene.request))
-    throw InputError("layers: by transport take plane waves and far views");
+    throw InputError("method", "transport",
+                     "supports no varying media except layers; use method = mc");
+  if (has_near_endpoints(scene.request))
+    throw InputError("layers: method = transport requires plane waves and far views");
 }
 
-/// Pairs of lights are scattered by the phase function itself, whose peak ordinates must resolve.
+/// Throws InputError if a phase function has a peak that the ordinates cannot resolve. Truncation
+/// of its moments does not remove the peak from the first scattering of a pair of illuminations.
 template <typename Geometry>
 void require_resolved_peaks(const Scene& scene, double least_width) {
   for (const auto& layer : slab_of<Geometry>(scene).layers)
     if (layer.law.has_sharp_peak() && layer.law.width() < least_width)
       throw InputError("method", "transport",
-                       "does not resolve so narrow a forward or backward peak of the phase "
-                       "function; take mc");
+                       "does not resolve the forward or backward peak of the phase function, "
+                       "which is too narrow; use method = mc");
 }
 
-/// Solutions of several quantities, [quantity][entry], of which the first is the covariance. units:
-/// of derivatives, per quantity: what they are multiplied by to be compared with the entries; 0 of
-/// covariances, which are compared with themselves.
+/// Makes a job from a solution for several quantities, [quantity][entry]. The first quantity is the
+/// covariance. units: for a derivative, the unit of its parameter, so that derivative times unit is
+/// comparable with the entry; 0 for a covariance.
 PathJob two_batch_job(const Scene& scene, const std::vector<double>& units,
                       const std::function<Refined()>& solve) {
   require_layers(scene);
@@ -67,7 +69,8 @@ PathJob two_batch_job(const Scene& scene, const std::vector<double>& units,
   return job;
 }
 
-/// By how much the errors move the range, relative to it; 0 of bounds.
+/// Returns the relative change of the range of the memory effect if the errors are added to the
+/// entries; 0 if only a bound of the range is known.
 double range_error(const CovarianceRequest& request, const Refined& refined) {
   auto moved = refined.value;
   for (std::size_t e = 0; e < moved.size(); ++e) moved[e] += refined.error[e];
@@ -76,10 +79,12 @@ double range_error(const CovarianceRequest& request, const Refined& refined) {
   return std::abs(other / range - 1);
 }
 
-/// Smaller and smaller tolerances until the error of the range is at most twice the tolerance of
-/// `refinement`: the entries of a flat curve may have small errors, and where it crosses not.
+/// Decreases the tolerance until the error of the memory-effect range is at most twice the
+/// tolerance of `refinement`. If the correlation curve is flat, small errors of the entries may
+/// cause a large error of the tilt at which it crosses a given level.
 Refined refined_range(const Scene& scene, bool reversed, Refinement refinement) {
-  constexpr double step = 4, flattest = 256;  // curves move their range by so much more
+  constexpr double step = 4,
+                   flattest = 256;  // largest factor by which the tolerance is decreased
   const double tolerance = refinement.tolerance, of_range = 2 * tolerance;
   Refined refined = slab_covariance(scene, reversed, refinement);
   if (scene.request.kind != CovarianceRequest::Kind::memory_effect) return refined;
@@ -91,7 +96,8 @@ Refined refined_range(const Scene& scene, bool reversed, Refinement refinement) 
   return refined;
 }
 
-/// By what transport differentiates: bulk_parameters(), and of spheres the radius and the index.
+/// Returns the parameters by which transport computes derivatives: bulk_parameters() and, for
+/// spheres, the radius and the index.
 std::vector<BulkParameter> slab_parameters(const Scene& scene) {
   auto parameters = bulk_parameters(scene);
   if (scene.scatterer.kind == Scatterer::Kind::mie)
@@ -122,9 +128,9 @@ PathJob slab_change_job(const Scene& scene, bool reversed, const Refinement& ref
 GradientJob slab_gradient_job(const Scene& scene, bool reversed, const Refinement& refinement) {
   const auto parameters = slab_parameters(scene);
   const auto solve = [=] {
-    Refined all = slab_slopes(scene, reversed, refinement, parameters.front());
+    Refined all = slab_derivatives(scene, reversed, refinement, parameters.front());
     for (std::size_t p = 1; p < parameters.size(); ++p) {
-      Refined one = slab_slopes(scene, reversed, refinement, parameters[p]);
+      Refined one = slab_derivatives(scene, reversed, refinement, parameters[p]);
       for (auto* list : {&one.value, &one.error})
         list->erase(list->begin(), list->begin() + std::ssize(scene.request.entries));
       all.append(one);

@@ -11,16 +11,19 @@
 
 namespace flatspeckle::mc {
 
-// What slab_covariance.h solves as jobs of two batches (two_batches()). All throw InputError for
-// media that vary other than by layers, and for near ends of layers.
+// Jobs of two batches (two_batches()) that contain the solutions of slab_covariance.h. All
+// functions throw InputError for media that vary other than in layers, and for near endpoints with
+// layers.
 
-/// The tolerance holds for the range of a memory_effect request too.
+/// Makes a job of the covariance. For a memory_effect request the tolerance also applies to the
+/// range of the memory effect.
 FieldJob slab_covariance_job(const Scene& scene, bool reversed, const Refinement& refinement);
 
-/// As the gradient_job() of Monte Carlo.
+/// Makes a job of the quantities that gradient_job() estimates by Monte Carlo.
 GradientJob slab_gradient_job(const Scene& scene, bool reversed, const Refinement& refinement);
 
-/// Quantities as those of delay_job(): the entries without change, then with each.
+/// Makes a job of the quantities of delay_job(): the entries for two equal fields, then for each
+/// change of the second field.
 PathJob slab_change_job(const Scene& scene, bool reversed, const Refinement& refinement,
                         const std::vector<FieldChange>& changes);
 

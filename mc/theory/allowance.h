@@ -8,8 +8,9 @@
 
 namespace flatspeckle::mc {
 
-/// Whether a far view lies within the first zeros of what a box's width diffracts of a plane wave
-/// or beam that goes straight through: where the coherent field is.
+/// Whether a far view lies in the forward lobe of a plane wave or beam that crosses a box
+/// undeflected. The lobe is the central diffraction lobe of an aperture as wide as the box; it
+/// contains the coherent field.
 inline bool in_forward_lobe(const Scene& scene, const Channel& channel) {
   const View& view = scene.request.views[channel.view];
   const Light& light = scene.request.lights[channel.light];
@@ -20,22 +21,25 @@ inline bool in_forward_lobe(const Scene& scene, const Channel& channel) {
   return std::abs(q) < 2 * std::numbers::pi / scene.domain.width;
 }
 
-/// Whether each placement of a box holds as many scatterers: disks are placed in whole numbers,
-/// points where `count` says so.
+/// Whether all placements of scatterers in a box have the same number of them: always for disks,
+/// whose number is rounded, and for points if `count` is set.
 inline bool has_fixed_number(const Scene& scene) {
   return scene.domain.kind == Domain::Kind::box &&
          (scene.scatterer.is_disk() || scene.placement.count);
 }
 
-/// Whether an exact covariance lacks the fluctuation of the coherent field that Monte Carlo has
-/// (conventions, C12): a fixed number, and both channels in the forward lobe.
+/// Whether the exact covariance of an entry lacks a term that Monte Carlo includes: the fluctuation
+/// of the coherent field with the number of scatterers (conventions, C12). The entry lacks this
+/// term if that number is fixed and both channels lie in the forward lobe.
 inline bool lacks_fluctuation(const Scene& scene, const Entry& entry) {
   const auto& channels = scene.request.channels;
   return has_fixed_number(scene) && in_forward_lobe(scene, channels[entry.a]) &&
          in_forward_lobe(scene, channels[entry.b]);
 }
 
-/// Least n^2 around the scatterers: where it is small the mean free path is shorter, and so is k.
+/// Returns the smallest n^2 in the domain if n^2 is a quadratic function, otherwise 1. The mean
+/// free path and the local wavenumber are both proportional to n (C31), so their product is
+/// smallest where n^2 is smallest.
 inline double least_square(const Scene& scene) {
   if (!scene.index || !scene.index->is_quadratic()) return 1;
   const double half = scene.domain.width / 2;
@@ -46,16 +50,27 @@ inline double least_square(const Scene& scene) {
   return least;
 }
 
-/// What the Monte Carlo method neglects, as a fraction: corrections of order 1/(k mean free path);
-/// the shift of the wavenumber (refraction at the faces, local fields); and correlations, of order
-/// the packing fraction where they are not taken in, of its square where they are (C16). As
-/// data/bias_map.csv has it; a size, not a bound. A box that shifts the phase guides the mean
-/// field, the more the further the critical angle sqrt(2 |k_shift| / k) leads across it over its
-/// depth (measured for widths from 3 to 20).
+/// Estimated relative size of the effects that the Monte Carlo method neglects; not a bound.
+/// Deviations from exact solutions were measured in data/bias_map.csv.
 struct Allowance {
+  /// crossed_paths: corrections of order 1/(k mean free path).
+  ///
+  /// k_shift: effects of the shift of the wavenumber in the medium: refraction at the faces, and
+  /// local fields.
+  ///
+  /// guided: guiding of the mean field in a box by its effective index, which shifts the phase.
+  /// This effect grows with the distance that a ray at the critical angle sqrt(2 |k_shift| / k)
+  /// moves across the box over its depth, relative to the width (measured for widths from 3 to 20
+  /// wavelengths).
+  ///
+  /// correlations: correlations of the positions of the scatterers. Their effect is of the order of
+  /// the packing fraction if they are not modelled, and of the order of its square if they are
+  /// (C16).
   double crossed_paths, k_shift, guided, correlations;
-  /// Flights that end within k a^2 of a disk, which is not seen from afar there: a share (k a)^2 /
-  /// (k mean free path) of them. That map is of k a = 1, where this is in the first part.
+  /// Fraction of free flights shorter than k a^2, where a is the radius of the disks. It is (k a)^2
+  /// / (k mean free path). At such distances the far field of a disk does not hold. bias_map.csv
+  /// was measured at k a = 1, so crossed_paths includes the value at k a = 1, which is subtracted
+  /// here. near_zone is not included in total().
   double near_zone;
 
   explicit Allowance(const Scene& scene)

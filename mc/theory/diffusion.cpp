@@ -18,7 +18,8 @@ Complex diffusion_loss_correlation(const BulkMedium& medium, double thickness, C
                extrapolation = extrapolation_length(medium);
   const double mu_a = medium.mu_t - medium.mu_s;
   const double kappa2 = medium.dimension * mu_a / transport_length;
-  // f of C20; below the least Q it has its limit at 0 to rounding.
+  // Returns log f of C20. Q is set to at least 1e-5 / thickness; below this value f equals its
+  // limit at Q = 0 to rounding.
   const auto log_f = [&](Complex q2) {
     const Complex root = std::sqrt(q2), least = 1e-5 / thickness,
                   rate = std::abs(root) > least.real() ? root : least;
@@ -48,7 +49,8 @@ double diffusion_range(const BulkMedium& medium, double thickness) {
 double scatterings_of_slowest_mode(const BulkMedium& medium, const Domain& domain) {
   const double beyond = 2 * extrapolation_length(medium),
                diffusion = medium.transport_mean_free_path() / medium.dimension;
-  const auto leaving = [&](double extent) {  // per length of path
+  // Rate, per length of path, at which light leaves through two opposite edges
+  const auto leaving = [&](double extent) {
     const double wavenumber = std::numbers::pi / (extent + beyond);
     return diffusion * wavenumber * wavenumber;
   };

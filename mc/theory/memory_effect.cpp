@@ -11,7 +11,8 @@ struct CurvePoint {
   double q, intensity_correlation;
 };
 
-/// The curve on one side by rising |q|, with C_I = 1 at q = 0.
+/// Returns the points (q, C_I) of an intensity-correlation curve on one side of q = 0, in order of
+/// |q|, beginning with C_I = 1 at q = 0. The side is q > 0 if there is a positive q.
 std::vector<CurvePoint> one_side(const std::vector<double>& tilt_q,
                                  std::span<const Complex> correlation) {
   const bool positive = std::any_of(tilt_q.begin(), tilt_q.end(), [](double q) { return q > 0; });
@@ -22,14 +23,15 @@ std::vector<CurvePoint> one_side(const std::vector<double>& tilt_q,
   }
   std::sort(curve.begin(), curve.end(),
             [](const CurvePoint& a, const CurvePoint& b) { return a.q < b.q; });
-  // a tilt given twice would divide by 0 between the two
+  // A tilt given twice would lead to a division by 0 in the interpolation.
   curve.erase(std::unique(curve.begin(), curve.end(),
                           [](const CurvePoint& a, const CurvePoint& b) { return a.q == b.q; }),
               curve.end());
   return curve;
 }
 
-/// Lagrange interpolation through the (up to six) points around interval i, i+1.
+/// Returns C_I at q by Lagrange interpolation through up to six points around the interval [i, i +
+/// 1].
 double interpolate(const std::vector<CurvePoint>& curve, std::size_t i, double q) {
   const std::size_t first = i > 1 ? i - 2 : 0, last = std::min(i + 3, curve.size() - 1);
   double sum = 0;
@@ -70,7 +72,7 @@ double correlation_of_powers(const CovarianceRequest& request, std::span<const C
   return product > 0 ? std::sqrt(cross / product) : 0;
 }
 
-/// Those of Correlations.
+/// Returns the ranges that Correlations describes. moves: C_E of every move.
 std::vector<Range> ranges(const CovarianceRequest& request, std::span<const Complex> moves) {
   using Kind = CovarianceRequest::Kind;
   if (request.kind == Kind::translation) return {memory_effect_range(request.shifts, moves)};

@@ -9,41 +9,47 @@
 
 namespace flatspeckle::mc {
 
-/// The reference's views by what one field correlation sums over: those of one side of the medium,
-/// transmitted before reflected; near sensors all together. One group or two.
+/// Groups the reference views. A field correlation sums over the views of one group. Far views form
+/// a group for each side of the medium, transmission before reflection; near sensors form a single
+/// group. There are one or two groups.
 std::vector<std::vector<std::size_t>> view_groups(const CovarianceRequest& request);
 
-/// C_E per move (C19). Of far views |sum over views of the covariance of reference and moved
-/// field|, over the square root of the product of their intensities summed over the same views.
-/// Near sensors, whose covariances differ in phase, count by power: the square root of sum |C|^2
-/// over sum I I'. A function of the covariance entries of a request with moves, whichever solver
-/// they come from. Where an intensity vanishes the correlation is 0. views: one of the
-/// view_groups().
+/// Returns the field correlation C_E of every move (tilt, shift or translation; C19) of a request,
+/// from its covariance entries, which any solver may have computed. In each view, C is the
+/// covariance of the reference and the moved field, and I and I' are their intensities. For far
+/// views C_E is |sum C| / sqrt(sum I sum I'). For near sensors, whose C differ in phase, it is
+/// sqrt(sum |C|^2 / sum I I'). C_E is 0 if the denominator is 0. views: the views of the sum, one
+/// of the view_groups().
 std::vector<Complex> field_correlation(const CovarianceRequest& request,
                                        std::span<const Complex> entries,
                                        const std::vector<std::size_t>& views);
-/// Of the first of the view_groups().
+/// Returns the same C_E for the first of the view_groups().
 std::vector<Complex> field_correlation(const CovarianceRequest& request,
                                        std::span<const Complex> entries);
 
 /// Half-width of an intensity-correlation curve.
 struct Range {
-  /// Where the tilts do not reach the half width, or leave it out.
+  /// Whether the half-width lies beyond the last tilt (above_value) or before the first
+  /// (below_value).
   enum class Censoring { none, above_value, below_value };
-  double value = 0;  ///< |q| where C_I = C_E^2 falls to 1/2; if censored the last or first tilt's
+  /// |q| at which C_I = C_E^2 falls to 1/2; if censored, |q| of the last or first tilt
+  double value = 0;
   Censoring censored = Censoring::none;
 };
 
-/// Censored above the last tilt if C_I does not fall to 1/2 there, and below the first one that is
-/// not 0 if C_I has fallen already. Else the first crossing of C_I = 1/2 on the side of positive q
-/// (of negative q where there is no positive one), by interpolation of C_I of degree five through
-/// the six nearest tilts: to 1e-5 where they are spaced by a sixth.
+/// Returns the half-width: the smallest |q| at which C_I falls to 1/2, on the side of positive q,
+/// or of negative q if there is no positive one. The result is censored as above_value if C_I
+/// exceeds 1/2 at all tilts, and as below_value if C_I is at most 1/2 at the first nonzero tilt.
+/// C_I is interpolated by a polynomial of degree five through the six nearest tilts; the half-width
+/// is accurate to 1e-5 if neighbouring tilts differ by a sixth of it.
 Range memory_effect_range(const std::vector<double>& tilt_q, std::span<const Complex> correlation);
 
-/// Steps between 0 and a range.
+/// Returns the number of steps (tilts or shifts, without 0) whose magnitude is below the
+/// half-width.
 std::size_t steps_below(const std::vector<double>& steps, const Range& range);
-/// Whether a range rests on so few steps below it that its error bar, which does not know what the
-/// curve does between them, says too little.
+/// Whether fewer than four steps have a magnitude below the half-width. The error bar of the
+/// half-width is then too small, because it does not include the error of interpolation between
+/// steps.
 bool few_steps(const std::vector<double>& steps, const Range& range);
 
 /// A half-width and its jackknife error.
@@ -53,22 +59,25 @@ struct RangeEstimate {
   std::uint64_t rare = 0;  ///< see Estimate
 };
 
-/// field_correlation of every move and half-widths, with jackknife errors. The only range of
-/// memory_effect and translation is that of their moves; those of tilt_shift are along tilts at
-/// shift 0, along shifts at tilt 0, and of far views along matched views. Tilts count in tilt_q.
-/// views: one of the view_groups().
+/// Field correlations C_E of every move (tilt, shift or translation) and the half-widths (ranges)
+/// of their curves, with jackknife errors. Requests of kind memory_effect and translation have one
+/// range. Requests of kind tilt_shift have a range along tilts at shift 0, one along shifts at tilt
+/// 0, and, for far views, one along tilts with matched views. Ranges along tilts are values of
+/// CovarianceRequest::tilt_q.
 struct Correlations {
   Estimate moves;
   std::vector<RangeEstimate> ranges;
 };
+/// views: one of the view_groups().
 Correlations correlations(const CovarianceRequest& request, const GroupedSums& sums,
                           const Estimator& covariance, const std::vector<std::size_t>& views);
 
-/// field_correlation, then the values of those ranges, of the first of the view_groups().
+/// Returns field_correlation() for the first of the view_groups(), then the values of the ranges of
+/// these correlations (Correlations::ranges).
 std::vector<Complex> correlation_and_ranges(const CovarianceRequest& request,
                                             std::span<const Complex> entries);
 
-/// Of a memory_effect or translation request, of the first of its view_groups().
+/// Results of a memory_effect or translation request, for the first of its view_groups().
 struct MemoryEffect {
   std::vector<double> correlation, correlation_error;  ///< per tilt or shift
   std::vector<std::uint64_t> correlation_rare;         ///< see Estimate

@@ -42,28 +42,29 @@ const DatasetTable moves_table{
              {"moved_intensity", Data::estimate, "MOVES VIEW", "COVARIANCE",
               "variance of the moved field"},
              {"field_correlation", Data::estimate, "MOVES", "1",
-              "field correlation C_E, summed over views on one side, transmitted if there are any"},
+              "field correlation C_E, summed over the views on one side: transmitted, if there are "
+              "any"},
              {"memory_effect_range", Data::estimate, "", "1",
               "q L at C_I = 1/2 with matched views, L the depth"},
              {"tilt_range", Data::estimate, "", "1",
-              "q L at C_I = 1/2 where the views stay, L the depth"},
+              "q L at C_I = 1/2 with fixed views, L the depth"},
              {"shift_range", Data::estimate, "", "SHIFT_RANGE",
-              "shift, of far views times the depth L, at C_I = 1/2 where the light stays"},
+              "shift at C_I = 1/2 with fixed light; for far views, times the depth L"},
              {"translation_range", Data::estimate, "", "length", "translation at C_I = 1/2"},
              {"matched_covariance", Data::complex_estimate, "tilt view_angle", "COVARIANCE",
               "covariance of reference and moved field"},
              {"matched_moved_intensity", Data::estimate, "tilt view_angle", "COVARIANCE",
               "variance of the moved field"},
              {"matched_correlation", Data::estimate, "tilt", "1",
-              "field correlation C_E with matched views, summed over the same"},
+              "field correlation C_E with matched views, summed as in field_correlation"},
              {"reflected_field_correlation", Data::estimate, "MOVES", "1",
-              "C_E of the reflected views, where there are transmitted ones too"},
+              "C_E of the reflected views, if there are transmitted views too"},
              {"reflected_memory_effect_range", Data::estimate, "", "1",
               "q L of the reflected views at C_I = 1/2 with matched views, L the depth"},
              {"reflected_tilt_range", Data::estimate, "", "1",
-              "q L of the reflected views at C_I = 1/2 where the views stay, L the depth"},
+              "q L of the reflected views at C_I = 1/2 with fixed views, L the depth"},
              {"reflected_shift_range", Data::estimate, "", "SHIFT_RANGE",
-              "shift times the depth of the reflected views at C_I = 1/2 where the light stays"},
+              "shift of the reflected views at C_I = 1/2 with fixed light, times the depth"},
              {"reflected_translation_range", Data::estimate, "", "length",
               "translation of the reflected views at C_I = 1/2"},
              {"reflected_matched_correlation", Data::estimate, "tilt", "1",
@@ -81,7 +82,7 @@ const DatasetTable moves_table{
              {"field_correlation_gradient", Data::estimate, "parameter tilt", "",
               "derivative of the field correlation C_E"},
              {"memory_effect_range_gradient", Data::estimate, "parameter", "",
-              "derivative of the range q L at C_I = 1/2; 0 where that is censored"}},
+              "derivative of the range q L at C_I = 1/2; 0 if the range is censored"}},
     .attributes = {{"memory_effect_range", "censored", "uint64", censored_meaning},
                    {"tilt_range", "censored", "uint64", censored_meaning},
                    {"shift_range", "censored", "uint64", censored_meaning},
@@ -96,7 +97,8 @@ namespace {
 
 using Kind = CovarianceRequest::Kind;
 
-/// The mean field in the channels that stand on the light and view axes.
+/// Writes the mean field of every light and view. For requests with moves it writes only the mean
+/// field of the reference, for pairs none.
 void write_mean(const ResultGroup& out, const CovarianceRequest& request, const Estimate& mean) {
   if (mean.value.empty() || request.kind == Kind::pairs) return;
   if (!request.has_reference()) return out.put("mean_field", mean);
@@ -106,7 +108,7 @@ void write_mean(const ResultGroup& out, const CovarianceRequest& request, const 
   out.put("mean_field", reference);
 }
 
-/// Writes what memory_effect, tilt_shift and translation requests ask for.
+/// Writes the results of memory_effect, tilt_shift and translation requests.
 class MovesWriter {
  public:
   MovesWriter(const ResultGroup& out, const Scene& scene)
@@ -123,7 +125,8 @@ class MovesWriter {
     if (matched) moved(covariance, "matched_covariance", "matched_moved_intensity", moves, matched);
   }
 
-  /// Of a group of views; prefix: of its datasets.
+  /// Writes the correlations and ranges of a group of views. prefix: beginning of the names of the
+  /// datasets.
   WrittenMoves correlation(const Correlations& found, const std::string& prefix) {
     prefix_ = prefix;
     ranges_.clear();
@@ -131,8 +134,8 @@ class MovesWriter {
     return {found.moves, ranges_};
   }
 
-  /// Diffusion theory where it holds and single scattering, both in transmission, for matched views
-  /// of plane waves.
+  /// Writes theoretical C_E for plane waves transmitted into matched views, if the request contains
+  /// them: single scattering and, for a homogeneous medium, diffusion theory.
   void theory(const std::vector<std::size_t>& group) const {
     if (request_.kind != Kind::tilt_shift || !far() || !request_.lights.all(Light::Kind::plane))
       return;
@@ -151,7 +154,8 @@ class MovesWriter {
  private:
   bool far() const { return !request_.views.front().near; }
 
-  /// Tilts with matched views, or translations: one curve.
+  /// Writes the only correlation curve of a request and its range. The curve is over tilts with
+  /// matched views, or over translations.
   void curve(const Correlations& found) {
     const bool tilts = request_.kind == Kind::memory_effect;
     const RangeEstimate& only = found.ranges.front();
@@ -172,7 +176,8 @@ class MovesWriter {
     range("memory_effect_range", found.ranges[2], depth);
   }
 
-  /// Covariances and intensities of moves from `first` on.
+  /// Writes the covariances of reference and moved field, and the intensities of the moved field,
+  /// for `moves` moves from number `first` on.
   void moved(const Estimate& all, const std::string& covariance, const std::string& intensity,
              std::size_t first, std::size_t moves) const {
     const std::size_t count = moves * request_.reference_views;

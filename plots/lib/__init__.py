@@ -1,1 +1,1 @@
-"""What the plots share. The plots themselves, which are the programs, lie one folder up."""
+"""Modules shared by the plot scripts, which are in the folder above."""

@@ -1,4 +1,4 @@
-"""Pictures of the benchmark report: functions of a Bench that return figures."""
+"""Figures of the benchmark report: each function takes a Bench and returns a figure."""
 
 from lib import number_text, page, style
 
@@ -8,9 +8,9 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 HALF = -0.5
 SLOPE_BAND = 0.05
-LEAST_MARGIN = 1e-9  # of figure over limit; smaller ones stand at this edge
+LEAST_MARGIN = 1e-9  # smallest deviation / limit on the axis; smaller values are drawn at this edge
 OURS = {"color": "black", "marker": "o", "linestyle": "-", "linewidth": 1.3}
-LOOKS = {  # the same method looks the same everywhere
+LOOKS = {  # a method has the same look in all figures
     "ours": OURS, "bidirectional": OURS, "exact dense": style.look(0), "exact fast": style.look(4),
     "textbook Monte Carlo": style.look(1), "fields": style.look(3), "path tracing": style.look(1),
     "transport": style.look(2),
@@ -18,13 +18,13 @@ LOOKS = {  # the same method looks the same everywhere
 GUIDE = {"color": "0.6", "linewidth": 0.7, "zorder": 0}
 TITLES = {"box_points": "31 points in a box, OD 1", "box_cylinders": "67 cylinders in a box, OD 1",
           "box_points_absorbing": "absorbing points in a box", "slab_hg": "slab, OD 5, g 0.8",
-          "slab_two_term_hg": "slab, OD 5, two terms",
-          "slab_hg, in space": "slab in space, OD 5",
+          "slab_two_term_hg": "slab, OD 5, two-term phase function",
+          "slab_hg, in space": "3D slab, OD 5",
           "luneburg": "Luneburg ball", "waveguide": "ultrasonic waveguide",
           "slab": "slab, straight rays", "glass_ball": "glass ball in fog",
-          "luneburg_even": "Luneburg ball, even light",
-          "glass_ball_beam": "glass ball under a beam", "balls_even": "balls, even light",
-          "ring_even": "ring of triangles, even light", "absorbing_ball": "absorbing ball of triangles",
+          "luneburg_even": "Luneburg ball, isotropic light",
+          "glass_ball_beam": "glass ball under a beam", "balls_even": "balls, isotropic light",
+          "ring_even": "ring of triangles, isotropic light", "absorbing_ball": "absorbing ball of triangles",
           "slab_hg, flow": "slab, OD 5, flow"}
 BOXES = ("box_points", "box_cylinders")
 ROOM_NAMES = {"mc": "Monte Carlo", "wave": "wave solver", "wave_solver": "wave solver"}
@@ -39,7 +39,8 @@ def room_name(room):
 
 
 def base_method(method):
-    """Without what is said of it: "photon map" of "photon map, biased by its radius"."""
+    """Returns the name of a method without its qualification, such as "photon map" for "photon map, biased by its
+    radius"."""
     return method.split(",")[0]
 
 
@@ -48,7 +49,8 @@ def method_look(method):
 
 
 def draw_guide(axis, curves):
-    """Slope -1/2, above the curve that is highest at equal times; none where nothing is random."""
+    """Draws a guide of slope -1/2 above the Monte Carlo curve that is highest at equal times, if there are such
+    curves."""
     random = [curve for curve in curves if curve["is_monte_carlo"]]
     if not random:
         return
@@ -67,7 +69,7 @@ def draw_error_curves(axis, curves):
     draw_guide(axis, curves)
     style.no_minor_numbers(axis)
     low, high = axis.get_ylim()
-    if high < 150 * low:  # else too few powers of ten to read it by
+    if high < 150 * low:  # otherwise the axis would have too few labels
         style.few_decades(axis.yaxis)
     axis.set_title(title(curves[0]["scene"]))
 
@@ -81,7 +83,7 @@ def method_entries(curves):
 
 
 def panels(count, across, head, height, **looks):
-    """Figure and axes of a page of panels."""
+    """Returns figure and axes of a page of panels."""
     down = -(-count // across)
     figure, axes = plt.subplots(down, across, squeeze=False, **looks,
                                 figsize=(style.PAGE, head + height * down))
@@ -106,7 +108,7 @@ def error_panels(error, scenes, across):
 
 
 def scenes_of(error, flat):
-    """Lists the scenes of flatland, which have a method of ours, or the other scenes."""
+    """Returns the scenes of flatland, recognised by the method "ours", or all other scenes."""
     return [scene for scene in error.scenes()
             if flat == any(curve["method"] == "ours" for curve in error.of_scene(scene))]
 
@@ -127,7 +129,8 @@ def draw_render(bench):
 
 
 def name_rows(axis, names, ends=(-0.6, -0.4), **looks):
-    """A row for each name, from above; ends: how far the axis goes beyond the first and last."""
+    """Labels one row for each name, from top to bottom. ends: margins of the axis beyond the first and the last
+    row."""
     axis.set_yticks(range(len(names)), names, **looks)
     axis.set_ylim(len(names) + ends[1], ends[0])
     axis.tick_params(axis="y", length=0)
@@ -151,7 +154,7 @@ def draw_slopes(bench):
 def draw_cost(axis, cost):
     size, value = cost["size"], cost["cost_value"]
     axis.loglog(size, value, color=style.COLOURS[0], marker="o", linestyle="none")
-    large = slice(len(size) // 2, None)  # small ones need not follow the law
+    large = slice(len(size) // 2, None)  # small sizes need not follow the power law
     scale = np.exp(np.mean((np.log(value) - cost["exponent"] * np.log(size))[large]))
     axis.loglog(size, scale * size**cost["exponent"], color=style.COLOURS[0], zorder=0.5)
     axis.loglog(size, value[-1] * (size / size[-1])**cost["expected_exponent"], color=style.GREY,
@@ -174,14 +177,14 @@ def draw_costs(bench, across=5):
         draw_cost(axis, cost)
         if number % across == 0 or cost["cost_name"] != costs[number - 1]["cost_name"]:
             axis.set_ylabel(cost["cost_name"], fontsize=7)
-    entries = [(plt.Line2D([], [], color=style.COLOURS[0], marker="o"), "measured, with its fit"),
-               (plt.Line2D([], [], color=style.GREY, linestyle="--"), "by counting operations")]
+    entries = [(plt.Line2D([], [], color=style.COLOURS[0], marker="o"), "measured, with fitted exponent"),
+               (plt.Line2D([], [], color=style.GREY, linestyle="--"), "expected from counting operations")]
     page.legend_above(figure, entries, 2)
     return figure
 
 
 def draw_margins(axis, stability):
-    """figure / limit of every case, room by room; those refused at the right."""
+    """Draws deviation / limit of every case, module by module, and at the right the number of rejected cases."""
     rooms = stability.rooms()
     for place, room in enumerate(rooms):
         rows, look = stability.of_room(room), {**style.look(place), "linestyle": "none"}
@@ -196,19 +199,19 @@ def draw_margins(axis, stability):
         axis.text(1.02, place, str(len(rows) - len(solved)), transform=axis.get_yaxis_transform(),
                   va="center", fontsize=7)
     axis.axvline(1, color="black", linewidth=0.8)
-    axis.set(xscale="log", xlim=(LEAST_MARGIN, 5), xlabel="deviation from the invariant / its limit")
+    axis.set(xscale="log", xlim=(LEAST_MARGIN, 5), xlabel="deviation from the invariant / limit")
     axis.xaxis.set_major_locator(LogLocator(numticks=6))
     axis.xaxis.set_minor_locator(NullLocator())
     name_rows(axis, [f"{room_name(room)}\n{len(stability.of_room(room))} cases" for room in rooms],
               (-0.5, -0.5))
     for place in range(1, len(rooms)):
         axis.axhline(place - 0.5, color="0.9", linewidth=0.5, zorder=0)
-    axis.text(1.02, 1.0, "refused", transform=axis.transAxes, va="bottom", fontsize=7)
+    axis.text(1.02, 1.0, "rejected", transform=axis.transAxes, va="bottom", fontsize=7)
     axis.set_title(f"(a) {len(stability.rows)} extreme cases", loc="left")
 
 
 def draw_ratios(axis, plan):
-    """Rows of a room under its name."""
+    """Draws the ratio of times of every comparison; the rows of a module are below its name."""
     place, ticks, names = 0, [], []
     for number, room in enumerate(plan.rooms()):
         ticks.append(place)
@@ -232,8 +235,8 @@ def draw_ratios(axis, plan):
             label.set(weight="bold", fontsize=6.5)
     axis.set_ylim(place - 0.6, -1)
     axis.tick_params(axis="y", length=0)
-    axis.set_xlabel("time with it / time without it")
-    axis.set_title("(b) left out by plans, with the same result", loc="left")
+    axis.set_xlabel("time with the feature / time without it")
+    axis.set_title("(b) features omitted by plans", loc="left")
 
 
 def draw_limits(bench):

@@ -1,4 +1,4 @@
-"""The three result files of `flatspeckle bench` as lists of rows."""
+"""Reads the three result files of `flatspeckle bench` as lists of rows."""
 
 from dataclasses import dataclass
 
@@ -8,21 +8,22 @@ import h5py
 
 
 def rows_of(result, *columns):
-    """A list of {name: value}, one for each row of the columns."""
+    """Returns {name: value} for each row of the columns."""
     found = [result.texts(name) if h5py.check_string_dtype(result.dataset(name).dtype) else
              result.values(name).tolist() for name in columns]
     return [dict(zip(columns, values)) for values in zip(*found)]
 
 
 def add_points(result, rows, owner, *columns):
-    """Columns of the points of each row: {name: array}; owner: the row of each point."""
+    """Adds to each row the columns of its points, {name: array}. owner: dataset with the number of the row to which
+    each point belongs."""
     for number, row in enumerate(rows):
         own = result.values(owner) == number
         row.update({name: result.values(name)[own] for name in columns})
 
 
 class Made:
-    """How a file was made."""
+    """Origin of a file: version, machine, date and run time."""
 
     def __init__(self, result):
         text = lambda name: str(result.attribute(name, ""))
@@ -30,7 +31,7 @@ class Made:
         self.threads = int(result.attribute("threads", 0))
         self.wall_s, self.cpu_s = (float(result.attribute(name, 0)) for name in ("wall_s", "cpu_s"))
         self.date, self.quick = text("started")[:10], "quick = true" in text("config")
-        digits, plus, _ = self.commit.partition("+")  # whether files differed from it
+        digits, plus, _ = self.commit.partition("+")  # "+" means that files differed from the commit
         self.short_commit = digits[:10] + (" with changes" if plus else "")
 
 
@@ -46,7 +47,7 @@ class ErrorFile:
         add_points(result, self.costs, "of_cost", "size", "cost_value")
 
     def scenes(self):
-        """In the order of the file."""
+        """Returns the scenes in the order of the file."""
         return list(dict.fromkeys(curve["scene"] for curve in self.curves))
 
     def of_scene(self, scene):
@@ -57,7 +58,7 @@ class ErrorFile:
 
 
 class RowFile:
-    """Of stability or plan."""
+    """Rows of a result of `bench stability` or `bench plan`."""
 
     def __init__(self, result, *columns):
         self.made = Made(result)

@@ -1,20 +1,20 @@
-"""A panel with C_I = C_E^2 against tilt: what all plots of memory-effect curves share."""
+"""Panels with C_I = C_E^2 against tilt, shared by all plots of memory-effect curves."""
 
 from lib import style
 
 import numpy as np
 
-FEW_DECADES = 50  # highest over lowest value of an axis
-BELIEVED = 3  # standard errors of C_E, a magnitude, below which its noise lifts it
+FEW_DECADES = 50  # ratio of highest to lowest value below which a logarithmic axis needs extra labels
+BELIEVED = 3  # standard errors; a smaller C_E is biased upward by noise, because it is a magnitude
 
 
 def prepare(axis, tilt, lowest, arguments):
-    """Scales and limits for tilts in mrad and, on a logarithm, C_I down to `lowest`."""
+    """Sets scales and limits for tilts in mrad and for C_I; a logarithmic axis extends down to `lowest`."""
     style.mark(axis, 0.5)
     axis.set(xlabel="tilt (mrad)", ylabel=r"intensity correlation $C_I$")
     if arguments.log:
         if not (tilt > 0).any():
-            raise style.Unusable("--log: there is no tilt above 0")
+            raise style.Unusable("--log requires a tilt above 0")
         low, high = tilt[tilt > 0].min() / 1.2, tilt.max() * 1.2
         axis.set(xscale="log", xlim=(low, high))
         if high < FEW_DECADES * low:
@@ -31,18 +31,18 @@ def prepare(axis, tilt, lowest, arguments):
 
 
 def believed(field, error):
-    """Where a magnitude stands out of its noise."""
+    """Returns where a magnitude exceeds its noise."""
     return np.abs(field) > BELIEVED * error
 
 
 def lowest(fields, errors):
-    """Least C_I that a logarithmic axis shows."""
+    """Returns the smallest C_I that a logarithmic axis shows."""
     return min(np.min(field[believed(field, error)]**2, initial=1)
                for field, error in zip(fields, errors))
 
 
 def apart(axis, x, y, size):
-    """Points of a curve, the last first, of which no symbol of that size covers the one before."""
+    """Returns points of a curve, the last first, chosen so that symbols of this size do not overlap."""
     places = axis.transData.transform(np.column_stack([x, y])) * 72 / axis.figure.dpi
     kept = []
     for number in reversed(range(len(x))):
@@ -52,23 +52,23 @@ def apart(axis, x, y, size):
 
 
 class Unseen:
-    """What a reader of the panels does not see: symbols left out for room, error bars that no
-    symbol shows."""
+    """Records what is not visible in the panels: symbols omitted for lack of room, and error bars smaller than the
+    symbols."""
 
     def __init__(self):
         self.symbols, self.bars = 0, True
 
     def notes(self, arguments):
         if self.symbols:
-            yield "symbols that would cover each other are left out"
+            yield "symbols that would overlap are omitted"
         if self.bars:
             yield "error bars are smaller than the symbols"
         if arguments.log_correlation:
-            yield f"$C_E$ below {BELIEVED} standard errors is left out"
+            yield f"points with $C_E$ below {BELIEVED} standard errors are omitted"
 
 
 def draw_curve(axis, tilt, field, error, look, unseen):
-    """C_I = C_E^2 with its error bars; counts in `unseen` what is not seen of it."""
+    """Draws C_I = C_E^2 with error bars, and records in `unseen` what is not visible."""
     order = np.argsort(tilt)
     tilt, field, error = (values[order] for values in (tilt, field, error))
     in_scale = ((tilt > 0) | (axis.get_xscale() != "log")) & \
@@ -84,7 +84,7 @@ def draw_curve(axis, tilt, field, error, look, unseen):
 
 
 def add_q_axis(axis, result, tilt):
-    """Top axis q L over tilts in mrad; q is nearly but not quite proportional to the tilt."""
+    """Adds a top axis with q L above an axis with tilts in mrad; q is only nearly proportional to the tilt."""
     depth = result.attribute("depth")
     if depth is None or not result.has("tilt_q"):
         return
@@ -92,7 +92,7 @@ def add_q_axis(axis, result, tilt):
     x, q_depth = tilt[order], result.values("tilt_q")[order] * depth
     if len(x) < 2 or np.any(np.diff(q_depth) <= 0):
         return
-    margin = x[-1] - x[0]  # on each side, along the outermost slopes
+    margin = x[-1] - x[0]  # extrapolated linearly on each side
     slopes = np.diff(q_depth)[[0, -1]] / np.diff(x)[[0, -1]]
     q_depth = np.concatenate([[q_depth[0] - margin * slopes[0]], q_depth,
                               [q_depth[-1] + margin * slopes[1]]])

@@ -1,5 +1,5 @@
-"""Memory-effect curves of any number of results of `covariance`, `validate` and `sweep` in one panel:
-over tilts, or over translations."""
+"""Draws memory-effect curves of any number of results of `covariance`, `validate` and `sweep` in one panel, over
+tilts or over translations."""
 
 from dataclasses import dataclass
 
@@ -13,11 +13,11 @@ import numpy as np
 
 @dataclass
 class Series:
-    """One method's field correlation [tilt], of one result file."""
+    """Field correlation [tilt] of one method, from one result file."""
 
     label: str
     method: str
-    number: int  # of its colour and symbol
+    number: int  # index of its colour and symbol
     moves: np.ndarray  # tilts, or translations
     correlation: np.ndarray
     error: np.ndarray
@@ -29,7 +29,7 @@ class Series:
         return {"marker": look["marker"], **method_look(self.method, look["color"])}
 
 
-MOST_CURVES = 8  # that a panel holds legibly
+MOST_CURVES = 8  # in a panel, so that it stays legible
 
 
 def is_sweep(result):
@@ -38,7 +38,8 @@ def is_sweep(result):
 
 
 def read_groups(result):
-    """(method, prefix of its datasets): the groups of a `validate` result, the root of others."""
+    """Returns (method, prefix of its datasets) for each method of a result: the groups of a `validate` result, or the
+    root of other results."""
     if result.has("mc/field_correlation"):
         return [(method, f"{method}/") for method in METHODS
                 if result.has(f"{method}/field_correlation")]
@@ -47,23 +48,23 @@ def read_groups(result):
                              'covariance = "memory_effect"')
     method = str(result.attribute("plan", "")).split(":")[0]
     if method not in METHODS:
-        raise style.Unusable(f"{result.path}: attribute plan names no method")
+        raise style.Unusable(f"{result.path}: the attribute plan does not name a method")
     return [(method, "")]
 
 
 def kind_of_moves(results):
-    """tilt or shift (a translation), whichever all results stand on."""
+    """Returns "tilt" or "shift" (a translation), the variable that all results have in common."""
     kinds = {"tilt" if is_sweep(result) else
              result.scale(f"{read_groups(result)[0][1]}field_correlation", 0)[0]: result.path
              for result in results}
     if len(kinds) > 1:
-        raise style.Unusable(f"{kinds['shift']} is of translations, {kinds['tilt']} of tilts: "
-                             "draw them one by one")
+        raise style.Unusable(f"{kinds['shift']} is over translations, but {kinds['tilt']} over tilts: "
+                             "draw them separately")
     return next(iter(kinds))
 
 
 def sides(result, prefix):
-    """(dataset, what to add to its label): of transmitted and of reflected views."""
+    """Returns (dataset, suffix of the label) for transmitted and reflected detection directions."""
     first, reflected = f"{prefix}field_correlation", f"{prefix}reflected_field_correlation"
     if not result.has(reflected):
         return [(first, "")]
@@ -71,7 +72,7 @@ def sides(result, prefix):
 
 
 def result_series(result, label, number):
-    """Lists the curves of one result: one for each side of the medium and method."""
+    """Returns the curves of one result: one for each method and side of the medium."""
     series, groups = [], read_groups(result)
     only_reflected = np.all(np.cos(result.values("view_angle")) < 0)
     for side, (_, of_side) in enumerate(sides(result, groups[0][1])):
@@ -88,7 +89,7 @@ def result_series(result, label, number):
 
 
 def sweep_series(result, label, number, arguments):
-    """A curve for each point of a sweep."""
+    """Returns a curve for each point of a sweep."""
     sweep, series = sweep_file.read(result, arguments), []
     stored = sweep.optional("diffusion_theory")
     for place, row in enumerate(sweep.rows):
@@ -102,8 +103,8 @@ def sweep_series(result, label, number, arguments):
 
 
 def read_series(results, arguments):
-    """Lists the curves of all results, labelled by what differs in their scenes, or by their files where
-    that is not enough."""
+    """Returns the curves of all results. They are labelled by the keys in which their scenes differ, or by their
+    files if the keys do not distinguish them."""
     for names in (labels.labels(results), labels.stems(results)):
         series = []
         for result, label in zip(results, names):
@@ -113,12 +114,13 @@ def read_series(results, arguments):
         if len({s.label for s in series}) == len(series):
             break
     if len(series) > MOST_CURVES and len(results) > 1 and any(map(is_sweep, results)):
-        raise style.Unusable(f"{len(series)} curves, a panel holds {MOST_CURVES}: choose some by --select")
+        raise style.Unusable(f"{len(series)} curves, but a panel can show at most {MOST_CURVES}: "
+                             "choose some with --select")
     return series
 
 
 def draw_theory(axis, series):
-    """Each line once, in grey where it is of several curves. Returns whether there is any."""
+    """Draws each line of theory once, in grey if it belongs to several curves. Returns whether there is any line."""
     lines = [s for s in series if s.line is not None]
     same = lambda one, other: one.line[0].shape == other.line[0].shape and \
         np.allclose(one.line, other.line, rtol=1e-9, atol=1e-12)
@@ -132,7 +134,7 @@ def draw_theory(axis, series):
 
 
 def theory_name(results):
-    """Of light that goes through, or comes back (conventions, C20 and C44)."""
+    """Returns the name of the theory for transmitted or reflected light (conventions, C20 and C44)."""
     if all(result.has("reflection_theory") for result in results) and \
             all(labels.side(result) for result in results):
         return "lines: diffusion and single scattering"
@@ -140,13 +142,13 @@ def theory_name(results):
 
 
 def shared(results, name):
-    """An attribute that all files agree on, else None."""
+    """Returns an attribute if it is the same in all files, otherwise None."""
     values = {result.attribute(name) for result in results}
     return values.pop() if len(values) == 1 else None
 
 
 def share_q(results):
-    """Whether a tilt is the same q L in all files."""
+    """Whether a tilt corresponds to the same q L in all files."""
     if shared(results, "depth") is None or not all(result.has("tilt_q") for result in results):
         return False
     scales = [(result.axis("tilt_q", 0), result.values("tilt_q")) for result in results]
@@ -154,7 +156,7 @@ def share_q(results):
 
 
 def title(results):
-    """Names the values that all results have in common."""
+    """Returns a title with the values that all results have in common."""
     names = {"optical_depth": "OD", "g": "$g$", "albedo": "albedo"}
     words = [f"{text} = {shared(results, name):.3g}" for name, text in names.items()
              if shared(results, name) is not None]
@@ -176,7 +178,7 @@ def draw(results, arguments):
     for s in series:
         correlation_panel.draw_curve(axis, unit * s.moves, s.correlation, s.error, s.look, unseen)
     if not tilts:
-        axis.set_xlabel("translation (unit of length)")
+        axis.set_xlabel("translation (unit of length of the scene)")
     elif share_q(results):
         correlation_panel.add_q_axis(axis, results[0], unit * series[0].moves)
     entries = [(plt.Line2D([], [], linestyle="none", **s.look), s.label) for s in series]

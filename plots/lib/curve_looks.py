@@ -1,4 +1,4 @@
-"""Symbols of curves and points of sweeps, and their legend entries (handle, label)."""
+"""Symbols for curves and points of sweeps, and their legend entries (handle, label)."""
 
 from lib import style
 from lib.sweep_file import LEAST_STEPS, METHODS
@@ -8,34 +8,35 @@ import matplotlib.pyplot as plt
 RING = {"color": "black", "linestyle": "none", "marker": "o", "markersize": 8,
         "markerfacecolor": "none", "markeredgewidth": 0.6}
 SINGLE_SCATTERING = {"color": "0.55", "linewidth": 1.6}
-ARROWS = {1: 11, 2: -11}  # by range_censored: points of print towards where the range may be
-FEW_STEPS = f"fewer than {LEAST_STEPS} tilts up to the range"
+ARROWS = {1: 11, 2: -11}  # by range_censored: length of the arrow towards the possible ranges, in points (1/72 inch)
+FEW_STEPS = f"fewer than {LEAST_STEPS} tilts below the range"
 
 
 def method_look(method, colour, size=3.5):
-    """Monte Carlo open and large where both methods are drawn: the other shows inside."""
+    """Returns the look of a method. If two methods are drawn, Monte Carlo has large open symbols, so that the other
+    method is visible inside."""
     scales = {None: 1, "mc": 1.6}
     return {"color": colour, "markersize": scales.get(method, 0.7) * size,
             "markerfacecolor": "none" if method == "mc" else colour}
 
 
 def curve_look(number, method):
-    """Colour and symbol of one curve; for one method every other one is open, for prints without
-    colour."""
+    """Returns colour and symbol of a curve. If there is only one method, every second curve has open symbols, so that
+    curves can be distinguished without colour."""
     look = style.look(number)
     fill = {} if method or number % 2 == 0 else {"markerfacecolor": "white"}
     return {"marker": look["marker"], **method_look(method, look["color"], 3), **fill}
 
 
 def curve_handle(sweep, number, with_line):
-    """Legend handle of a curve: the symbol of its last method, and a line where theory is drawn."""
+    """Returns the legend handle of a curve: the symbol of its last method, with a line if theory is drawn."""
     look = {**curve_look(number, list(sweep.prefixes)[-1]), "markersize": 3}
     line = style.look(number)["linestyle"] if with_line else "none"
     return plt.Line2D([], [], linewidth=0.7, linestyle=line, **look)
 
 
 def method_entries(sweep):
-    """Of both methods, where a file holds both."""
+    """Yields legend entries of the methods if a file contains several."""
     if len(sweep.prefixes) > 1:
         for method in sweep.prefixes:
             yield plt.Line2D([], [], linestyle="none", marker="o",
@@ -43,16 +44,17 @@ def method_entries(sweep):
 
 
 def range_entries(sweep):
-    """Of bounds and doubtful ranges, as far as there are any."""
+    """Yields legend entries of bounds and of ranges from too few tilts, if there are any."""
     if sweep.has_bounds():
         yield plt.Line2D([], [], color="black", linestyle="none", marker=r"$\uparrow$",
-                         markersize=6), "bound, no error bar"
+                         markersize=6), "bound (no error bar)"
     if sweep.has_few_steps():
         yield plt.Line2D([], [], **RING), FEW_STEPS
 
 
 def draw_bound(axis, at, place, away, colour):
-    """An arrow from a point at places of `place` by (x, y) points of print."""
+    """Draws an arrow that starts at a point, given in the coordinates `place`, and has the length (x, y) in points
+    (1/72 inch)."""
     axis.annotate("", at, xycoords=place, textcoords="offset points", xytext=away, zorder=1,
                   arrowprops={"arrowstyle": "<|-", "color": colour, "shrinkA": 0, "shrinkB": 2,
                               "linewidth": 0.7, "mutation_scale": 6})

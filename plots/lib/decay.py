@@ -1,5 +1,6 @@
-"""Decays of the field correlation of the first light and view over a change of the medium or of the
-light (delays, frequencies), over the scale of diffusion theory, with its lines."""
+"""Draws the decay of the field correlation of the first illumination and detection direction with a change of the
+medium or the light (delay, frequency shift). The change is scaled as in diffusion theory, whose lines are also
+drawn."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,29 +10,30 @@ from lib import labels, style, theory
 import matplotlib.pyplot as plt
 import numpy as np
 
-STEPS = 300  # of a line
+STEPS = 300  # points of a line
 
 
 @dataclass(frozen=True)
 class Decay:
-    """What stands where in a result [change, light, view], and what is drawn of it."""
+    """Names of the datasets [change, light, view] of a kind of decay, and how they are drawn."""
 
     dataset: str
-    option: str  # of covariance, which makes it
-    theory: str  # dataset
-    formula: Callable  # (change, **medium) -> the theory
-    unit: Callable  # result -> what a change is multiplied by in the formula
+    option: str  # option of `covariance` that produces the dataset
+    theory: str  # dataset of diffusion theory
+    formula: Callable  # (change, **medium) -> correlation by theory
+    unit: Callable  # result -> factor by which changes are multiplied for the formula
     scaled: Callable  # (result, changes) -> x
-    x_labels: dict  # by dimension; None: of several
+    x_labels: dict  # by dimension; None: for results of different dimensions
     y_label: str
 
     def diffusion(self, result, change):
         return self.formula(self.unit(result) * change, **theory.medium(result))
 
     def read(self, result):
-        """Change, magnitude and error [change], of the first light and view, and their order."""
+        """Returns changes, magnitudes and errors, [change], for the first illumination and detection direction, and
+        the order that sorts them."""
         if not result.has(self.dataset) or result.dataset(self.dataset).ndim != 3:
-            raise style.Unusable(f"{result.path}: has no {self.dataset} over changes; needs "
+            raise style.Unusable(f"{result.path}: has no {self.dataset} over several changes; requires "
                                  f"{self.option}")
         change = result.axis(self.dataset, 0)
         values, error = (values[:, 0, 0] for values in result.measured(self.dataset))
@@ -39,7 +41,7 @@ class Decay:
         return change[order], np.abs(values[order]), error[order], order
 
     def line(self, result, change, stored):
-        """(changes, correlation) of diffusion theory, between the changes too."""
+        """Returns (changes, correlation) of diffusion theory, also between the changes of the result."""
         if not np.allclose(self.diffusion(result, change), stored, rtol=1e-4):
             return change, stored
         fine = np.linspace(0, np.sqrt(np.abs(change[-1])), STEPS)**2
@@ -54,7 +56,7 @@ def label(result):
 
 
 def draw(results, decay, closed_form=None):
-    """closed_form: (function of x, its label), drawn in grey."""
+    """Draws the decays of all results. closed_form: (function of x, its label), drawn in grey."""
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.8))
     longest = 0
     for number, result in enumerate(results):

@@ -1,4 +1,4 @@
-"""Sweeps of another subcommand: a row for each point, whether the points are a grid or a list."""
+"""Reads sweeps of another subcommand as tables with a row for each point, for grids and lists of points."""
 
 import re
 
@@ -9,42 +9,45 @@ from lib.sweep_file import columns_of
 import h5py
 import numpy as np
 
-HIDDEN = ("_error", "_rare", "_s", "samples")  # endings of datasets that are no results
+HIDDEN = ("_error", "_limit", "_rare", "_s", "samples")  # endings of datasets that are not results
 
 
 def keys_of(result):
-    """Names of the scales of the keys that vary."""
+    """Returns the names of the datasets of the keys that vary."""
     return [key.replace(".", "_") for key in result.swept()]
 
 
 def names_of_numbers(result):
-    """Datasets with one number for each point."""
-    names, keys = [], keys_of(result)
+    """Returns the names of datasets with one number for each point, and NAME[i] for those with several."""
+    names, keys, points = [], keys_of(result), result.dataset("samples").shape
 
     def add(name, item):
-        if isinstance(item, h5py.Dataset) and 0 < item.ndim <= max(1, len(keys)) and item.dtype.kind == "f" \
+        if isinstance(item, h5py.Dataset) and item.shape[:len(points)] == points and item.dtype.kind == "f" \
                 and name not in keys and not name.endswith(HIDDEN) and not name.startswith("state") \
                 and item.attrs.get("CLASS") != b"DIMENSION_SCALE":
-            names.append(name)
+            if item.ndim == len(points):
+                names.append(name)
+            elif item.ndim == len(points) + 1:
+                last = item.shape[-1] - 1
+                names.append(f"{name}[0]" + (f" to {name}[{last}]" if last else ""))
 
     result.file.visititems(add)
     return names
 
 
 class Number:
-    """A number of each point of a sweep: a dataset NAME, or NAME[i], the i-th of several numbers.
+    """A number for each point of a sweep: the dataset NAME, or NAME[i], which is number i of several at each point.
     columns: {key: its values [point]}."""
 
     def __init__(self, result, name):
         if not result.swept():
-            raise Unusable(f"{result.path}: no sweep of another subcommand")
+            raise Unusable(f"{result.path}: is not a sweep of another subcommand")
         found = re.fullmatch(r"(.*?)(?:\[(\d+)\])?", name)
         self.result, self.name, self.path = result, name, found[1]
         self.entry = None if found[2] is None else int(found[2])
         if not result.has(self.path):
-            raise Unusable(f"{result.path}: has no dataset {name}; --value takes one of "
-                           f"{', '.join(names_of_numbers(result))}, or one of several numbers at each "
-                           "point, as power_within[0]")
+            raise Unusable(f"{result.path}: has no dataset {name}; --value must be one of "
+                           f"{', '.join(names_of_numbers(result))}")
         rank = result.dataset(self.path).ndim - (self.entry is not None)
         scales = dict(result.scale(self.path, axis) for axis in range(rank))
         is_list = next(iter(scales), "") in ("point", "swept_point")
@@ -52,7 +55,7 @@ class Number:
             columns_of(scales)
 
     def of(self, path):
-        """The number itself, its error or derivatives: [point, ...]."""
+        """Returns the number itself, its error or its derivatives: [point, ...]."""
         values, rank = self.result.values(path), self.result.dataset("samples").ndim
         if self.entry is not None:
             if values.ndim == rank or self.entry >= values.shape[-1]:
@@ -68,13 +71,13 @@ class Number:
         return self.of(name) if self.result.has(name) else np.zeros_like(self.values())
 
     def derivatives(self, key):
-        """By a key [point], or None."""
+        """Returns the derivatives with respect to a key, [point], or None."""
         name = f"{self.path}_gradient"
         parameters = list(self.result.dataset("parameter").attrs["names"]) if self.result.has(name) else []
         return self.of(name)[:, parameters.index(key)] if key in parameters else None
 
     def label(self):
-        """With its unit, and where it is one of several numbers."""
+        """Returns a label with the unit and, for one of several numbers, its coordinate."""
         dataset = self.result.dataset(self.path)
         scales = [] if self.entry is None else list(dataset.dims[dataset.ndim - 1].values())
         text = self.name if not scales else (f"{self.path}, {scales[0].name.split('/')[-1].replace('_', ' ')} "

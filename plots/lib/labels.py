@@ -1,4 +1,4 @@
-"""What tells results apart, in words: of their scenes what differs, or the names of their files."""
+"""Labels that distinguish results: the keys in which their scenes differ, or the names of their files."""
 
 import pathlib
 
@@ -6,16 +6,16 @@ from lib import style
 
 import numpy as np
 
-# How a result was found, or over what it is drawn: no difference of scenes.
+# Keys of accuracy and method, or of the horizontal axis; they do not count as differences of scenes.
 NOT_SCENE = {"samples", "wave_samples", "seconds", "target_error", "tolerance", "wave_tolerance", "seed", "threads",
              "method", "tilts", "tilt_count", "q_depths", "shifts", "delays", "frequency_shifts", "neglect_k_shift"}
 NAMES = {"optical_depth": "OD", "g": "$g$", "view_angles": "view", "light_angles": "light", "mu_s": r"$\mu_s$",
          "mu_a": r"$\mu_a$"}
-MOST = 2  # differences that a label names
+MOST = 2  # largest number of differences in a label
 
 
 def of_slab(result, digits=3):
-    """Optical depth and mean cosine, to so many digits."""
+    """Returns optical depth and mean cosine as text with `digits` digits."""
     depth, g = (result.attribute(name) for name in ("optical_depth", "g"))
     return rf"OD {depth:.{digits}g}, $g$ = {g:.{digits}g}"
 
@@ -37,28 +37,28 @@ def value_text(key, value):
 
 
 def side(result):
-    """", reflected" of views on the light's side alone; nothing of others."""
+    """Returns ", reflected" if all detection directions are on the illuminated side, otherwise an empty text."""
     if not result.has("view_angle") or np.any(np.cos(result.values("view_angle")) > 0):
         return ""
     return ", reflected"
 
 
 def stems(results):
-    """Names of their files, with as much of the folder as tells them apart."""
+    """Returns the names of the files, with their folder if needed to distinguish them."""
     paths = [pathlib.Path(result.path) for result in results]
     short = [path.stem for path in paths]
     return short if len(set(short)) == len(short) else [f"{path.parent.name}/{path.stem}" for path in paths]
 
 
 def labels(results):
-    """A text for each result; nothing for one alone."""
+    """Returns a text for each result; an empty one for a single result."""
     if len(results) == 1:
         return [""]
     scenes = [result.scene for result in results]
     keys = [key for key in sorted(set().union(*scenes) - NOT_SCENE)
             if any(scene.get(key) != scenes[0].get(key) for scene in scenes)]
     if not keys and len({result.path for result in results}) > 1:
-        return [""] * len(results)  # one scene: methods tell them apart
+        return [""] * len(results)  # all results have the same scene; methods distinguish them
     if len(keys) > MOST or any(key not in scene for key in keys for scene in scenes):
         return stems(results)
     sign = lambda key: "" if key.endswith("_angles") else "= "

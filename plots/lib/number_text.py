@@ -1,4 +1,4 @@
-"""Numbers as people read them."""
+"""Formats numbers for text and tables."""
 
 import math
 
@@ -7,12 +7,12 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u207
 
 
 def minus(text):
-    """With a true minus sign."""
+    """Returns the text with typographic minus signs."""
     return text.replace("-", "\u2212")
 
 
 def digits(value, count=3):
-    """So many significant digits, without an exponent between 1e-4 and 1e6."""
+    """Returns a number with `count` significant digits, without an exponent between 1e-4 and 1e6."""
     if value == 0:
         return "0"
     magnitude = math.floor(math.log10(abs(value)))
@@ -24,7 +24,7 @@ def digits(value, count=3):
 
 
 def power(value, count=2):
-    """1.2 x 10^-13."""
+    """Returns a number in the form 1.2 x 10^-13."""
     if value == 0:
         return "0"
     mantissa, exponent = f"{value:.{count - 1}e}".split("e")
@@ -32,7 +32,7 @@ def power(value, count=2):
 
 
 def with_error(value, error):
-    """Value and the error of its last digits: 0.498(4)."""
+    """Returns a value and the error of its last digits, in the form 0.498(4)."""
     if not error > 0:
         return digits(value)
     places = max(1 - math.floor(math.log10(error)), 0)
@@ -42,12 +42,12 @@ def with_error(value, error):
 
 
 def exponent(value, error):
-    """The same to three places at most."""
+    """Returns a value and its error in the same form, with at most three decimals."""
     return with_error(value, max(error, 1e-3))
 
 
 def plus_minus(value, error):
-    """1.52 ± 0.03, as many digits as two of the error ask for."""
+    """Returns a value and its error in the form 1.52 ± 0.03, with two digits of the error."""
     if not error > 0:
         return digits(value)
     places = min(max(1 - math.floor(math.log10(error)), 0), 3)
@@ -55,7 +55,7 @@ def plus_minus(value, error):
 
 
 def seconds(value):
-    """In the unit that suits."""
+    """Returns a time in a suitable unit."""
     for size, unit in ((3600, "h"), (60, "min")):
         if value >= 10 * size:
             return f"{digits(value / size, 2)} {unit}"
@@ -66,5 +66,5 @@ def seconds(value):
 
 
 def factor(value):
-    """"3.2", "45", "1,200": ratios."""
+    """Returns a ratio in the form 3.2, 45 or 1,200."""
     return f"{value:,.0f}" if value >= 100 else digits(value, 2 if value >= 10 else 3)

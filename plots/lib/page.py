@@ -1,4 +1,4 @@
-"""A page of panels with one legend outside of them."""
+"""Pages of panels with one legend outside the panels."""
 
 import textwrap
 
@@ -7,14 +7,14 @@ from lib import style
 import matplotlib.pyplot as plt
 import numpy as np
 
-LETTERS = 17  # of a legend, to an inch
-MOST_ROWS = 3  # of a legend and its notes over a single panel
+LETTERS = 17  # of a legend, per inch
+MOST_ROWS = 3  # of a legend and its notes above a single panel
 
 
 def page_of_panels(down, across, count, beneath=0):
-    """Figure and axes [down, across] of a page or, for one panel across, of a column; those after
-    `count` are left out. With `beneath`, a share of a panel's height, also the axes [down, across]
-    of narrow panels beneath these."""
+    """Returns a figure and its axes [down, across], as wide as a page or, for one panel across, as a column. Panels
+    after number `count` are removed. If `beneath`, a fraction of a panel's height, is not 0, also returns the axes
+    [down, across] of narrow panels below them."""
     width = style.COLUMN if across == 1 else min(style.PAGE, 2.4 * across)
     height = min(min(2.1, 1.3 * width / across) * (1 + beneath), (style.PAGE_HEIGHT - 0.5) / down)
     heights = [1, beneath] * down if beneath else [1] * down
@@ -31,7 +31,7 @@ def page_of_panels(down, across, count, beneath=0):
 
 
 def side_by_side(result, panels, width, height, **looks):
-    """A figure of panels, each drawn by a function of (axis, result)."""
+    """Returns a figure of panels, each drawn by a function of (axis, result)."""
     figure, axes = plt.subplots(1, len(panels), figsize=(width, height), **looks)
     for axis, draw_panel in zip(axes, panels):
         draw_panel(axis, result)
@@ -39,7 +39,7 @@ def side_by_side(result, panels, width, height, **looks):
 
 
 def outer_labels(axes, count):
-    """Labels at the left and beneath the lowest panel of each column alone."""
+    """Keeps axis labels only at the left and below the lowest panel of each column."""
     for (row, column), axis in np.ndenumerate(axes):
         lowest = (row + 1) * axes.shape[1] + column >= count
         label_sides(axis, column == 0, lowest)
@@ -52,22 +52,22 @@ def label_sides(axis, left, bottom):
 
 
 def labelled(axes):
-    """Legend entries (handle, label) of what is drawn in some axes, each label once."""
+    """Returns legend entries (handle, label) of everything drawn in some axes, each label once."""
     entries = {label: handle for axis in axes
                for handle, label in zip(*axis.get_legend_handles_labels())}
     return [(handle, label) for label, handle in entries.items()]
 
 
 def legend_above(figure, entries, columns, **looks):
-    """A legend of (handle, label) over the figure."""
+    """Adds a legend of (handle, label) above the figure."""
     handles, labels = zip(*entries) if entries else ((), ())
     figure.legend(handles, labels, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=columns,
                   **looks)
 
 
 def legend_outside(figure, entries, notes=()):
-    """A legend of (handle, label), headed by notes: over the figure, or beside a single panel if it
-    would be higher than a few rows."""
+    """Adds a legend of (handle, label), headed by notes: above the figure, or beside a single panel if it would have
+    more than a few rows."""
     if not entries and not notes:
         return
     letters = LETTERS * figure.get_figwidth()

@@ -1,4 +1,4 @@
-"""Pictures of `flatspeckle render`: their axes, units and tone mapping."""
+"""Axes, units and tone mapping of pictures of `flatspeckle render`."""
 
 from lib import labels, script
 from lib.result_file import Result, Unusable
@@ -7,23 +7,23 @@ import numpy as np
 from matplotlib.colors import LogNorm, Normalize, PowerNorm
 
 LENGTHS = {1.0: "m", 1e-2: "cm", 1e-3: "mm", 1e-6: "µm", 1e-9: "nm"}
-BRIGHTEST = 0.999  # of the pixels; those above share one colour
+BRIGHTEST = 0.999  # quantile of the pixels; brighter ones share one colour
 UNITS = {"1/(length^2 sr)": "{}$^{{-2}}$ sr$^{{-1}}$", "1/length^2": "{}$^{{-2}}$", "1/length^3": "{}$^{{-3}}$",
          "1/sr": "sr$^{{-1}}$", "1": ""}
 TONES = ("linear", "root", "log")
-DARK = 0.01  # of the brightest: where half of the lit pixels are below, a logarithm shows more
-FAINTEST = 0.02  # of the lit pixels: those below need no room on a logarithm
+DARK = 0.01  # fraction of the brightest; if half of the lit pixels are darker, the scale is logarithmic
+FAINTEST = 0.02  # quantile of the lit pixels where a logarithmic scale begins
 MOST_DECADES = 6
 
 
 class Sensor(Result):
-    """One of the several sensors of a result."""
+    """One sensor of a result that has several."""
 
     def __init__(self, result, name):
         self.path, self.file, self.group = f"{result.path}, {name}", result.file, f"sensors/{name}"
 
     def locate(self, name):
-        """Its own dataset, or that of all sensors."""
+        """Returns the sensor's own dataset, or else the one that all sensors share."""
         own = f"{self.group}/{name}"
         return own if own in self.file else name
 
@@ -33,43 +33,49 @@ def names_of_sensors(result):
 
 
 def sensors(results):
-    """[(what tells it apart, sensor)] of each sensor of each result."""
+    """Returns (distinguishing label, sensor) for each sensor of each result."""
     return [(labels.joined(label, name), Sensor(result, name) if name else result)
             for result, label in zip(results, labels.labels(results))
             for name in names_of_sensors(result) or [""]]
 
 
 def chosen(result, name):
-    """One sensor of a result, which must be named where there are several."""
+    """Returns one sensor of a result. If the result has several, `name` is required."""
     names = names_of_sensors(result)
     if (name or names) and name not in names:
         raise Unusable(f"{result.path}: --sensor must be one of {' '.join(names) or 'none'}")
     return Sensor(result, name) if name else result
 
 
+def is_picture(result):
+    """Whether the image of a sensor has rows and columns, and more than one pixel."""
+    image = result.dataset("image")
+    return image.ndim == 2 and image.size > 1
+
+
 def edges(centres):
-    """Where the first pixel begins and the last one ends."""
+    """Returns the outer edges of the first and the last pixel."""
     step = (centres[-1] - centres[0]) / max(len(centres) - 1, 1) or 1
     return centres[0] - step / 2, centres[-1] + step / 2
 
 
 def length_name(result):
-    """Of the unit of length."""
+    """Returns the name of the unit of length."""
     unit = result.attribute("length_unit")
     named = [name for metres, name in LENGTHS.items() if unit and np.isclose(metres, unit)]
     return named[0] if named else "length"
 
 
 def unit_name(result, name):
-    """Of a dataset, with the unit of length by its name."""
+    """Returns the unit of a dataset, with the name of the unit of length."""
     units = result.dataset(name).attrs["units"]
     return UNITS.get(units, units).format(length_name(result))
 
 
 def quantity(result):
-    """What a pixel reads, in symbols."""
+    """Returns the name of the measured quantity, with its unit."""
     units = result.dataset("image").attrs["units"]
-    symbol = {"1/(length^2 sr)": "$L/n^2$", "1/length^2": "irradiance"}.get(units, "power")
+    symbol = {"1/(length^2 sr)": "basic radiance $L/n^2$", "1/length^2": "irradiance"}.get(units, "power")
     return f"{symbol} ({unit_name(result, 'image')})"
 
 
@@ -78,8 +84,8 @@ def axis_names(result):
     if units == "length":
         return [f"${axis}$ ({length_name(result)})" for axis in "xy"]
     if result.dataset("image").attrs["units"] == "1/sr":
-        return "direction, sideways", "direction, upwards"
-    return "tangent, sideways", "tangent, upwards"
+        return "direction component, sideways", "direction component, upwards"
+    return "tangent of the angle, sideways", "tangent of the angle, upwards"
 
 
 def extent(result):
@@ -89,11 +95,11 @@ def extent(result):
 
 
 def tone(pictures, kind, decades):
-    """A norm for all of the pictures; kind and decades of what they hold, where they are None."""
+    """Returns a colour norm for all pictures. If kind or decades is None, it is chosen from the pixel values."""
     values = np.concatenate([np.ravel(picture) for picture in pictures])
     lit = values[values > 0]
     if len(lit) == 0:
-        raise Unusable("nothing but dark pixels")
+        raise Unusable("all pixels are dark")
     high = np.quantile(lit, BRIGHTEST)
     kind = kind or ("log" if np.median(lit) < DARK * high else "root")
     if kind == "log":
@@ -103,11 +109,12 @@ def tone(pictures, kind, decades):
 
 
 def tone_options(default=None):
-    """Options of a plot: --tone and --decades."""
-    words = default or "root, or log where most of the picture is dark"
+    """Returns a decorator that adds the options --tone and --decades to a plot."""
+    words = default or "root, or log if most of the picture is dark"
     tone = script.option("--tone", choices=TONES, default=default,
-                         help=f"how brightness becomes colour (default: {words})")
-    decades = script.option("--decades", type=float, help="of log (default: as many as there is light)")
+                         help=f"scale from brightness to colour (default: {words})")
+    decades = script.option("--decades", type=float,
+                             help="range of --tone log in powers of ten (default: that of the lit pixels)")
     return lambda draw: tone(decades(draw))
 
 
@@ -117,7 +124,7 @@ def height_over_width(result):
 
 
 def below(values, errors):
-    """Error bars that a logarithmic axis can show."""
+    """Returns error bars that a logarithmic axis can show."""
     return np.minimum(errors, 0.999 * values)
 
 

@@ -1,4 +1,4 @@
-"""Axes of plots of the memory-effect range: against which parameter, on which scales."""
+"""Axes of plots of the memory-effect range: labels and scales for each parameter."""
 
 from lib import style
 
@@ -10,12 +10,12 @@ LABELS = {"albedo": "absorption 1 \u2212 albedo", "g": "mean cosine $g$",
           "radius": "radius (wavelength = {:g})",
           "density": "density (per area, wavelength = {:g})"}
 RANGE = r"range $qL$ at $C_I = 1/2$"
-MOST_TICKS = 16  # at the values themselves
-CLOSE = 0.13  # of an axis: two numbers nearer than this run into each other
+MOST_TICKS = 16  # largest number of ticks placed at the values themselves
+CLOSE = 0.13  # fraction of an axis; tick labels closer than this would overlap
 
 
 def numbers_apart(axis, values):
-    """Texts of ticks, the largest first; none where it would run into the next."""
+    """Returns the texts of ticks, the largest first; empty if a text would overlap the next one."""
     places = axis.xaxis.get_transform().transform(values)
     texts, last = style.short(values), np.inf
     for number in reversed(range(len(values))):
@@ -27,7 +27,7 @@ def numbers_apart(axis, values):
 
 
 def scale_axis(axis, against, x, wavelength):
-    """A logarithm where the values span much; absorption down to none by a linear piece at 0."""
+    """Makes an axis logarithmic if its values span a large range. For absorption, the axis is linear near 0."""
     axis.set_xlabel(LABELS[against].format(wavelength))
     values = np.unique(x)
     least = values[values > 0].min(initial=1)
@@ -44,8 +44,8 @@ def scale_axis(axis, against, x, wavelength):
 
 
 def limits(sweep, single):
-    """(low, high, whether on a logarithmic scale): all ranges and the single-scattering limit;
-    diffusion theory from half the least range on, for it is meaningless where the slab is thinner
+    """Returns (low, high, whether the axis is logarithmic), so that all ranges and the single-scattering limit are
+    visible. Diffusion theory is shown only above half the smallest range, because it is meaningless for slabs thinner
     than a transport mean free path."""
     shown = [sweep.of(method, "memory_effect_range")[sweep.rows] for method in sweep.prefixes]
     low, high = np.min(shown), max([np.max(shown), *single])
@@ -54,13 +54,13 @@ def limits(sweep, single):
         shown = diffusion[sweep.rows][diffusion[sweep.rows] >= low / 2]
         low, high = np.min(shown, initial=low), np.max(shown, initial=high)
     if high > 4 * low:
-        return low / 1.15, high * max(1.45, (high / low)**0.12), True  # with room for arrows
+        return low / 1.15, high * max(1.45, (high / low)**0.12), True  # leaves room for arrows
     spread = max(high - low, 0.3 * high)
     return max(0, low - 0.15 * spread), high + 0.2 * spread, False
 
 
 def scale_range(axis, sweep, single, vertical=True):
-    """Scale, ticks and limits of the axis of ranges."""
+    """Sets scale, ticks and limits of the axis of ranges."""
     low, high, logarithmic = limits(sweep, single)
     side = axis.yaxis if vertical else axis.xaxis
     if logarithmic:
@@ -70,7 +70,7 @@ def scale_range(axis, sweep, single, vertical=True):
 
 
 def diffusion_in_view(sweep, single):
-    """Whether diffusion theory is in view at every selected point, and whether at any."""
+    """Returns whether diffusion theory is within the axis limits at all selected points, and whether at any."""
     diffusion = sweep.optional("diffusion_range")
     if diffusion is None:
         return True, False
@@ -79,10 +79,10 @@ def diffusion_in_view(sweep, single):
 
 
 def notes(sweep, single):
-    """What is to be said of theories that are not in view."""
+    """Yields notes on theories outside the axis limits."""
     every, some = diffusion_in_view(sweep, single or [])
     if not every:
         part = "partly " if some else ""
-        yield f"diffusion theory: {part}out of view, below half the least range"
+        yield f"diffusion theory: {part}below the axis (less than half the smallest range)"
     if single == []:
-        yield "single scattering: no fall to 1/2 within the tilts"
+        yield "single scattering: $C_I$ stays above 1/2 at all tilts"

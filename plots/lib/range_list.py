@@ -1,4 +1,4 @@
-"""Ranges of the memory effect of a list of points: a row for each, named by what sets it apart."""
+"""Draws the memory-effect ranges of a list of points, with a row for each point, labelled by its parameters."""
 
 from lib import curve_looks, page, range_axes, style
 
@@ -8,7 +8,7 @@ from matplotlib.transforms import offset_copy
 
 MOST_POINTS = 40
 STEP = 0.2  # inches from row to row
-ASIDE = {None: 0, "mc": 2, "wave": -2, "transport": -2}  # points of print
+ASIDE = {None: 0, "mc": 2, "wave": -2, "transport": -2}  # shift of symbols, in points (1/72 inch)
 THEORY = {"color": "black", "marker": "|", "markersize": 8, "linestyle": "none"}
 
 
@@ -28,7 +28,7 @@ def draw_method(axis, sweep, method, places):
 
 
 def entries(sweep, single):
-    """Legend entries (handle, label)."""
+    """Yields legend entries (handle, label)."""
     yield from curve_looks.method_entries(sweep)
     if range_axes.diffusion_in_view(sweep, single)[1]:
         yield plt.Line2D([], [], **THEORY), "diffusion theory"
@@ -38,9 +38,9 @@ def entries(sweep, single):
 
 
 def draw(sweep, single):
-    """single: as Sweep.single_scattering_range gives it."""
+    """Draws the rows. single: result of Sweep.single_scattering_range."""
     if len(sweep.rows) > MOST_POINTS:
-        sweep.refuse(f"{len(sweep.rows)} points, at most {MOST_POINTS} rows are legible",
+        sweep.refuse(f"{len(sweep.rows)} points, but at most {MOST_POINTS} rows are legible",
                      (sweep.varying()[0], 3))
     places = np.arange(len(sweep.rows))
     figure, axis = plt.subplots(figsize=(style.COLUMN + 1.4, 0.6 + STEP * (len(places) + 1)))

@@ -1,4 +1,4 @@
-"""Reading of result files, with one clear complaint about whatever is missing."""
+"""Reads result files and reports missing contents in one line."""
 
 import functools
 import pathlib
@@ -9,18 +9,18 @@ import numpy as np
 
 
 class Unusable(Exception):
-    """A result file without what the plot needs; the message says which file and what."""
+    """Raised if a result file lacks data that the plot needs; the message names the file and the data."""
 
 
 def complaint(path):
-    """Why there is no result at a path."""
+    """Returns the reason why there is no result at a path."""
     path = path.rstrip("/")
     folder = path if path.endswith(".shards") else f"{path}.shards"
     if pathlib.Path(path).is_file():
         return f"{path}: not a readable result file"
     if pathlib.Path(folder).is_dir():
         return (f"{path}: {'no file' if path == folder else 'no such file'}; flatspeckle merge "
-                f"--partial --out NOW.h5 --shards {folder} makes a file of the points so far")
+                f"--partial --out NOW.h5 --shards {folder} writes a file of the points finished so far")
     return f"{path}: {'a folder' if pathlib.Path(path).is_dir() else 'no such file'}"
 
 
@@ -35,16 +35,16 @@ class Result:
             raise Unusable(complaint(path))
 
     def locate(self, name):
-        """Path of a dataset in the file."""
+        """Returns the path of a dataset in the file."""
         return name
 
     def has(self, name):
         return self.locate(name) in self.file
 
     def require(self, name, hint=""):
-        """Refuses a result without a dataset; the hint says what makes it."""
+        """Raises Unusable if a dataset is missing; the hint names the option that produces it."""
         if not isinstance(self.file.get(self.locate(name)), h5py.Dataset):
-            why = ("is not complete: the same command with --resume goes on; "
+            why = ("is not complete (the same command with --resume continues it); "
                    if self.attribute("complete") == 0 or set(self.file) == {"state"} else "")
             raise Unusable(f"{self.path}: {why}has no dataset {name}" + (f"; {hint}" if hint else ""))
 
@@ -56,48 +56,48 @@ class Result:
         return self.dataset(name)[...]
 
     def measured(self, name):
-        """Values of a dataset and their errors."""
+        """Returns the values of a dataset and their errors."""
         return self.values(name), self.values(f"{name}_error")
 
     def texts(self, name):
         return [text.decode() for text in self.values(name)]
 
     def scale(self, name, number):
-        """Name and values of the scale of one axis of a dataset."""
+        """Returns name and values of the scale of one axis of a dataset."""
         dimension = self.dataset(name).dims[number]
         if len(dimension) == 0:
             raise Unusable(f"{self.path}: axis {number} of {name} has no scale")
         return dimension[0].name.split("/")[-1], dimension[0][...]
 
     def axis(self, name, number):
-        """Values of the scale of one axis of a dataset."""
+        """Returns the values of the scale of one axis of a dataset."""
         return self.scale(name, number)[1]
 
     def attribute(self, name, default=None, group="/"):
         return self.file[group].attrs.get(name, default)
 
     def unit(self, name):
-        """The unit of a dataset; nothing where it has none."""
+        """Returns the unit of a dataset; an empty text if it has none."""
         unit = self.dataset(name).attrs.get("units", "")
         return "" if unit == "1" else unit
 
     @functools.cached_property
     def scene(self):
-        """The resolved keys, as the file has them: {key: value}."""
+        """Returns the resolved keys of the run, {key: value}."""
         return tomllib.loads(self.attribute("config", ""))
 
     def swept(self):
-        """Keys that vary in a sweep of another subcommand; none of other results."""
+        """Returns the keys that vary in a sweep of another subcommand; an empty list for other results."""
         return list(self.attribute("swept", [])) if self.attribute("of") else []
 
 
 class Table(np.ndarray):
-    """The rows of a table; `path` is its file."""
+    """Rows of a table; `path` is its file."""
 
 
 def read_table(path, columns=()):
-    """A CSV table with a line of names: [row], each column by its name. Lines that begin with # are
-    comments. Refuses one without rows, or without some columns."""
+    """Reads a CSV table whose first line contains the names of columns; returns [row] with named columns. Lines that
+    begin with # are comments. Raises Unusable if there are no rows or columns are missing."""
     try:
         with open(path, encoding="utf-8-sig") as file:
             lines = [line for line in file if not line.startswith("#")]
@@ -105,7 +105,7 @@ def read_table(path, columns=()):
             raise Unusable(f"{path}: has no rows")
         table = np.atleast_1d(np.genfromtxt(lines, delimiter=",", names=True, dtype=None, encoding="utf-8")).view(Table)
     except (ValueError, TypeError, IndexError):
-        raise Unusable(f"{path}: is no CSV table")
+        raise Unusable(f"{path}: is no CSV table with equally long rows")
     lacking = [name for name in columns if name not in (table.dtype.names or ())]
     if lacking:
         raise Unusable(f"{path}: has no column {', '.join(lacking)}")

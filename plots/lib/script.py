@@ -1,5 +1,5 @@
-"""The command line of the plots. A script declares its plot by `@script.plot()` on the last of its
-functions, which draws; run as a program, the script then draws the files of its command line."""
+"""Command line of the plot scripts. A script declares its plot by the decorator `@script.plot()` on its last
+function, which draws. If the script is run as a program, it then draws the files named on its command line."""
 
 import argparse
 import contextlib
@@ -17,17 +17,17 @@ from lib.result_file import Result, Unusable
 
 @dataclasses.dataclass(frozen=True)
 class Plot:
-    """The function that draws, and the files and options that it takes."""
+    """A function that draws, and the files and options that it accepts."""
 
-    draw: Callable  # (result, or with `several` results; with options also arguments) -> figure
-    options: list  # (names, settings), as argparse's add_argument takes them
-    several: bool = False  # any number of files
-    needs: dict = dataclasses.field(default_factory=dict)  # datasets, and what makes them
-    one_run: bool = False  # sweeps are refused
-    dpi: int = None  # of the PNG file, where it is not that of style
-    read: Callable = Result  # path -> what is drawn
+    draw: Callable  # (result, or a list if `several`; also arguments if there are options) -> figure
+    options: list  # (names, settings) for argparse's add_argument
+    several: bool = False  # whether any number of files is accepted
+    needs: dict = dataclasses.field(default_factory=dict)  # {required dataset: hint how to produce it}
+    one_run: bool = False  # whether sweeps are rejected
+    dpi: int = None  # resolution of the PNG file, if not the default of style
+    read: Callable = Result  # reads a file: path -> object to be drawn
     metavar: str = "RESULT.h5"
-    default: str = None  # the file that is drawn where none is given
+    default: str = None  # file that is drawn if none is given
 
     @property
     def description(self):
@@ -38,11 +38,11 @@ class Plot:
             parser.add_argument(*names, **settings)
 
     def figure(self, files, arguments):
-        """files: as `read` returns them."""
+        """Returns the figure. files: objects returned by `read`."""
         for file in files:
             if self.one_run and file.swept():
-                raise Unusable(f"{file.path}: a sweep over {', '.join(file.swept())}, no one picture; "
-                               "plots/experiment_map.py --value NAME draws a number of it")
+                raise Unusable(f"{file.path}: is a sweep over {', '.join(file.swept())}, not a single run; "
+                               "plots/experiment_map.py --value NAME draws one of its numbers")
             for name, hint in self.needs.items():
                 file.require(name, hint)
         drawn = files if self.several else files[0]
@@ -51,16 +51,16 @@ class Plot:
         except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as problem:
             names = ", ".join(str(file.path) for file in files)
             why = " ".join(f"{type(problem).__name__}: {problem}".split())
-            raise Unusable(f"{names}: does not hold what this plot draws ({why})") from problem
+            raise Unusable(f"{names}: does not hold the data that this plot needs ({why})") from problem
 
     def run(self):
-        """Draws the command line's files; ends with status 2 if they lack something."""
+        """Draws the files of the command line. Exits with status 2 if they lack required data."""
         matplotlib.use("Agg")
         parser = argparse.ArgumentParser(description=self.description)
         parser.add_argument("results", metavar=self.metavar,
                             nargs="*" if self.default else "+" if self.several else 1)
-        parser.add_argument("--out", metavar="PREFIX", help="writes PREFIX.png and PREFIX.pdf "
-                            "(default: beside the first result, named after it and this plot)")
+        parser.add_argument("--out", metavar="PREFIX", help="write PREFIX.png and PREFIX.pdf "
+                            "(default: next to the first result, named after it and this plot)")
         self.add_options(parser)
         arguments = parser.parse_args()
         with complaints():
@@ -70,8 +70,8 @@ class Plot:
 
 
 def plot(**settings):
-    """Declares the function that draws: settings are those of Plot. In a script that is run it draws
-    at once, so that it must be the last of the script."""
+    """Declares the function that draws; settings are the fields of Plot. In a script that is run as a program, the
+    function is called at once, so it must be the last one in the script."""
     def declare(draw):
         draw.plot = Plot(draw, getattr(draw, "options", []), **settings)
         if draw.__globals__["__name__"] == "__main__":
@@ -81,7 +81,7 @@ def plot(**settings):
 
 
 def option(*names, **settings):
-    """Declares an option of the plot's command line, as argparse's add_argument does."""
+    """Declares an option of the plot's command line, with the arguments of argparse's add_argument."""
     def declare(draw):
         draw.options = [(names, settings), *getattr(draw, "options", [])]
         return draw
@@ -90,7 +90,7 @@ def option(*names, **settings):
 
 @contextlib.contextmanager
 def complaints():
-    """Ends the program with status 2 and one line where a file is not what it should be."""
+    """Exits with status 2 and a one-line message if a file cannot be used."""
     try:
         yield
     except Unusable as problem:
@@ -103,8 +103,8 @@ def complaints():
 
 
 def output_prefix(arguments):
-    """PREFIX of --out, also if it ends like one of the files; beside the first result without, in the
-    working folder where no result is given."""
+    """Returns the PREFIX of --out, without an ending .png or .pdf. Without --out it is next to the first result, or
+    in the working folder if no result is given."""
     if not arguments.out:
         beside = [str(pathlib.Path(path).with_suffix("")) for path in arguments.results[:1]]
         return "_".join([*beside, pathlib.Path(sys.argv[0]).stem])

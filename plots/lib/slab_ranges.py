@@ -1,5 +1,5 @@
-"""Memory-effect ranges of any number of slabs over a number of theirs, a curve for each optical depth
-and g."""
+"""Draws memory-effect ranges of any number of slabs against a number computed for each, with a curve for each optical
+depth and g."""
 
 from lib import labels, range_axes, style
 
@@ -10,7 +10,7 @@ NEEDS = {"memory_effect_range": "needs --covariance memory_effect"}
 
 
 def draw(results, number_of, number_label):
-    """number_of(result): the number that stands across."""
+    """Draws the ranges. number_of(result): value on the horizontal axis."""
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.8))
     curves = {}
     for result in results:

@@ -1,4 +1,5 @@
-"""The look of the plots. To be imported before the packages that it looks for."""
+"""Style of the plots. Scripts import it before matplotlib, h5py and numpy, because it checks that these are
+installed."""
 
 import importlib
 import logging
@@ -12,7 +13,7 @@ for package in ("matplotlib", "h5py", "numpy"):
               "use /usr/bin/python3", file=sys.stderr)
         sys.exit(2)
 
-logging.getLogger("fontTools").setLevel(logging.ERROR)  # of the ages of fonts
+logging.getLogger("fontTools").setLevel(logging.ERROR)  # suppresses warnings about dates of font files
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap
@@ -20,14 +21,15 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from lib.result_file import Unusable
 
-# Okabe and Ito 2008: told apart by the colour blind, and in grey by marker and line style besides.
+# Colours of Okabe and Ito 2008, which colour-blind readers can distinguish; marker and line style also differ, for
+# prints in grey.
 COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000", "#8C510A"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "p"]
 LINES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (7, 2)), (0, (1, 1)), (0, (3, 1, 1, 1))]
 GREY = "0.5"
 INDEX = LinearSegmentedColormap.from_list("index", ["white", "#56B4E9", "#00456b"])
-COLUMN, PAGE, PAGE_HEIGHT = 3.4, 7.0, 8.6  # of a journal, inches
-PAD = 0.02  # of paper around what is drawn, inches
+COLUMN, PAGE, PAGE_HEIGHT = 3.4, 7.0, 8.6  # widths and height of a journal page, inches
+PAD = 0.02  # margin around the figure, inches
 
 LOOK = {
     "font.size": 8, "axes.labelsize": 8, "axes.titlesize": 8, "legend.fontsize": 7,
@@ -43,40 +45,40 @@ plt.rcParams.update(LOOK)
 
 
 def look(number):
-    """Colour, marker and line style of curve `number`, all different from its neighbours'."""
+    """Returns colour, marker and line style of curve `number`; all three differ from those of neighbouring curves."""
     return {"color": COLOURS[number % len(COLOURS)], "marker": MARKERS[number % len(MARKERS)],
             "linestyle": LINES[number % len(LINES)]}
 
 
 def line(number):
-    """Colour and line style of curve `number`."""
+    """Returns colour and line style of curve `number`."""
     return {key: look(number)[key] for key in ("color", "linestyle")}
 
 
 def symbols(number):
-    """Look of the points of curve `number` with error bars and without a line between them."""
+    """Returns the look of curve `number` as points with error bars, without connecting lines."""
     return {**look(number), "linestyle": "none", "elinewidth": 0.7}
 
 
 def mark(axis, height):
-    """A dotted line in grey at a value that has a meaning."""
+    """Draws a dotted grey line at a reference value."""
     axis.axhline(height, color=GREY, linewidth=0.6, linestyle=(0, (1, 2)), zorder=0)
 
 
 def circle(points=200):
-    """[x or y, point] of the unit circle."""
+    """Returns points of the unit circle, [x or y, point]."""
     turn = np.linspace(0, 2 * np.pi, points)
     return np.array([np.cos(turn), np.sin(turn)])
 
 
 def short(values):
-    """Numbers in three significant digits, or more where two would read the same."""
+    """Returns numbers with three significant digits, or more if two texts would be equal."""
     texts = [f"{value:.3g}" for value in values]
     return texts if len(set(texts)) == len(texts) else [f"{value:g}" for value in values]
 
 
 def angle(value):
-    """An angle in words."""
+    """Returns an angle as text."""
     turns = {0.5: r"$\pi/2$", 1.0: r"$\pi$"}
     for turn, name in turns.items():
         if np.isclose(abs(value), turn * np.pi):
@@ -85,7 +87,7 @@ def angle(value):
 
 
 def angle_axis(axis, angles, label):
-    """A horizontal axis in radians, in steps of pi/2 where it spans more than a quadrant or two."""
+    """Labels a horizontal axis in radians, with ticks at multiples of pi/2 if it spans a large angle."""
     axis.set_xlabel(f"{label} (rad)")
     if np.ptp(angles) <= np.pi / 2:
         return
@@ -97,7 +99,7 @@ def angle_axis(axis, angles, label):
 
 
 def in_equal_ratios(values):
-    """Whether rising values are, so that a logarithmic axis is theirs."""
+    """Whether ascending values have equal ratios, so that a logarithmic axis suits them."""
     if len(values) < 3 or values[0] <= 0:
         return False
     steps = np.diff(np.log(values))
@@ -105,7 +107,7 @@ def in_equal_ratios(values):
 
 
 def whole_decades(axis):
-    """Limits at powers of ten, so that each axis has at least two labels."""
+    """Moves the limits of a logarithmic axis to powers of ten, so that it has at least two labels."""
     for low_high, limit in ((axis.dataLim.intervalx, axis.set_xlim),
                             (axis.dataLim.intervaly, axis.set_ylim)):
         low, high = np.log10(low_high)
@@ -119,14 +121,14 @@ def no_minor_numbers(axis):
 
 
 def few_decades(side, steps=(1, 2, 5)):
-    """Numbers at these steps of every decade on a logarithmic axis that spans few."""
+    """Labels these steps of every decade, for a logarithmic axis that spans few decades."""
     side.set_major_locator(LogLocator(subs=steps))
     side.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     side.set_minor_formatter(NullFormatter())
 
 
 def caption(figure, sentences):
-    """Keeps what a figure's caption has to say: it is printed, and stands in both files' metadata."""
+    """Adds sentences to a figure's caption, which is printed and written into the metadata of both files."""
     figure.caption = "; ".join([*filter(None, [getattr(figure, "caption", "")]), *sentences])
 
 
@@ -138,4 +140,4 @@ def save(figure, prefix, dpi=None):
                              ("pdf", {"CreationDate": None, "Subject": text or None})):
         figure.savefig(f"{prefix}.{ending}", metadata=metadata, dpi=dpi or LOOK["savefig.dpi"])
         print(f"wrote {prefix}.{ending}")
-        figure.set_layout_engine("none")  # both files show what the first laid out
+        figure.set_layout_engine("none")  # both files use the same layout

@@ -1,8 +1,8 @@
-"""Theories of the memory effect of a slab, as curves: result files hold them at the tilts alone."""
+"""Theories of the memory effect of a slab as smooth curves; result files contain them only at the tilts."""
 
 import numpy as np
 
-STEPS = 200  # of a line
+STEPS = 200  # points of a line
 
 
 def log_sinh(a):
@@ -13,15 +13,15 @@ EXTRAPOLATION = {2: 0.818, 3: 0.7104}  # in transport mean free paths, by dimens
 
 
 def slab_losses(loss, depth, optical_depth, g, albedo, dimension=2):
-    """What is left in diffusion theory (conventions, C20) where its kappa^2 grows by `loss`, which
-    may be complex."""
+    """Returns the correlation in diffusion theory (conventions, C20) if `loss`, which may be complex, is added to its
+    kappa^2."""
     mu_t = optical_depth / depth
     mu_a = mu_t * (1 - albedo)
     transport = 1 / (mu_a + mu_t * albedo * (1 - g))
     source, extrapolation = np.minimum(transport, depth), EXTRAPOLATION[dimension] * transport
 
     def log_f(q2):
-        root = np.sqrt(q2)  # close to 0 f has its limit there to rounding
+        root = np.sqrt(q2)  # very close to 0, f equals its limit to rounding
         rate = np.where(np.abs(root) > 1e-5 / depth, root, 1e-5 / depth)
         return (log_sinh(rate * extrapolation) + log_sinh(rate * (source + extrapolation))
                 - np.log(rate) - log_sinh(rate * (depth + 2 * extrapolation)))
@@ -31,12 +31,13 @@ def slab_losses(loss, depth, optical_depth, g, albedo, dimension=2):
 
 
 def slab_diffusion(q, depth, optical_depth, g, albedo, dimension=2):
-    """C_E at transverse wavenumbers q."""
+    """Returns C_E at transverse wavenumbers q."""
     return slab_losses(q**2, depth, optical_depth, g, albedo, dimension)
 
 
 def diffusion_range(depth, optical_depth, g, albedo, dimension=2):
-    """q L where C_I = C_E^2 of that is 1/2; arrays of one shape, or numbers."""
+    """Returns q L at which C_I = C_E^2 of diffusion theory is 1/2. Arguments are arrays of equal shape, or
+    numbers."""
     low, high = np.broadcast_arrays(1e-3, 1e4, optical_depth, g, albedo)[:2]
     for _ in range(60):
         middle = np.sqrt(low * high)
@@ -46,7 +47,7 @@ def diffusion_range(depth, optical_depth, g, albedo, dimension=2):
 
 
 def delayed_diffusion(delay, depth, optical_depth, g, albedo, dimension=2):
-    """Field correlation after delays t = k^2 D tau: what they take acts like a tilt's q^2."""
+    """Returns the field correlation after delays t = k^2 D tau. The decorrelation acts like the q^2 of a tilt."""
     mu_s = optical_depth / depth * albedo
     transport = 1 / (optical_depth / depth - g * mu_s)
     q = np.sqrt(2 * dimension * delay * (1 - g) * mu_s / transport)
@@ -54,14 +55,15 @@ def delayed_diffusion(delay, depth, optical_depth, g, albedo, dimension=2):
 
 
 def shifted_diffusion(lag, depth, optical_depth, g, albedo, dimension=2):
-    """Magnitude of the correlation with a wavenumber larger by `lag`, which acts like i lag of
-    absorption."""
+    """Returns the magnitude of the correlation with the field at a wavenumber larger by `lag`, which acts like an
+    absorption coefficient i lag."""
     per_loss = dimension * optical_depth / depth * (1 - g * albedo)
     return np.abs(slab_losses(1j * per_loss * lag, depth, optical_depth, g, albedo, dimension))
 
 
 def cubic(x, y, at):
-    """Cubic pieces through (x, y), x rising, with the slopes of parabolas through three neighbours."""
+    """Interpolates (x, y), x ascending, by piecewise cubics, whose derivatives at the points are those of parabolas
+    through three neighbours."""
     step, rise = np.diff(x), np.diff(y) / np.diff(x)
     inner = (rise[:-1] * step[1:] + rise[1:] * step[:-1]) / (step[:-1] + step[1:])
     slope = np.concatenate([[2 * rise[0] - inner[0]], inner, [2 * rise[-1] - inner[-1]]])
@@ -73,18 +75,18 @@ def cubic(x, y, at):
 
 
 def dimension(result):
-    """Of the space that light travels in."""
+    """Returns the dimension of space in a result, 2 or 3."""
     return result.scene.get("dimension", 2)
 
 
 def medium(result):
-    """Keyword arguments of the formulas above for the slab of a result."""
+    """Returns the keyword arguments of the formulas above for the slab of a result."""
     keys = ("depth", "optical_depth", "g", "albedo")
     return {**{key: result.attribute(key) for key in keys}, "dimension": dimension(result)}
 
 
 def single_scattering(result, q):
-    """C_E of single scattering without attenuation (conventions, C21)."""
+    """Returns C_E of single scattering without attenuation (conventions, C21)."""
     light = result.values("light_angle")[0]
     phase = np.outer(result.attribute("depth") * q / 2,
                      np.tan(result.values("view_angle")) - np.tan(light))
@@ -92,7 +94,7 @@ def single_scattering(result, q):
 
 
 def known_tilts(result):
-    """Tilts of the file, rising, their q, and their order."""
+    """Returns the tilts of the file in ascending order, their q, and the order that sorts them."""
     order = np.argsort(result.values("tilt"))
     return result.values("tilt")[order], result.values("tilt_q")[order], order
 
@@ -103,8 +105,8 @@ def fine_tilts(result):
 
 
 def curve(result, formula, stored, tilt):
-    """(tilts, C_E): the formula of q between the tilts too, or the stored values alone if they are not
-    its own."""
+    """Returns (tilts, C_E): the formula as a function of q on a fine grid of tilts, or the stored values if the
+    formula does not reproduce them."""
     known, q, order = known_tilts(result)
     if not np.allclose(formula(q), stored[order], rtol=1e-4, atol=1e-6):
         return known, stored[order]
@@ -112,14 +114,14 @@ def curve(result, formula, stored, tilt):
 
 
 def of_point(sweep, row, stored, tilt):
-    """(tilts, C_E) of diffusion theory of a point of a sweep of slabs."""
+    """Returns (tilts, C_E) of diffusion theory for one point of a sweep of slabs."""
     point = {name: sweep.columns[name][row] for name in ("optical_depth", "g", "albedo")}
     slab = {**medium(sweep.result), **point}
     return curve(sweep.result, lambda q: slab_diffusion(q, **slab), stored, tilt)
 
 
 def transmitted(result):
-    """(tilts, C_E) of light through a slab in diffusion theory; None of other scenes."""
+    """Returns (tilts, C_E) of light transmitted through a slab in diffusion theory; None for other scenes."""
     if result.scene.get("domain") != "slab" or not result.has("tilt_q"):
         return None
     (known, q, _), tilt = known_tilts(result), fine_tilts(result)
@@ -127,8 +129,8 @@ def transmitted(result):
 
 
 def reflected(result):
-    """(tilts, C_E) of reflected light in theory, smooth between the tilts of the file; None where it
-    has none."""
+    """Returns (tilts, C_E) of reflected light in theory, interpolated between the tilts of the file; None if the file
+    lacks it."""
     if not result.has("reflection_theory") or len(result.values("tilt")) < 3:
         return None
     (known, _, order), tilt = known_tilts(result), fine_tilts(result)

@@ -5,8 +5,8 @@
                           covariance="memory_effect", tilts=[0, 1e-4, 2e-4, 4e-4])
     curve.field_correlation.plot()
 
-Results are xarray.Datasets. The functions are made from the program's own table of keys, when one is
-first asked for: help(fs.covariance) lists them."""
+Results are xarray.Datasets. The functions are generated from the program's table of keys when they are first used;
+help(fs.covariance) lists the keys."""
 
 from flatspeckle import cache, plots
 from flatspeckle.errors import InputError, TargetMissed
@@ -14,7 +14,7 @@ from flatspeckle.functions import function_of, subcommands
 from flatspeckle.result import group, read
 from flatspeckle.scene import Scene
 
-__version__ = "0.2.0"
+__version__ = "0.3.0"
 __all__ = ["InputError", "Scene", "TargetMissed", "cache", "group", "plots", "read"]
 
 

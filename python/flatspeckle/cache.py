@@ -1,5 +1,5 @@
-"""Results of earlier calls, in a folder named by what was asked for: program, subcommand, keys, and the
-contents of the files that they name."""
+"""Cache of results of earlier calls. The folder name of a result is a hash of the program's version, the subcommand,
+the keys, and the contents of the files named by keys."""
 
 import hashlib
 import os
@@ -9,23 +9,23 @@ import tempfile
 
 from flatspeckle import program
 
-# How, not what: the numbers are the same.
-NOT_ASKED = ("threads", "out", "resume", "keep_state")
+# Keys that do not change the numbers in the result.
+WITHOUT_EFFECT = ("threads", "out", "resume", "keep_state")
 
 
 def folder():
-    """FLATSPECKLE_CACHE, or flatspeckle in the user's cache."""
+    """Returns the folder FLATSPECKLE_CACHE, by default flatspeckle in the user's cache folder."""
     users = os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache"
     return pathlib.Path(os.environ.get("FLATSPECKLE_CACHE") or pathlib.Path(users) / "flatspeckle")
 
 
 def clear():
-    """Forgets all results."""
+    """Deletes all cached results."""
     shutil.rmtree(folder(), ignore_errors=True)
 
 
 def put(path, content):
-    """Writes a file as a whole or not at all."""
+    """Writes a file atomically."""
     with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
         file.write(content)
     os.replace(file.name, path)
@@ -37,9 +37,9 @@ def digest_of(path):
 
 
 def identity(subcommand, values):
-    """What is asked for, as a text. values: {key: text or texts}."""
+    """Returns a text that identifies a call. values: {key: text or texts}."""
     lines = [program.version(), subcommand]
-    for name in sorted(set(values) - set(NOT_ASKED)):
+    for name in sorted(set(values) - set(WITHOUT_EFFECT)):
         lines.append(f"{name} = {values[name]!r}")
         several = [values[name]] if isinstance(values[name], str) else values[name]
         lines += [digest_of(text) for text in several if os.path.isfile(text)]
@@ -47,6 +47,6 @@ def identity(subcommand, values):
 
 
 def run_folder(subcommand, values):
-    """Of the run that is asked for."""
+    """Returns the folder of a run with these values."""
     name = hashlib.sha256(identity(subcommand, values).encode()).hexdigest()[:32]
     return folder() / "runs" / f"{subcommand}-{name}"

@@ -1,4 +1,4 @@
-"""What can go wrong with a call, as the program tells it."""
+"""Errors and warnings raised by calls, made from the messages of the program."""
 
 import re
 
@@ -6,7 +6,8 @@ LINE = re.compile(r"(?P<key>[\w-]+)(?: = (?P<value>.*?))?(?:: | is not given: )(
 
 
 class InputError(ValueError):
-    """A key cannot be used: `key`, `value` (a text; None where none was given) and what is `accepted`."""
+    """Raised for a key that cannot be used. Attributes: `key`, `value` (a text, or None if not given), and
+    `accepted`, a text that describes the accepted values."""
 
     def __init__(self, line):
         super().__init__(line)
@@ -15,4 +16,4 @@ class InputError(ValueError):
 
 
 class TargetMissed(UserWarning):
-    """A run stopped before its target error; its result is marked (`converged` = 0)."""
+    """Warning that a run stopped before it reached its target error; its result has `converged` = 0."""

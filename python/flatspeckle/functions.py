@@ -1,4 +1,4 @@
-"""One function for each subcommand, made from its keys."""
+"""One function for each subcommand, generated from its keys."""
 
 import contextlib
 import fcntl
@@ -21,32 +21,32 @@ from flatspeckle.scene import all_texts, line, scene_of
 
 NO_FUNCTION = ("keys", "datasets", "explain", "new", "bench")
 OWN = """
-Runs `flatspeckle {name}` and returns its result as an xarray.Dataset. Keys that are not given, or None,
-have the program's defaults. Before the keys stand, if need be, a Scene, a mapping, or the path of a scene
-file or result to start from. Where a file is asked for, an array or dict of columns will do.
+Runs `flatspeckle {name}` and returns its result as an xarray.Dataset. Keys that are omitted or None
+have the program's defaults. The optional first argument provides keys to start from: a Scene, a mapping,
+or the path of a scene file or result. Keys that accept a file also accept an array or a dict of columns.
 
-Raises InputError for what cannot be used, warns TargetMissed where a run stopped before its target error,
-and on KeyboardInterrupt stops the program.
+Raises InputError for invalid input, and issues the warning TargetMissed if the run stopped before it reached
+its target error. KeyboardInterrupt stops the program.
 
-Of Python alone:
-  cache     True: a call like an earlier one is answered from its result; with `out`, there is none.
-  progress  True or False; None: on terminals and in notebooks.
+Arguments of the Python function only:
+  cache     whether a call equal to an earlier one returns the cached result; calls with `out` are not cached
+  progress  whether to show progress; None: only on terminals and in notebooks
 """
 OTHERS = """
-With of="render" (or covariance, flux, field, image, solve, trace) all keys of that subcommand are keys here too:
-help(flatspeckle.render) lists them. `vary` may be a dict: {"mu_s": [0.5, 1]} of values and, in optimise,
-{"amplitude": (1e-4, 4e-3, "log")} of bounds, with "log" to search in ratios."""
-_temporary = []  # folders of uncached results, which plots may still read
+With of="render" (or covariance, flux, field, image, solve, trace), all keys of that subcommand are also accepted;
+help(flatspeckle.render) lists them. `vary` may be a dict: {"mu_s": [0.5, 1]} gives values. In optimise,
+{"amplitude": (1e-4, 4e-3, "log")} gives bounds; "log" means a search on a logarithmic scale."""
+_temporary = []  # folders of uncached results; kept, because plots may still read them
 
 
 def subcommands():
-    """Names of the functions."""
+    """Returns the names of all subcommands that have a function."""
     table = program.table(program.path())["subcommands"]
     return [name for name in table if name not in NO_FUNCTION]
 
 
 def place_of_run(subcommand, values, use_cache):
-    """The folder of its scene and, without `out`, of its result."""
+    """Returns the folder for the scene file and, if `out` is not given, for the result."""
     if use_cache and "out" not in values:
         folder = cache.run_folder(subcommand, values)
         folder.mkdir(parents=True, exist_ok=True)
@@ -56,7 +56,7 @@ def place_of_run(subcommand, values, use_cache):
 
 
 def flags(values, known):
-    """Of keys that scene files do not have."""
+    """Yields the command-line flags of keys that scene files cannot contain."""
     for name, value in values.items():
         if name in known and not known[name].in_scene_files and value != "false":
             yield f"--{name}"
@@ -74,9 +74,10 @@ def command(subcommand, values, known, folder):
     return words
 
 
-def refusal(said, folder, values=()):
-    """The one line, less what is not the user's, and with the key where it begins with the file that a key names."""
-    text = (said.strip().splitlines() or ["no word of why"])[-1].removeprefix("flatspeckle: ")
+def refusal(output, folder, values=()):
+    """Returns the error line without the path of the temporary scene file. If the line begins with the path of a file
+    given for a key, the name of the key is put in front."""
+    text = (output.strip().splitlines() or ["no error message"])[-1].removeprefix("flatspeckle: ")
     text = text.removeprefix(f"{folder / 'scene.toml'}, ")
     for name in values:
         several = [values[name]] if isinstance(values[name], str) else values[name]
@@ -86,15 +87,15 @@ def refusal(said, folder, values=()):
 
 
 def make(subcommand, values, folder, progress):
-    """Runs it, and leaves word of its end beside the result."""
+    """Runs the program, and writes its exit status and output into the folder of the result."""
     words = command(subcommand, values, keys.rows_for(subcommand, values), folder)
-    status, printed, said = run(words, progress)
+    status, printed, errors = run(words, progress)
     if status == BAD_INPUT:
-        raise InputError(refusal(said, folder, values))
+        raise InputError(refusal(errors, folder, values))
     if status == FAILED:
-        raise OSError(refusal(said, folder))
+        raise OSError(refusal(errors, folder))
     if status not in (DONE, TARGET_MISSED):
-        raise RuntimeError(f"flatspeckle {subcommand} ended with {status}: {refusal(said, folder)}")
+        raise RuntimeError(f"flatspeckle {subcommand} exited with status {status}: {refusal(errors, folder)}")
     end = {"status": status, "printed": printed}
     cache.put(folder / "end.json", json.dumps(end).encode())
     return end
@@ -102,15 +103,16 @@ def make(subcommand, values, folder, progress):
 
 @contextlib.contextmanager
 def alone(folder):
-    """One call at a time makes the result of a folder: others, of this process too, wait for it."""
+    """Locks a folder, so that only one call at a time computes its result. Other calls wait, also those of the same
+    process."""
     with open(folder / ".lock", "w") as lock:
-        with contextlib.suppress(OSError):  # of file systems without locks
+        with contextlib.suppress(OSError):  # some file systems do not support locks
             fcntl.flock(lock, fcntl.LOCK_EX)
         yield
 
 
 def all_values(subcommand, scene):
-    """Texts of all that is given, with full paths."""
+    """Returns all given values as texts, with absolute paths."""
     rows = keys.rows_for(subcommand, scene)
     values = all_texts(scene, rows)
     return {name: inputs.paths(rows[name], text, scene.folder) if name in rows else text for name, text in values.items()}
@@ -127,12 +129,12 @@ def call(subcommand, scene, given, use_cache, progress):
     result = read(values["out"])
     result.attrs["printed"] = known["printed"]
     if known["status"] == TARGET_MISSED:
-        warnings.warn(f"{subcommand} stopped before its target error", TargetMissed, stacklevel=3)
+        warnings.warn(f"{subcommand} stopped before it reached its target error", TargetMissed, stacklevel=3)
     return result
 
 
 def description(key):
-    """One entry of a docstring."""
+    """Returns the paragraph of a docstring that describes a key."""
     default = "" if key.default in (None, ()) else f", default {key.default!r}"
     unit = f" [{key.unit}]" if key.unit else ""
     head = f"{key.name} : {key.kind}{unit}{default}"

@@ -1,4 +1,4 @@
-"""Arrays and tables as the files that the program reads. A file is named by its content."""
+"""Writes arrays and tables to files that the program can read. The name of such a file is a hash of its content."""
 
 import functools
 import hashlib
@@ -23,14 +23,14 @@ WORDS_OR_FILES = ("placement", "structure")
 
 
 def refuse(name, value, accepted):
-    """Raises InputError, which shows the value in a line."""
+    """Raises InputError with a message that shows the value, shortened to one line."""
     shown = f"array of shape {np.shape(value)}" if isinstance(value, np.ndarray) else (
         type(value).__name__ if is_array(value) else repr(value))
     raise InputError(f"{name} = {shown if len(shown) < 80 else shown[:80] + '...'}: {accepted}".replace("\n", " "))
 
 
 def kept(content, ending):
-    """The path of a file with this content."""
+    """Writes a file with this content, unless it exists, and returns its path."""
     folder = cache.folder() / "inputs"
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{hashlib.sha256(content).hexdigest()[:32]}{ending}"
@@ -40,9 +40,9 @@ def kept(content, ending):
 
 
 def without_mask(name, values):
-    """The values. Raises InputError for masked ones, which have none."""
+    """Returns the values unchanged. Raises InputError if any is masked."""
     if np.ma.is_masked(values):
-        refuse(name, values, "has masked values: leave them out or fill them")
+        refuse(name, values, "has masked values: remove or fill them")
     if isinstance(values, (list, tuple)):
         for one in values:
             without_mask(name, one)
@@ -50,19 +50,19 @@ def without_mask(name, values):
 
 
 def numbers(name, values):
-    """An array of real numbers. Raises InputError for what is none."""
+    """Returns an array of real numbers. Raises InputError for other values."""
     without_mask(name, values)
     try:
         array = np.asarray(values, float)
     except (TypeError, ValueError, OverflowError):
-        refuse(name, values, "must be an array of real numbers, whose rows have one length")
+        refuse(name, values, "must be an array of real numbers with rows of equal length")
     if array.size == 0 or not np.isfinite(array).all():
-        refuse(name, values, "must be an array of finite numbers, with one or more")
+        refuse(name, values, "must be a non-empty array of finite numbers")
     return array
 
 
 def rows(name, array):
-    """A table without names of columns, as text that reads back as the same numbers."""
+    """Returns a table without column names as CSV text. Reading it gives exactly the same numbers."""
     array = numbers(name, array)
     if array.ndim != 2:
         refuse(name, array, "must have two axes, rows and columns")
@@ -70,18 +70,18 @@ def rows(name, array):
 
 
 def csv(name, columns):
-    """A table of named columns, as such a text."""
+    """Returns a table of named columns as CSV text. Reading it gives exactly the same numbers."""
     arrays = {str(title): numbers(name, values) for title, values in columns.items()}
     shapes = {array.shape for array in arrays.values()}
     if len(shapes) != 1 or any(len(shape) != 1 for shape in shapes):
         sizes = ", ".join(f"{title} {'x'.join(map(str, array.shape)) or 'one number'}" for title, array in arrays.items())
-        refuse(name, columns, f"must have columns of one length; has {sizes or 'none'}")
+        refuse(name, columns, f"must have columns of equal length; has {sizes or 'none'}")
     titles = ",".join('"' + title.replace('"', '""') + '"' if re.search(r'[,;"\s]', title) else title for title in arrays)
     return (titles + "\n" + rows(name, np.stack(list(arrays.values()), 1))).encode()
 
 
 def hdf5(key, name, parts):
-    """A dataset, with what else there is as its attributes."""
+    """Returns the content of an HDF5 file with the dataset `name`; all other parts are its attributes."""
     buffer = io.BytesIO()
     with h5py.File(buffer, "w", track_order=True) as file:
         dataset = file.create_dataset(name, data=numbers(key.name, parts[name]), track_times=False)
@@ -92,18 +92,18 @@ def hdf5(key, name, parts):
 
 
 def names_of_columns(key):
-    """Those that the key's help names, in their order; optional ones too."""
+    """Returns the names of columns in the key's help, in order, including optional columns."""
     found = COLUMNS.search(" ".join(key.helps))
     return re.findall(r"\w+", found[1]) if found else []
 
 
 def named_columns(key, values):
-    """The columns of an array [row, column], or of a list of frames."""
-    if key.name in ("frames", "reference"):  # each column is one of a kind, or each of a list
+    """Returns {name: column} for an array [row, column], or for a list of frames."""
+    if key.name in ("frames", "reference"):  # each column, or each item of a list, is one frame
         array = numbers(key.name, values)
         frames = array[None] if array.ndim == 1 else array if isinstance(values, (list, tuple)) else array.T
         if frames.ndim != 2:
-            refuse(key.name, array, "must have two axes, pixels and frames, or be a list of lines of pixels")
+            refuse(key.name, array, "must have two axes, pixels and frames, or be a list of frames")
         return {f"frame_{number}": frame for number, frame in enumerate(frames)}
     names, values = names_of_columns(key), numbers(key.name, values)
     if values.ndim == 1:
@@ -114,13 +114,13 @@ def named_columns(key, values):
 
 
 def is_array(value):
-    """What is no text, number or path, but a table or grid."""
+    """Whether a value is a table or grid, and not a text, a number or a path."""
     return isinstance(value, (dict, np.ndarray, xarray.DataArray, xarray.Dataset)) or hasattr(value, "columns") or (
-        hasattr(value, "to_numpy") and hasattr(value, "index"))  # of pandas
+        hasattr(value, "to_numpy") and hasattr(value, "index"))  # pandas
 
 
 def elsewhere(key):
-    """Which subcommands take a table for a key of this name."""
+    """Returns a note that names the subcommands in which a key of this name accepts a table."""
     rows = {name: keys.keys_of(name).get(key.name) for name in program.table(program.path())["subcommands"]}
     found = [name for name, row in rows.items() if row and names_of_columns(row)]
     return f" here (in {' and '.join(found)} it does)" if found else ""
@@ -134,7 +134,7 @@ def source_of_dataset(key, value):
 
 
 def file_of(key, value):
-    """The path of a file with a table, grid or result in it."""
+    """Returns the path of a file that contains this table, grid or result."""
     if isinstance(value, xarray.Dataset):
         return source_of_dataset(key, value)
     helps = " ".join(key.helps)
@@ -149,13 +149,13 @@ def file_of(key, value):
         return kept(hdf5(key, grid[1], parts), ".h5")
     if not TABLE.search(helps):
         refuse(key.name, value, f"takes no array; {key.helps[0]}")
-    if hasattr(value, "columns"):  # of pandas
+    if hasattr(value, "columns"):  # pandas
         value = {name: value[name] for name in value.columns}
     return kept(csv(key.name, value if isinstance(value, dict) else named_columns(key, value)), ".csv")
 
 
 def names_a_file(key, text):
-    """Whether the program reads a file of this name."""
+    """Whether the program interprets this value as the name of a file."""
     if key.name in WORDS_OR_FILES and not ("." in text or os.sep in text):
         return False
     is_input = not key.words and key.type is str and FILES.search(" ".join(key.helps))
@@ -164,17 +164,17 @@ def names_a_file(key, text):
 
 @functools.cache
 def file_keys(path):
-    """Names of the keys of all subcommands that may name files."""
+    """Returns the names of all keys, of any subcommand, whose values may be names of files."""
     table = program.table(path)["subcommands"]
     return {name for one in table for name, key in keys.read_keys(path, one).items() if names_a_file(key, os.sep)}
 
 
 def paths(key, texts, folder):
-    """Texts with the full paths of files that there are: the folder of their scene file, if any, was looked at before.
-    Raises InputError for a file that is not there."""
+    """Returns the texts with absolute paths of files. Paths relative to the scene file were already resolved. Raises
+    InputError for a missing file."""
     for text in [texts] if isinstance(texts, str) else texts:
         if names_a_file(key, text) and not os.path.exists(text):
-            where = f" in {folder}, where the scene is, nor in the working folder {os.getcwd()}" if folder else ""
+            where = f" in {folder}, the folder of the scene, nor in the working folder {os.getcwd()}" if folder else ""
             raise InputError(f"{key.name} = {text}: no such file{where}")
     full = [os.path.abspath(text) if names_a_file(key, text) else text
             for text in ([texts] if isinstance(texts, str) else texts)]

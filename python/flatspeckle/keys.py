@@ -1,4 +1,4 @@
-"""The keys of a subcommand, by the rows of the program's own table."""
+"""Keys of a subcommand, from the program's table of keys."""
 
 import dataclasses
 import functools
@@ -10,12 +10,13 @@ TYPES = {"switch": bool, "integer": int, "number": float, "text": str}
 
 @dataclasses.dataclass(frozen=True)
 class Key:
-    """The rows of one name: several kinds of a thing may each have their own."""
+    """A key: all entries of the table with one name. Several kinds of an object may each have an entry for the same
+    name."""
 
     name: str
     type: type
     is_list: bool
-    default: object  # None where there is none
+    default: object  # None if there is no default
     words: tuple
     unit: str
     accepted: str
@@ -26,14 +27,14 @@ class Key:
 
     @property
     def kind(self):
-        """"choice", "file", "text", "number", "integer", "switch", and whether it is a list."""
+        """"choice", "file", "text", "number", "integer" or "switch", or a list of these."""
         names = {bool: "switch", int: "integer", float: "number", str: "text"}
         kind = "choice" if self.words else "file" if self.is_file else names[self.type]
         return f"list of {kind}s" if self.is_list else kind
 
 
 def converted(row):
-    """The default as Python has it."""
+    """Returns the default as a Python value."""
     read = {"switch": lambda text: text == "true", "integer": int, "number": float, "text": str}[row["type"]]
     values = [read(text) for text in row["default"]]
     if row["list"]:
@@ -57,15 +58,17 @@ def read_keys(path, subcommand):
 
 
 def keys_of(subcommand):
-    """{name: Key}, in the order of --help."""
+    """Returns {name: Key}, in the order of --help."""
     return read_keys(program.path(), subcommand)
 
 
 def rows_for(subcommand, values):
-    """Those that a call may use: sweeps and searches of another subcommand take its keys as well."""
+    """Returns the keys that a call may use. Sweeps and searches over another subcommand also accept the keys of that
+    subcommand."""
     other = {"sweep": values.get("of"), "optimise": values.get("of", "render")}.get(subcommand)
     known = program.table(program.path())["subcommands"]
     own, others = keys_of(subcommand), keys_of(other) if isinstance(other, str) and other in known else {}
-    if "points" in others and "points" in own:  # of the subcommand that is swept; the table of the sweep is named apart
+    # `points` means the key of the swept subcommand; the sweep's own key is called points_table.
+    if "points" in others and "points" in own:
         own = {**own, "points": others["points"], "points_table": dataclasses.replace(own["points"], name="points_table")}
     return {**others, **own}

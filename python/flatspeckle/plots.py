@@ -1,5 +1,5 @@
-"""Figures of results: one function for each plot script of the program, plots.memory_effect(ds), which
-returns the figure that the script would save. Options of the script are keyword arguments."""
+"""Figures of results. Each plot script of the program has a function, such as plots.memory_effect(ds), which returns
+the figure that the script would save. Options of the script are keyword arguments."""
 
 import argparse
 import contextlib
@@ -14,20 +14,22 @@ from flatspeckle import program
 from flatspeckle.errors import InputError
 from flatspeckle.result import source_of
 
-_libraries = {}  # the scripts' own modules, which they know as `lib`
+_libraries = {}  # modules that scripts import as `lib`
 
 
 def folder():
-    """Where the scripts are: in this checkout, beside the program, in the checkout that it was built in."""
+    """Returns the folder of the scripts: in the checkout of this file, in the installation of the program, or in the
+    checkout in which the program was built."""
     binary = pathlib.Path(program.path()).resolve()
     for place in (program.HERE.parents[1], binary.parents[1] / "share/flatspeckle", *binary.parents[3:4]):
         if (place / "plots/lib/style.py").is_file():
             return place / "plots"
-    raise FileNotFoundError("the plot scripts are neither beside the program nor in its checkout")
+    raise FileNotFoundError("the folder plots/ was found neither in the installation of the program "
+                            "nor in its checkout")
 
 
 def scripts():
-    """Their names: all that declare a plot."""
+    """Returns the names of all scripts that declare a plot."""
     return sorted(path.stem for path in folder().glob("*.py") if "@script.plot(" in path.read_text())
 
 
@@ -37,8 +39,8 @@ def names_of_lib():
 
 @contextlib.contextmanager
 def own_libraries():
-    """While scripts are loaded and draw, `lib` and the look are theirs; what the user has is back
-    afterwards."""
+    """While scripts are loaded and draw, replaces the modules `lib` and the plot style of the user by those of the
+    scripts; restores the user's afterwards."""
     import matplotlib.pyplot as plt
 
     others = {name: sys.modules.pop(name) for name in names_of_lib()}
@@ -69,7 +71,7 @@ class Options(argparse.ArgumentParser):
 
 
 def parsed(plot, options):
-    """Keyword arguments as the script's command line has them."""
+    """Converts keyword arguments to options of the script's command line and returns the parsed options."""
     parser, words = Options(add_help=False, allow_abbrev=False), []
     plot.add_options(parser)
     for option, value in options.items():
@@ -79,13 +81,13 @@ def parsed(plot, options):
 
 
 def file_of(result):
-    """A path, or a Dataset as it was read."""
+    """Returns the path of a result file; for a Dataset, the path of the file from which it was read."""
     return os.fspath(result) if isinstance(result, (str, os.PathLike)) else source_of(result)
 
 
 def whole(figure, pad):
-    """Makes the page larger by what stands outside of it, legends above all, with so many inches around,
-    and leaves the panels as they are: so that nothing is cut off however the figure is saved."""
+    """Enlarges the figure to include everything outside it, such as legends, with a margin of `pad` inches. The
+    panels keep their size. Nothing is cut off, however the figure is saved."""
     figure.draw_without_rendering()
     width, height = figure.get_size_inches()
     box = figure.get_tightbbox(figure.canvas.get_renderer())
@@ -114,8 +116,8 @@ def figure(name, results, options):
             drawn = plot.figure(files, parsed(plot, options))
         except style.Unusable as problem:
             raise InputError(str(problem)) from None
-        whole(drawn, style.PAD)  # while the look is theirs
-        style.plt.close(drawn)  # it is returned: a notebook need not show it twice
+        whole(drawn, style.PAD)  # while the scripts' style is active
+        style.plt.close(drawn)  # closed, because a notebook would show the returned figure twice
     for file in files:
         if hasattr(file, "file"):
             file.file.close()

@@ -1,4 +1,4 @@
-"""The program that does the work: where it is, and its table of keys."""
+"""Finds the program and reads its table of keys."""
 
 import functools
 import json
@@ -11,8 +11,9 @@ HERE = pathlib.Path(__file__).resolve().parent
 
 
 def places():
-    """Where the program may be: named by FLATSPECKLE, built in the checkout that this file is of, installed
-    with it, on the PATH."""
+    """Yields possible paths of the program. If the environment variable FLATSPECKLE is set, it is the only one.
+    Otherwise they are the release build in this file's checkout, the installation that contains this package, and the
+    PATH."""
     if os.environ.get("FLATSPECKLE"):
         yield os.environ["FLATSPECKLE"]
         return
@@ -25,18 +26,20 @@ def path():
     for place in places():
         if os.access(place, os.X_OK):
             return str(place)
-    raise FileNotFoundError("the program flatspeckle is not on the PATH; the variable FLATSPECKLE may name it")
+    raise FileNotFoundError("the program flatspeckle was not found; "
+                            "set the environment variable FLATSPECKLE to its path")
 
 
 @functools.cache
 def table(program):
-    """{"version", "commit", "subcommands": {name: {"purpose", "keys": [rows]}}}."""
+    """Returns {"version", "commit", "subcommands": {name: {"purpose", "keys": [rows]}}}."""
     printed = subprocess.run([program, "keys", "json"], capture_output=True, check=True).stdout
     return json.loads(printed)
 
 
 def version():
-    """Of the program, one text for each that may give other numbers."""
+    """Returns a text that identifies the program: version, commit and, for builds with uncommitted changes, the time
+    of the build."""
     program = path()
     known = table(program)
     text = f"{known['version']} {known['commit']}"

@@ -1,4 +1,4 @@
-"""Results as xarray.Datasets: names, axes and units are those of the file (docs/format.md)."""
+"""Reads results as xarray.Datasets with the names, axes and units of the file (docs/format.md)."""
 
 import os
 
@@ -8,12 +8,12 @@ import xarray
 
 from flatspeckle.errors import InputError
 
-STATES = "state"  # what --resume goes on from
+STATES = "state"  # name of groups with the state of a run, from which --resume continues
 OF_SCALES = {"CLASS", "NAME", "REFERENCE_LIST", "DIMENSION_LIST", "DIMENSION_LABELS"}
 
 
 def plain(value):
-    """Attributes as Python has them."""
+    """Returns an attribute as a Python value."""
     if isinstance(value, bytes):
         return value.decode()
     if isinstance(value, np.uint8):
@@ -26,7 +26,7 @@ def name_of(item):
 
 
 def datasets(file):
-    """All but the states."""
+    """Returns all datasets except those in the state of a run."""
     found = []
 
     def add(name, item):
@@ -42,7 +42,8 @@ def is_scale(dataset):
 
 
 def dims(dataset):
-    """Names of the axes: their scales, or of what has none a number."""
+    """Returns the names of a dataset's axes: the name of the axis's scale, or the dataset's name with a number for
+    axes without a scale."""
     if is_scale(dataset):
         return (name_of(dataset),)
     return tuple(name_of(axis[0]) if len(axis) else f"{name_of(dataset)}.{number}"
@@ -56,8 +57,9 @@ def variable(dataset):
 
 
 def read(path):
-    """A result file (HDF5), or a placement (CSV), as a Dataset. What lies in groups keeps its full name,
-    ds["mc/intensity"]; `group` takes one out. `encoding["source"]` is the file."""
+    """Reads a result file (HDF5), or a placement (CSV), as a Dataset. Variables in groups keep their full names, as
+    in ds["mc/intensity"]; `group` extracts the variables of one group. `encoding["source"]` is the path of the
+    file."""
     path = os.path.abspath(path)
     if not h5py.is_hdf5(path) and os.path.isfile(path):
         return read_placement(path)
@@ -78,35 +80,36 @@ def read_placement(path):
             names, *rows = [line.strip().split(",") for line in file if line.strip() and not line.startswith("#")]
         columns = np.array(rows, float).reshape(-1, len(names)).T
     except ValueError:
-        raise InputError(f"path = {path}: is neither a result nor a placement as place writes it") from None
+        raise InputError(f"path = {path}: must be a result file, or a placement written by `place`") from None
     result = xarray.Dataset({name: ("scatterer", column) for name, column in zip(names, columns)})
     result.encoding["source"] = path
     return result
 
 
 def source_of(result):
-    """The file that a Dataset was read from. Raises InputError for a part of it, and where it was changed."""
+    """Returns the file from which a Dataset was read. Raises InputError if the Dataset is a part of the file's
+    contents or was changed."""
     path = result.encoding.get("source")
     if path is None or not os.path.isfile(path) or not holds(result, read(path)):
-        raise InputError("a Dataset stands for its file as a run or read() returned it: this one is a part of it, was "
-                         "computed from it, or was changed; draw parts with xarray's own .plot()")
+        raise InputError("a Dataset must be as returned by a run or by read(), because its file is used: this one "
+                         "is a part of it, was computed from it, or was changed; draw parts with xarray's own .plot()")
     return path
 
 
 def holds(result, whole):
-    """Whether all that is in the file is in the Dataset, as it is there."""
+    """Whether the Dataset contains all variables of the file unchanged."""
     return all(name in result.variables and result.variables[name].equals(variable)
                for name, variable in whole.variables.items())
 
 
 def group(result, name):
-    """What one method, sensor or other group of a result found, by names without the group's:
-    group(ds, "mc").intensity."""
+    """Returns the variables of one group of a result, such as a method or sensor. Their names omit the name of the
+    group, as in group(ds, "mc").intensity."""
     own = {full: full[len(name) + 1:] for full in result.variables if full.startswith(f"{name}/")}
     data = {full: short for full, short in own.items() if full in result.data_vars}
     if not data:
         groups = sorted({full.rsplit("/", 1)[0] for full in result.data_vars if "/" in full})
-        raise KeyError(f"{name}: no such group; there are {', '.join(groups) or 'none'}")
+        raise KeyError(f"{name}: no such group; the result has {', '.join(groups) or 'none'}")
     part = result[list(data)]
     part = part.rename({full: short for full, short in own.items() if full in part.variables})
     part.attrs, part.encoding["source"] = result.attrs, result.encoding.get("source")

@@ -1,4 +1,4 @@
-"""Runs the program: its progress is passed on, an interruption reaches it, its exit status is told."""
+"""Runs the program, shows its progress, forwards interrupts, and returns its exit status."""
 
 import contextlib
 import os
@@ -13,21 +13,22 @@ INTERRUPTED = (75, 130)
 
 
 def shows_progress(wanted):
-    """Where nothing is said: on terminals and in notebooks."""
+    """Whether to show progress; by default on terminals and in notebooks."""
     if wanted is not None:
         return wanted
     return sys.stderr is not None and (sys.stderr.isatty() or "ipykernel" in sys.modules)
 
 
 def chunks(end):
-    """What comes out of a pipe or a terminal, whose other side closes with an error."""
+    """Yields the output of a pipe or terminal until the program closes it, which may raise OSError."""
     with contextlib.suppress(OSError):
         while chunk := os.read(end, 65536):
             yield chunk.replace(b"\r\n", b"\n")
 
 
 def listen(end, progress):
-    """All that the program says; what it refuses is for the exception."""
+    """Returns all output on standard error. Shows progress, but not error lines, which become the message of an
+    exception."""
     said = b""
     for chunk in chunks(end):
         said += chunk
@@ -38,21 +39,21 @@ def listen(end, progress):
 
 
 def ended(process):
-    """Of a call that is left while the program runs: it is interrupted once, and keeps its state."""
+    """Waits for the program. If the call was interrupted, interrupts the program once, which then saves its state."""
     if process.poll() is None:
         process.send_signal(signal.SIGINT)
     process.wait()
 
 
 def run(command, progress=None):
-    """(exit status, standard output, standard error). Raises KeyboardInterrupt where the user or the
-    program was interrupted."""
+    """Returns (exit status, standard output, standard error). Raises KeyboardInterrupt if the user interrupted the
+    call or the program."""
     progress = shows_progress(progress)
     end, other = pty.openpty() if progress else os.pipe()
     with tempfile.TemporaryFile() as printed:
         try:
             process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=printed, stderr=other,
-                                       start_new_session=True)  # or Ctrl-C would reach it twice
+                                       start_new_session=True)  # otherwise Ctrl-C would interrupt it twice
         finally:
             os.close(other)
         try:

@@ -1,4 +1,5 @@
-"""Scenes: keys and their values, from keyword arguments, scene files and results, and as scene files."""
+"""Scenes: keys with values, given as keyword arguments or read from scene files and results, and written as scene
+files."""
 
 import contextlib
 import decimal
@@ -15,15 +16,15 @@ import xarray
 from flatspeckle import inputs, program
 from flatspeckle.errors import InputError
 
-MOST = 10 ** 18  # of whole numbers
-OF_KEYS = ("vary", "free", "against")  # take dicts {key: values}
+MOST = 10 ** 18  # larger integers are written as floats
+OF_KEYS = ("vary", "free", "against")  # keys whose values may be dicts {key: values}
 
 
 class Scene(Mapping):
-    """Keys and values, which do not change: `replace` makes another. A function takes one before its
-    keyword arguments: covariance(scene, g=0.9)."""
+    """An immutable mapping of keys to values; `replace` makes a changed copy. Functions accept a Scene before their
+    keyword arguments, as in covariance(scene, g=0.9)."""
 
-    folder = None  # of the scene file that it was loaded from
+    folder = None  # folder of the scene file from which the scene was loaded
 
     def __init__(self, scene=(), /, **keys):
         try:
@@ -37,13 +38,13 @@ class Scene(Mapping):
         self.folder = getattr(scene, "folder", None)
 
     def replace(self, **keys):
-        """The same with other values; None takes a key away."""
+        """Returns a copy with other values; None removes a key."""
         return Scene(self, **keys)
 
     @classmethod
     def load(cls, path):
-        """Of a scene file (TOML), or of the run that made a result file. Files that the scene file names are looked
-        for beside it, then in the working folder."""
+        """Loads a scene file (TOML), or the scene of the run that made a result file. Files named in a scene file are
+        searched in its folder, then in the working folder."""
         try:
             if h5py.is_hdf5(path):
                 with h5py.File(path) as file:
@@ -52,7 +53,7 @@ class Scene(Mapping):
                 scene = cls(tomllib.load(file))
         except OSError as problem:
             raise InputError(f"scene = {path}: {problem.strerror or problem}") from None
-        except (ValueError, KeyError, TypeError) as problem:  # also what is no TOML or text
+        except (ValueError, KeyError, TypeError) as problem:  # includes files that are not TOML or not text
             raise InputError(f"scene = {path}: {problem}") from None
         scene.folder = os.path.dirname(os.path.abspath(path))
         names = inputs.file_keys(program.path()) & scene.keys()
@@ -60,7 +61,7 @@ class Scene(Mapping):
         return scene
 
     def save(self, path):
-        """As a scene file."""
+        """Writes a scene file."""
         with open(path, "w") as file:
             file.write(text(self._keys, {}))
 
@@ -78,7 +79,7 @@ class Scene(Mapping):
 
 
 def beside(folder, value):
-    """Paths in a folder, of files that are there."""
+    """Returns the path of a file in a folder if it exists there, otherwise the unchanged value."""
     if isinstance(value, list):
         return [beside(folder, one) for one in value]
     path = os.path.join(folder, value) if isinstance(value, str) else ""
@@ -86,13 +87,13 @@ def beside(folder, value):
 
 
 def scene_of(value):
-    """A Scene, a mapping, or the path of one."""
+    """Returns a Scene from a Scene, a mapping, or the path of a scene file or result."""
     return Scene.load(value) if isinstance(value, (str, os.PathLike)) else Scene(() if value is None else value)
 
 
 def values_of(key, name, values):
-    """Of one key in such a dict: "1,2" of a list, "0:1" of bounds where there are bounds. A tuple is bounds,
-    (low, high) or (low, high, "log"); an array or list is values."""
+    """Returns the text for one item of a dict given for a key in OF_KEYS: "1,2" for values, "0:1" for bounds if the
+    key accepts them. Bounds are given as a tuple, (low, high) or (low, high, "log"); values as an array or list."""
     if isinstance(values, str):
         return values
     bounds = key is not None and re.search(r"\bbounds\b", " ".join(key.helps))
@@ -102,13 +103,13 @@ def values_of(key, name, values):
 
 
 def is_many(value):
-    """Whether it is a list, an array with an axis, or a table."""
+    """Whether a value is a list, an array with an axis, or a table."""
     is_list = isinstance(value, (list, tuple, range))
     return is_list or (inputs.is_array(value) and getattr(value, "ndim", 1) != 0)
 
 
 def flat(name, values):
-    """The values of a list or array, row by row."""
+    """Returns all values of a list or array, row by row."""
     if not is_many(values):
         return [values]
     if isinstance(values, (dict, xarray.Dataset)):
@@ -119,14 +120,14 @@ def flat(name, values):
     if any(is_many(one) for one in values):
         rows = [flat(name, one) for one in values]
         if len({len(row) for row in rows}) > 1:
-            inputs.refuse(name, values, "must have rows of one length")
+            inputs.refuse(name, values, "must have rows of equal length")
         return [one for row in rows for one in row]
-    array = np.asarray(values)  # of integers and floats beside each other floats
+    array = np.asarray(values)  # mixed integers and floats become floats
     return list(array if array.dtype.kind in "iufc" else values)
 
 
 def texts(key, name, value):
-    """A value as the program's own texts: one, or a list of them."""
+    """Returns a value in the program's notation: a text, or a list of texts."""
     if name in OF_KEYS and isinstance(value, Mapping) and value:
         return [f"{one}={values_of(key, name, several)}" for one, several in value.items()]
     if not is_many(value):
@@ -138,7 +139,7 @@ def texts(key, name, value):
     else:
         return inputs.file_of(key, value)
     if not found:
-        raise InputError(f"{name} = []: must have a value or more")
+        raise InputError(f"{name} = []: must have at least one value")
     return found
 
 
@@ -155,7 +156,7 @@ def text_of(name, value):
             return str(int(value))
         with contextlib.suppress(OverflowError, ValueError):
             return repr(float(value))
-        raise InputError(f"{name}: a number is too large")
+        raise InputError(f"{name}: must be within the range of double precision")
     if isinstance(value, numbers.Complex):
         value = complex(value)
         return f"{value.real!r}{value.imag:+}i"
@@ -165,26 +166,26 @@ def text_of(name, value):
 
 
 def checked(name, text):
-    """A text that scene files can have."""
+    """Returns a text unchanged. Raises InputError if scene files cannot contain it."""
     if not text:
         raise InputError(f"{name} = '': must have a value")
     if '"' in text or "\\" in text or not text.isprintable():
-        raise InputError(f"{name} = {text!r}: must be without control characters, \" and \\")
+        raise InputError(f"{name} = {text!r}: must not contain control characters, \" or \\")
     return text
 
 
 def line(name, value):
-    """Of a scene file. The program reads numbers out of texts as well."""
+    """Returns a line of a scene file. All values are quoted; the program also reads numbers from quoted texts."""
     show = '"{}"'.format
     shown = show(value) if isinstance(value, str) else f"[{', '.join(map(show, value))}]"
     return f"{name} = {shown}\n"
 
 
 def all_texts(scene, keys):
-    """{key: texts} of all that is given."""
+    """Returns {key: texts} of all given values."""
     return {name: texts(keys.get(name), name, value) for name, value in scene.items() if value is not None}
 
 
 def text(scene, keys):
-    """A scene file."""
+    """Returns the text of a scene file."""
     return "".join(line(name, value) for name, value in all_texts(scene, keys).items())

@@ -1,1 +1,1 @@
-"""The pages of the benchmark report, which plots/report.py writes around its pictures."""
+"""Text and tables of the benchmark report, which plots/report.py combines with its pictures."""

@@ -1,4 +1,4 @@
-"""What the benchmark report says: report.md with its tables, numbers and pictures filled in."""
+"""Fills tables, numbers and pictures into the template report.md of the benchmark report."""
 
 import pathlib
 import re
@@ -13,16 +13,16 @@ TEXT = pathlib.Path(__file__).parent / "report.md"
 
 def warnings(bench):
     if len({(file.made.commit, file.made.machine) for file in bench.files().values()}) > 1:
-        yield "**The result files are of different commits or machines.**"
+        yield "**The result files are from different commits or machines.**"
     if any(file.made.quick for file in bench.files().values()):
-        yield "**Made with `--quick`: the figures are only a look.**"
+        yield "**Made with `--quick`: the numbers are only approximate.**"
 
 
 def made(bench):
     made = bench.error.made
     rows = [[f"`flatspeckle bench {name}`", f"{file.made.wall_s:.0f}", f"{file.made.cpu_s:.0f}",
              str(file.made.threads)] for name, file in bench.files().items()]
-    return table(["made by", "seconds", "CPU seconds", "threads"], rows, "lrrr",
+    return table(["command", "seconds", "CPU seconds", "threads"], rows, "lrrr",
                  f"flatspeckle {made.version}, commit {made.short_commit}, {made.date}, {made.machine}")
 
 
@@ -41,7 +41,7 @@ def curve_row(curve, ours):
         return [curve["method"], "", "", number_text.seconds(seconds),
                 number_text.factor(seconds / time_to_target(best)) if best else ""]
     row = [curve["method"], number_text.with_error(curve["slope"], curve["slope_error"])]
-    if not curve["is_monte_carlo"]:  # no law to go by
+    if not curve["is_monte_carlo"]:  # no expected slope
         return [*row, "", "", ""]
     efficiency = curve["efficiency"]
     return [*row, number_text.digits(efficiency), number_text.seconds(time_to_target(efficiency)),
@@ -59,9 +59,9 @@ def accuracy(error):
 
 
 def coverage(rows):
-    """rows: what tests/apps/coverage.py wrote, {scene: row}."""
+    """Returns the table of the coverage of error bars. rows: {scene: row}, written by tests/apps/coverage.py."""
     percent = lambda share: f"{100 * share:.1f} %"
-    return table(["scene", "values", "ratio", "marked", "beyond"],
+    return table(["scene", "values", "ratio", "undersampled", "beyond"],
                  [[name, str(row["values"]), f"{row['ratio']:.2f}", percent(row["marked"]),
                    percent(row["beyond"])] for name, row in rows.items()], "lrrrr")
 
@@ -99,7 +99,7 @@ def by_room(file, header, row_of, align):
 
 
 def parts_of(bench, numbers, coverage_rows):
-    """Returns the texts that replace the names in braces."""
+    """Returns {name: text} for the names in braces in the template."""
     worst = worst_slope(bench.error)
     tables = {
         "warnings": warnings(bench), "made": [made(bench)], "accuracy": accuracy(bench.error),
@@ -120,7 +120,7 @@ def parts_of(bench, numbers, coverage_rows):
 
 
 def filled(section, parts, pictures):
-    """Blocks of a section; none where it is of a table that there is nothing for."""
+    """Returns the blocks of a section of the template; none if its table is empty."""
     blocks = section.strip().split("\n\n")
     if any(block == f"{{{name}}}" and not parts[name] for block in blocks
            for name in ("coverage", "costs")):
@@ -137,7 +137,8 @@ def filled(section, parts, pictures):
 
 
 def as_markdown(bench, numbers, pictures, coverage_rows=None):
-    """pictures: names of the figures that there are; coverage_rows: of tests/apps/coverage.py."""
+    """Returns the report. pictures: names of the available figures. coverage_rows: output of
+    tests/apps/coverage.py."""
     parts = parts_of(bench, numbers, coverage_rows)
     sections = re.split(r"\n(?=#)", TEXT.read_text())
     return "\n\n".join(block for section in sections

@@ -1,5 +1,5 @@
-"""Markdown of the simplest kind: headings, paragraphs with `code` and **bold**, tables beneath a bold
-line, pictures above an italic one; tables as such, and all of it as one HTML page."""
+"""Writes tables in Markdown, and converts a subset of Markdown to one HTML page: headings, paragraphs with `code` and
+**bold**, tables with a caption in bold above, and pictures with a caption in italics below."""
 
 import base64
 import html
@@ -10,7 +10,7 @@ STYLE = pathlib.Path(__file__).parent / "report.css"
 
 
 def table(header, rows, align, caption=""):
-    """rows: lists of texts; align: l or r for each column."""
+    """Returns a Markdown table. rows: lists of texts; align: l or r for each column."""
     cell = lambda text: text.replace("|", "\\|").replace("\n", " ")
     lines = ["| " + " | ".join(map(cell, row)) + " |" for row in (header, *rows)]
     lines.insert(1, "|" + "|".join("---" if side == "l" else "---:" for side in align) + "|")
@@ -60,7 +60,7 @@ def html_blocks(text, pictures):
 
 
 def as_html(text, pictures):
-    """pictures: name -> bytes of an SVG. The first line of the text is the title."""
+    """Returns the HTML page. pictures: name -> bytes of an SVG. The first line of the text is the title."""
     title = "flatspeckle: " + text.split("\n")[0].lstrip("# ")
     body = "\n".join(html_blocks(text, pictures))
     return ('<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'

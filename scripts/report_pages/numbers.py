@@ -1,4 +1,4 @@
-"""The numbers of the benchmark report, each under a key: {"value", "error", "text"}."""
+"""Numbers of the benchmark report: {key: {"value", "error", "text"}}."""
 
 import re
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from lib import number_text
 
-TARGET = 0.01  # error to which times are told
+TARGET = 0.01  # relative error whose time is reported
 
 
 def slug(name):
@@ -35,7 +35,7 @@ def has_slope(curve):
 
 
 def seconds_to_target(curve):
-    """Of a solution without chance, whose points are tolerances."""
+    """Returns the time to the target error of a deterministic solution, whose points differ in tolerance."""
     return curve["cpu_s"][np.argmax(curve["relative_error"] <= TARGET)]
 
 
@@ -53,7 +53,7 @@ def of_curves(error):
 
 
 def of_speeds(error):
-    """How many times as efficient as each other method a scene's best one of ours is."""
+    """Yields the efficiency of our method on each scene, divided by that of every other method."""
     for scene in error.scenes():
         curves = {curve["method"]: curve for curve in error.of_scene(scene)}
         ours = curves.get("ours") or curves.get("bidirectional")
@@ -67,7 +67,7 @@ def of_speeds(error):
 
 
 def worst_slope(error):
-    """The curve that is farthest from -1/2."""
+    """Returns the curve whose slope is farthest from -1/2."""
     return max(error.monte_carlo(), key=lambda curve: abs(curve["slope"] + 0.5))
 
 

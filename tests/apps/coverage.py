@@ -1,15 +1,15 @@
-"""Whether error bars cover: scenes of every kind, each run by many seeds. Per scene, over all
-values of all its estimates:
+"""Checks the coverage of error bars: runs scenes of every kind with many seeds. Reports per scene, over
+all values of all its estimates:
 
-    ratio    median of the scatter between seeds over the error that they claim; 1 is right
-    marked   share of values whose error is marked as carried by a few batches
-    beyond   of the others, share beyond 2 claimed errors of the mean of the seeds
+    ratio    median of the scatter between seeds divided by the reported error; 1 is right
+    marked   share of values marked as undersampled (a few batches dominate the error)
+    beyond   share of the others that differ from the mean over seeds by more than 2 reported errors
 
     coverage.py [--seeds N] [--workers N] [--only SCENE ...] [--out FILE.json]
 
-Pictures and maps, of at most 40 seeds, have a row for their pixels or cells and one for all other estimates. Exit status 1
-where a ratio is outside 0.9 to 1.15 or more than 8 % lie beyond; of pictures, whose marked errors are
-upper bounds, where the ratio is above 1.15 or more than 10 % lie beyond."""
+Pictures and maps take at most 40 seeds and have one row for pixels or cells and one for all other estimates.
+The exit status is 1 if a ratio is outside 0.9 to 1.15 or more than 8 % lie beyond; for pictures, whose marked
+errors are upper bounds, if a ratio is above 1.15 or more than 10 % lie beyond."""
 
 import argparse
 import concurrent.futures
@@ -31,17 +31,17 @@ RATIOS = 0.9, 1.15
 MOST_SEEDS_OF_PICTURES = 40
 MOST_BEYOND, MOST_BEYOND_OF_PICTURES = 0.08, 0.1
 FIRST_SEED = 1 + 1000 * int(os.environ.get("FLATSPECKLE_TEST_SEED", 0))
-SELDOM = ("energy/lost",)  # 0 in most runs
+MOSTLY_ZERO = ("energy/lost",)  # 0 in most runs
 EACH_OF_MANY = ("image", "transient", "map/fluence", "map/absorbed")
 ALL = {**SCENES, **{name: ("render", keys) for name, keys in PICTURES.items()}}
 
 
 def estimates(path):
-    """name of row: (values, errors, marks) of its estimates in the order of their names."""
+    """Returns {name of row: (values, errors, marks)} of its estimates, ordered by name."""
     found = {}
 
     def visit(name, item):
-        if name + "_error" in file and name not in SELDOM:
+        if name + "_error" in file and name not in MOSTLY_ZERO:
             marks = file[name + "_rare"][...] if name + "_rare" in file else np.zeros(item.shape)
             found.setdefault("pixels" if name in EACH_OF_MANY else "", []).append(
                 (item[...].ravel(), file[name + "_error"][...].ravel(), marks.ravel()))
@@ -64,7 +64,7 @@ def run(scene, seed):
 
 
 def measured(runs):
-    """Values that are exact in all runs, as a correlation at tilt 0, have no error to look at."""
+    """Returns a row of the table, without values that are exact in all runs (the correlation at tilt 0)."""
     values, errors, marks = (np.array(each) for each in zip(*runs))
     kept = (errors > 1e-13 * np.abs(values)).any(axis=0)
     values, errors, marks = values[:, kept], errors[:, kept], marks[:, kept] > 0
@@ -84,7 +84,7 @@ def is_good(name, row):
 
 
 def rows_of(name, seeds, pool):
-    """name of row: row."""
+    """Returns {name of row: row}."""
     if name in PICTURES:
         seeds = min(seeds, MOST_SEEDS_OF_PICTURES)
     runs = list(pool.map(lambda seed: run(ALL[name], seed), range(FIRST_SEED, FIRST_SEED + seeds)))

@@ -1,4 +1,4 @@
-"""Pictures of coverage.py: {name: keys of render}; each run takes about a second."""
+"""Pictures for coverage.py: {name: keys of render}; each run takes about a second."""
 
 from program import DATA
 

@@ -1,4 +1,4 @@
-"""Scenes of coverage.py: {name: (subcommand, keys)}; each run takes some tenths of a second."""
+"""Scenes for coverage.py: {name: (subcommand, keys)}; each run takes some tenths of a second."""
 
 VIEWS = {"view_angles": [0.1, 0.3, 0.6, 0.9, 2.4, 2.7, 3.0, 3.14]}
 FORWARD = {"view_angles": [-0.6, -0.3, 0, 0.2, 0.4, 0.6, 0.9, 1.05]}

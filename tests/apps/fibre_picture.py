@@ -1,17 +1,17 @@
-"""The picture of data/scenes/render_grin_fibre.toml by the ray picture alone, without the program: rays in
-n^2 = n0^2 - alpha^2 rho^2 swing harmonically across the axis by cos(alpha L / beta), with beta = sqrt(n^2 - p^2) what
-they keep along it and p their momentum across. Etendue d^2x d^2p is kept, so that points that fill it evenly at the front
-face bring equal powers to the pixels where they end. The fibre is several swings long: rays that swing further than the
-sides are meet them."""
+"""Computes the picture of data/scenes/render_grin_fibre.toml by ray optics, without the program. In
+n^2 = n0^2 - alpha^2 rho^2 rays oscillate about the axis as cos(alpha L / beta); p is their transverse momentum and
+beta = sqrt(n^2 - p^2) the conserved axial one. Etendue d^2x d^2p is conserved, so points that fill it evenly at the
+front face carry equal powers to the pixels where they end. The fibre is several periods long: rays whose amplitude
+exceeds the half width hit the sides."""
 
 import numpy as np
 
 AXIS, ALPHA, HALF, LENGTH, SPOT, ACCEPTANCE = 1.6, 0.5, 0.9, 50.2654824574367, 0.1, 0.5
-MOST_MOMENTUM = ALPHA * HALF * np.sqrt(2)  # of a ray to a corner
+MOST_MOMENTUM = ALPHA * HALF * np.sqrt(2)  # of a ray that reaches a corner
 
 
 def even_points(first, count):
-    """Of the unit cube in four dimensions, evenly spread: multiples of powers of the root of x^5 = x + 1."""
+    """Returns points evenly spread in the 4D unit cube: multiples of powers of the root of x^5 = x + 1."""
     root = 1.1673039782614187
     steps = root ** -np.arange(1.0, 5)
     return np.modf(np.arange(first + 1.0, first + count + 1)[:, None] * steps)[0].T
@@ -26,7 +26,7 @@ def index_squared(x):
 
 
 def ends(points):
-    """Where rays meet the end face that come from the spot, do not touch the sides, and are accepted."""
+    """Returns where rays from the spot that miss the sides and are accepted meet the end face."""
     x, p = on_disk(SPOT, points[0], points[1]), on_disk(MOST_MOMENTUM, points[2], points[3])
     inside = (x**2 + (p / ALPHA) ** 2 < HALF**2).all(axis=0)
     x, p = x[:, inside], p[:, inside]
@@ -37,7 +37,7 @@ def ends(points):
 
 
 def fibre_picture(pixels, blocks=4):
-    """Irradiance on pixels x pixels of the end face, alike in the eight turns and reflections of a square."""
+    """Returns the irradiance on pixels x pixels of the end face, symmetric under the eight symmetries of a square."""
     count, size = 1 << 20, 2 * HALF / pixels
     hits = np.zeros((pixels, pixels))
     for block in range(blocks):

@@ -1,4 +1,4 @@
-"""Tiny runs of every subcommand that between them meet every row of docs/format.md."""
+"""Tiny runs of every subcommand that together cover every row of docs/format.md."""
 
 import math
 
@@ -25,12 +25,12 @@ STAGE = {"field": "parabolic", "index": 1.5, "alpha": 0.5, "stage_box": [-1, -1,
          "mu_s": 0.5, "point_light": [0, 0, 1, 1], "path_bins": [1, 9, 4], "path_moments": True,
          "pixels": [30, 20]}
 
-GRADIENT = {"gradient": True, "method": "analog"}
+GRADIENT = {"gradient": True, "method": "forward"}
 
 
 
 def wedge():
-    """A tetrahedron as STL in words."""
+    """Returns a tetrahedron as STL text."""
     corners = ["0 0 1", "1 0 1", "0 1 1", "0 0 2"]
     return "solid wedge\n" + "".join(
         "facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {corners[i]}\n" for i in facet) + "endloop\nendfacet\n"
@@ -204,7 +204,7 @@ RUNS = {
 
 
 def cost(subcommand, keys):
-    """Light paths by the thousand, placements by the dozen."""
+    """Returns keys that limit a run: thousands of light paths or dozens of placements."""
     if subcommand.split()[0] in ("solve", "place", "trace", "design", "bench"):
         return {"threads": None if subcommand == "place" else 2}
     if subcommand == "field":
@@ -228,7 +228,7 @@ def make_file(test, name, subcommand, keys, status=0):
 
 
 class ResultsTest(ProgramTest):
-    """All tests of a class read the same files, made once."""
+    """Base of tests that read the same files, which are made once."""
 
     @classmethod
     def setUpClass(cls):
@@ -248,7 +248,7 @@ class ResultsTest(ProgramTest):
         self.folder = self.results
 
     def on_each_file(self, check):
-        """check(open h5py file)."""
+        """Calls check(open h5py file) for each file."""
         for name, file in self.files.items():
             with self.subTest(file=name):
                 check(file)

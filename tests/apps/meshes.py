@@ -1,4 +1,4 @@
-"""Meshes of triangles, [triangle][3][x, y, z], anticlockwise seen from outside, and STL files of them."""
+"""Meshes of triangles [triangle][3][x, y, z], anticlockwise seen from outside, and their STL files."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ def unit(x):
 
 
 def ball(times=5):
-    """An octahedron, its triangles cut in four and thrown onto the unit sphere, so many times."""
+    """Returns an octahedron whose triangles are divided in four and projected onto the unit sphere `times` times."""
     x, y, z = np.eye(3)
     upper = np.array([[x, y, z], [y, -x, z], [-x, -y, z], [-y, x, z]])
     triangles = np.concatenate([upper, upper[:, ::-1] * [1, 1, -1]])

@@ -6,7 +6,7 @@ import sys
 
 
 def mounts_allowed():
-    """Whether this process may mount; tells by an exit status of 0."""
+    """Returns whether this process may mount, by a trial."""
     try:
         done = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=64k", "tmpfs", "/mnt"],
                               capture_output=True, timeout=10)
@@ -18,8 +18,8 @@ def mounts_allowed():
 
 
 def go_where_mounts_are_allowed():
-    """Begins again in a mount namespace of its own, if the system grants one: its mounts end with
-    it, and no one else sees them."""
+    """Restarts in a private mount namespace, if the system grants one: its mounts end with it and are
+    invisible to others."""
     if os.environ.get("IN_OWN_NAMESPACE"):
         return
     for flags in (["--mount"], ["--map-root-user", "--mount"]):

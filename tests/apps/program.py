@@ -19,9 +19,9 @@ DATA = pathlib.Path(os.environ["FLATSPECKLE_DATA"])
 BOX = {"width": 20, "depth": 10, "count": 31}
 CYLINDERS = {"width": 20, "depth": 10, "count": 20, "scatterer": "tm", "radius": 0.16}
 SLAB = {"domain": "slab", "depth": 100, "scatterer": "hg", "optical_depth": 2, "g": 0.5}
-SLOWNESS = float(os.environ.get("FLATSPECKLE_SLOWNESS", 1))  # above 1 of a program with sanitizers
+SLOWNESS = float(os.environ.get("FLATSPECKLE_SLOWNESS", 1))  # above 1 with sanitizers
 LLVM_OPENMP = "libomp" in subprocess.run(["ldd", PROGRAM], capture_output=True, text=True).stdout
-MOST_USER_S = 0.3 * SLOWNESS  # bad input is refused before anything is computed
+MOST_USER_S = 0.3 * SLOWNESS  # bad input is rejected before anything is computed
 WHOLE = "FLATSPECKLE_TEST_WHOLE" in os.environ  # by night: all tests at their full sizes
 RESUMES = signal.SIGUSR1  # caught once a run can be interrupted and resumed; others ignore it
 SAMPLES, ERRORS = (1, 1) if WHOLE else (0.25, 2)  # long runs: a quarter of their samples, twice their errors by day
@@ -30,7 +30,7 @@ TILTS = {"covariance": "memory_effect", "tilts": [0, 0.04, 0.16], "view_angles":
 
 
 def flags(keys):
-    """{"tilts": [0, 0.1], "resume": True} -> --tilts 0 0.1 --resume; None leaves a key out."""
+    """Returns {"tilts": [0, 0.1], "resume": True} as --tilts 0 0.1 --resume; None leaves a key out."""
     words = []
     for key, value in keys.items():
         if value is None or value is False:
@@ -42,7 +42,7 @@ def flags(keys):
 
 
 def toml(keys):
-    """The same keys as a scene file."""
+    """Returns keys as a scene file."""
 
     def show(value):
         if isinstance(value, bool):
@@ -55,8 +55,8 @@ def toml(keys):
 
 
 def datasets(path, leave_out=("wall_s", "cpu_s", "trace_cpu_s", "state")):
-    """Every dataset of a result file by its full name, less those with such a part in it: times
-    differ from run to run."""
+    """Returns every dataset of a result file by its full name, without names that have a part in leave_out:
+    times differ from run to run."""
     found = {}
 
     def add(name, item):
@@ -69,7 +69,7 @@ def datasets(path, leave_out=("wall_s", "cpu_s", "trace_cpu_s", "state")):
 
 
 def bits_of(values):
-    """Of numbers; texts are what they say."""
+    """Returns the bits of numbers, and texts unchanged."""
     values = np.asarray(values)
     return values.tolist() if values.dtype == object else values.tobytes()
 
@@ -80,31 +80,31 @@ def attributes(path):
 
 
 def cpu_of_children():
-    """CPU seconds of the processes that have ended."""
+    """Returns the CPU seconds of the processes that have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
 
 def user_seconds_of_children():
-    """User CPU seconds of the processes that have ended: without what loading them took the system."""
+    """Returns the user CPU seconds of the processes that have ended, without the system's time to load them."""
     return resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
 
 
 def user_seconds(process):
-    """User CPU seconds of a process that runs."""
+    """Returns the user CPU seconds of a running process."""
     with open(f"/proc/{process.pid}/stat") as status:
         return int(status.read().rsplit(")", 1)[1].split()[11]) / os.sysconf("SC_CLK_TCK")
 
 
 def catches(process, number):
-    """Whether the process has a handler for this signal by now."""
+    """Returns whether the process has a handler for this signal."""
     with open(f"/proc/{process.pid}/status") as status:
         caught = next(line for line in status if line.startswith("SigCgt"))
     return int(caught.split()[1], 16) >> (number - 1) & 1
 
 
 class ProgramTest(unittest.TestCase):
-    """Each test has a folder of its own, in which the program runs."""
+    """Base of tests that run the program, each in a folder of its own."""
 
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
@@ -112,8 +112,8 @@ class ProgramTest(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
 
     def call(self, *words, status=0, **keys):
-        """Runs the program with words, then keys as flags, and checks its exit status, and that it
-        is quick to refuse (2)."""
+        """Runs the program with words, then keys as flags, and checks its exit status and that rejections (2)
+        are quick."""
         command = [PROGRAM, *map(str, words), *flags(keys)]
         before = user_seconds_of_children()
         done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True, timeout=600)
@@ -124,13 +124,13 @@ class ProgramTest(unittest.TestCase):
         return done
 
     def seconds_of(self, *words, **keys):
-        """That a call takes."""
+        """Returns the seconds that a call takes."""
         started = time.monotonic()
         self.call(*words, **keys)
         return time.monotonic() - started
 
     def start(self, *words, **keys):
-        """Starts the program and does not wait for it; stopped at the latest when the test ends."""
+        """Starts the program without waiting for it; it is stopped at the latest when the test ends."""
         process = subprocess.Popen([PROGRAM, *map(str, words), *flags(keys)], cwd=self.folder,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         self.addCleanup(self.end, process)
@@ -144,7 +144,7 @@ class ProgramTest(unittest.TestCase):
         process.stderr.close()
 
     def wait_until(self, process, condition):
-        """Until it holds, while the process runs."""
+        """Waits until the condition holds, while the process runs."""
         deadline = time.monotonic() + 60
         while not condition():
             time.sleep(0.002)
@@ -160,16 +160,16 @@ class ProgramTest(unittest.TestCase):
         return path
 
     def write_older_result(self, name):
-        """What the program takes for one as long as it does not read it."""
+        """Writes a file that passes for a result as long as the program does not read it."""
         (self.folder / name).write_bytes(b"\x89HDF\r\n\x1a\n of an older run")
 
     def listing(self):
-        """What lies in the folder, hidden files included, with contents and time of change."""
+        """Returns the files of the folder, hidden ones included, with contents and time of change."""
         return {path.name: (path.stat().st_mtime_ns, path.read_bytes())
                 for path in self.folder.iterdir() if path.is_file()}
 
     def assert_same_data(self, first, second):
-        """Bit for bit, and in the same datasets."""
+        """Checks that both have the same datasets, bit for bit."""
         first, second = datasets(self.folder / first), datasets(self.folder / second)
         self.assertEqual(first.keys(), second.keys())
         self.assertTrue(first)

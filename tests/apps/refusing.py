@@ -1,4 +1,4 @@
-"""What the program refuses: status 2, one line, and nothing written."""
+"""Checks that the program rejects input: status 2, one line, nothing written."""
 
 import itertools
 
@@ -21,8 +21,8 @@ class RefusingTest(ProgramTest):
         self.assertEqual(self.listing(), before, done.stderr)
 
     def assert_refused_both_ways(self, subcommand, scene, changes, words):
-        """As flags with a new result file, and as a scene file with an older result in place; by day one case in
-        this way, the next in that."""
+        """Checks flags with a new result file and a scene file with an older result in place; by day cases
+        alternate between the two."""
         keys, turn = {**scene, **changes}, next(self.turns) % 2
         if turn == 0 or WHOLE:
             self.assert_refused_as_flags(subcommand, keys, words, changes)

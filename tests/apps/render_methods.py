@@ -1,13 +1,13 @@
 #!/usr/bin/python3
-"""Methods of render on the shipped scenes: what each needs in processor time to an error of the picture and of the
-total, against that which the pilot chooses.
+"""Compares the methods of render on the shipped scenes: processor time that each needs to reach an error of the
+picture and of the total, relative to the method that the pilot chooses.
 
     tests/apps/render_methods.py PROGRAM [--seconds T] [--reference R] [--seeds N] [--scenes NAME ...] [--power]
 
---power: of a single pixel, for which the pilot may choose otherwise.
+--power: a single pixel, for which the pilot may choose another method.
 
-Errors are those of runs of T seconds against a reference of R seconds by the chosen method, not those that runs claim.
-They fall as 1 / sqrt(time). Runs of all methods are made in turn, as the machine may be shared."""
+Errors are differences between runs of T seconds and a reference of R seconds by the chosen method, not reported ones.
+They fall as 1 / sqrt(time). Runs of all methods alternate, as the machine may be shared."""
 
 import argparse
 import pathlib
@@ -19,8 +19,8 @@ import numpy as np
 
 SCENES = pathlib.Path(__file__).resolve().parents[2] / "data" / "scenes"
 NAMES = ("luneburg", "luneburg_pulse", "slab", "waveguide", "fisheye", "grin_fibre", "glass_ball")
-METHODS = ("path", "light", "bidirectional", "analog")
-NO_ANALOG = ("luneburg", "slab", "fisheye", "glass_ball")  # no index field, or a camera
+METHODS = ("path", "light", "bidirectional", "forward")
+NO_FORWARD = ("luneburg", "slab", "fisheye", "glass_ball")  # no index field, or a camera
 ERRORS = (0.1, 0.05, 0.02, 0.01, 0.005)
 
 
@@ -29,7 +29,7 @@ class Scene:
         self.program, self.name, self.out, self.extra = program, name, folder / "out.h5", extra
 
     def run(self, seconds, seed, *flags):
-        """Picture, total, processor seconds of the batches, and the plan."""
+        """Returns picture, total, processor seconds of the batches, and the plan."""
         subprocess.run([self.program, "render", "--config", SCENES / f"render_{self.name}.toml", "--threads", "1",
                         "--seconds", str(seconds), "--seed", str(seed), "--out", self.out, *self.extra, *map(str, flags)],
                        check=True, capture_output=True)
@@ -41,8 +41,8 @@ class Scene:
 
 
 def squared_error(found, reference, of):
-    """Relative, less what the reference itself is likely off by. That of a total is one number, which chance may make
-    small: never less than what the run claims."""
+    """Returns the squared relative error, less that of the reference. The error of a total is one number, which may be
+    small by accident: it is at least the reported one."""
     off = np.mean((found[of] - reference[of]) ** 2) - np.mean(reference[of + "_error"] ** 2)
     least = found[of + "_error"][0] ** 2 if of == "total" else 0
     return max(off, least) / np.mean(reference[of] ** 2)
@@ -54,7 +54,7 @@ def mean_cost(runs, reference, of):
 
 def measure(scene, arguments):
     auto = scene.run(arguments.reference, 1000)
-    methods = [method for method in METHODS if method != "analog" or scene.name not in NO_ANALOG]
+    methods = [method for method in METHODS if method != "forward" or scene.name not in NO_FORWARD]
     runs = {method: [] for method in methods}
     for seed in range(1, arguments.seeds + 1):
         for method in methods:

@@ -1,4 +1,4 @@
-"""What tests of render share: small scenes, a density file, a call that reads its result."""
+"""Shared by tests of render: small scenes, a density file, a call that reads its result."""
 
 import h5py
 import numpy as np
@@ -25,8 +25,8 @@ def write_density(path, density, **attributes):
 
 class RenderTest(ProgramTest):
     def render(self, name="render.h5", **keys):
-        """The datasets of a run, by a method that is named: to choose one costs more than these pictures. The
-        choice is that of the program in shipped scenes (config)."""
+        """Returns the datasets of a run by a given method, as choosing one costs more than these pictures. In
+        shipped scenes (config) the program chooses."""
         choice = "config" in keys or keys.get("sensor") == "none"
         keys = {"samples": 4000, "threads": 2, "method": None if choice else "bidirectional", **keys}
         status = 3 if "target_error" in keys else 0
@@ -37,7 +37,7 @@ class RenderTest(ProgramTest):
         return self.render(config=SCENES / f"render_{scene}.toml", **keys)
 
     def assert_same(self, first, second):
-        """All but what it cost, which a run that is resumed counts in another way."""
+        """Checks that all but the costs are equal, which a resumed run counts in another way."""
         first, second = (datasets(self.folder / name, COST) for name in (first, second))
         self.assertEqual(first.keys(), second.keys())
         for name, values in first.items():

@@ -1,6 +1,6 @@
-"""A covariance run of --seconds on a small disk that a neighbour fills and empties, told to end,
-killed and resumed at random. What was saved stays, and the end is bit for bit that of an
-undisturbed run."""
+"""Soak test: a covariance run of --seconds on a small disk that a neighbour fills and empties, interrupted,
+killed and resumed at random. What was saved stays, and the result equals that of an undisturbed run
+bit for bit."""
 
 import argparse
 import contextlib
@@ -36,7 +36,7 @@ def samples_per_second(folder):
 
 
 class Neighbour(threading.Thread):
-    """Fills the disk but for some bytes, or empties it, for up to half a second each."""
+    """Fills the disk except for some bytes, or empties it, for up to half a second each."""
 
     def __init__(self, folder):
         super().__init__(daemon=True)
@@ -64,7 +64,7 @@ class Soak:
         self.statuses = {}
 
     def go_on(self):
-        """Until it ends, or is ended. Returns its exit status."""
+        """Runs the program until it ends or is stopped. Returns its exit status."""
         process = start(self.folder, samples=self.samples, resume=True)
         wait_until_it_catches(process, RESUMES)
         try:
@@ -95,7 +95,7 @@ def same(first, second):
 
 
 def disturb(soaked, neighbour):
-    """To the end of the run; the neighbour goes when the time is over."""
+    """Disturbs the run to its end; the neighbour stops when the time is over."""
     began = time.monotonic()
     neighbour.start()
     while soaked.go_on() != 0:

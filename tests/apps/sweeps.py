@@ -1,4 +1,4 @@
-"""Sweeps as the tests run them, and what lies in their folders of points."""
+"""Sweeps for tests, and access to the contents of their folders of points."""
 
 import itertools
 import os
@@ -22,24 +22,24 @@ NEVER = 1e-9  # a target error that is not reached
 
 
 def names_of(grid, method="mc"):
-    """The names of the points of a grid, in the order of the result."""
+    """Returns the names of the points of a grid, in the order of the result."""
     axes = [[f"{key}={value}" for value in grid[key]]
             for key in ("optical_depth", "g", "albedo") if key in grid]
     return ["_".join((method, *point)) for point in itertools.product(*axes)]
 
 
 def cpu_seconds(process):
-    """That it has used by now."""
+    """Returns the CPU seconds that the process has used so far."""
     with open(f"/proc/{process.pid}/stat") as stat:
         fields = stat.read().rpartition(") ")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 class SweepTest(ProgramTest):
-    wholes = {}  # what whole() has made
+    wholes = {}  # results of whole()
 
     def whole(self, keys, out="whole.h5"):
-        """A sweep that nothing disturbs, made once for all tests of a file."""
+        """Returns an undisturbed sweep, made once for all tests of a file."""
         name = repr(keys)
         if name not in self.wholes:
             self.call("sweep", **keys, out=out)
@@ -47,34 +47,34 @@ class SweepTest(ProgramTest):
         (self.folder / out).write_bytes(self.wholes[name])
 
     def points(self, out="sweep.h5", folder=None):
-        """The folder of a sweep's points."""
+        """Returns the folder of a sweep's points."""
         return (folder or self.folder) / f"{out}.shards"
 
     def shards(self, out="sweep.h5", folder=None):
-        """What lies there by name, less what is being written just now."""
+        """Returns its files by name, without those being written."""
         place = self.points(out, folder)
         return {path.name: path.read_bytes()
                 for path in (sorted(place.iterdir()) if place.is_dir() else [])
                 if not path.name.startswith(".")}
 
     def journal(self, number=0, of=1, out="sweep.h5"):
-        """The finished points of a share."""
+        """Returns the journal of the finished points of a share."""
         return self.points(out) / f"share-{number}-of-{of}.points"
 
     def finished(self, out="sweep.h5", folder=None):
-        """All finished points by name."""
+        """Returns all finished points by name."""
         return journals.points_in(self.points(out, folder))
 
     def unfinished(self, out="sweep.h5"):
-        """What points at work go on from, by the names of the files."""
+        """Returns the saved states of points in progress, by file name."""
         return {name: data for name, data in self.shards(out).items() if name.endswith(".part")}
 
     def all_points(self, keys, out="sweep.h5"):
-        """Leaves every point finished in the folder and no result yet."""
+        """Leaves every point finished in the folder, without a result."""
         self.call("sweep", **keys, shard="0/1", out=out)
 
     def interrupted(self, number=signal.SIGINT, cpu_s=0.1, **keys):
-        """Signals a sweep after so much work, in the midst of its points; it ends resumable."""
+        """Signals a sweep after `cpu_s` of work, amid its points; it ends resumable."""
         process = self.start("sweep", **keys)
         self.wait_until_it_catches(process)
         began = cpu_seconds(process)
@@ -84,7 +84,7 @@ class SweepTest(ProgramTest):
         self.assertEqual(status, 75, process.stderr.read())
 
     def assert_points_equal(self, points, whole, prefix=""):
-        """Each point of a list is found in the whole grid with the same numbers."""
+        """Checks that each point of a list is in the whole grid with the same numbers."""
         points, whole = (datasets(self.folder / path) for path in (points, whole))
         axes = ("optical_depth", "g", "albedo")
         for i in range(len(points["point"])):
@@ -100,7 +100,7 @@ class SweepTest(ProgramTest):
                     whole[prefix + name][whole[prefix + "trace/of_point"] == flat])
 
     def assert_one_line(self, error, *words):
-        """One line that says why it ended; warnings may come before it."""
+        """Checks that one line gives the reason for the end; warnings may precede it."""
         lines = [line for line in error.splitlines()
                  if not line.startswith(("warning: ", "note: ", "sweep: "))]
         self.assertEqual(len(lines), 1, error)

@@ -1,4 +1,4 @@
-"""What attacks found: two runs with one result, links, closed streams, limits, signals."""
+"""Regressions found by attacks: two runs with one result, links, closed streams, limits, signals."""
 
 import os
 import random
@@ -53,12 +53,12 @@ class Owner(ProgramTest):
         (self.folder / "other.h5").rename(self.folder / "x.h5")
         process.send_signal(signal.SIGTERM)
         self.assertEqual(process.wait(timeout=30), 75)
-        self.assertIn("another file stood at x.h5", process.stderr.read())
+        self.assertIn("found a foreign file at x.h5", process.stderr.read())
         with h5py.File(self.folder / "x.h5.aside-1") as file:
             self.assertEqual(file.attrs["samples"], 4000)
 
     def test_two_runs_and_kills(self):
-        """A result that was finished before is there at the end, whatever ran and died."""
+        """A result finished before remains, whatever ran and was killed."""
         moments = random.Random(3)
         self.call("covariance", **SHORT, seed=7, out="x.h5")
         finished = (self.folder / "x.h5").read_bytes()
@@ -121,19 +121,19 @@ class Files(ProgramTest):
 @unittest.skipIf(SLOWNESS > 1, "a sanitizer's shadow memory is larger than these limits")
 class Memory(ProgramTest):
     def test_little_address_space(self):
-        """OpenBLAS waits for ever where it gets no memory."""
+        """OpenBLAS waits forever if it gets no memory."""
         for megabytes in (200, 300):
             for keys in ({**BOX, **WIDE, "samples": 4000}, {**BOX, "width": -1}):
                 self.check_refused(keys, megabytes)
 
     def test_little_address_space_of_threads(self):
-        """The runtime of OpenMP ends the program where it cannot start a thread."""
+        """The OpenMP runtime ends the program if it cannot start a thread."""
         error = self.check_refused({**SHORT, "threads": 50}, 300)
         self.assertIn("threads: ulimit -v", error)
         self.assertEqual(list(self.folder.iterdir()), [])
 
     def test_address_space_that_two_threads_fill(self):
-        """Each has its buffer of BLAS before another can take the room."""
+        """Each thread gets its BLAS buffer before another can take the memory."""
         for _ in range(12 if WHOLE else 4):
             done = self.limited("validate", dict(
                 width=20, depth=10, count=31, covariance="memory_effect", tilts=[0, 0.04, 0.16],
@@ -195,7 +195,7 @@ class Signals(ProgramTest):
         self.assertEqual([path.name for path in self.folder.iterdir()], ["x.h5"])
 
     def test_long_batches(self):
-        """A path of a thick, narrow box takes seconds, and so does a slab's transport."""
+        """A path in a thick, narrow box takes seconds, and so does transport in a slab."""
         for keys in ({"width": 4, "depth": 20, "scatterer": "hg", "optical_depth": 3000},
                      {"width": 100, "depth": 20, "scatterer": "hg", "optical_depth": 1e4},
                      {**SLAB, "g": 0.9997, "optical_depth": 10}):
@@ -212,7 +212,7 @@ class Signals(ProgramTest):
                 self.assertIn("optical_depth", done.stderr)
 
     def test_seconds_are_kept(self):
-        """In a thick box, and in a narrow one, where walkers would multiply without end."""
+        """Covers a thick box, and a narrow one in which walkers would multiply without end."""
         for keys in ({"width": 100, "depth": 20, "scatterer": "hg", "optical_depth": 1000},
                      {"width": 0.01, "depth": 10, "count": 31}):
             with self.subTest(keys=keys):

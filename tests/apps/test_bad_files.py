@@ -1,4 +1,4 @@
-"""Result files that cannot be written or resumed: status 2, one line, and all stays as it was."""
+"""Result files that cannot be written or resumed: status 2, one line, nothing changed."""
 
 import unittest
 
@@ -28,7 +28,7 @@ class Output(RefusingTest):
     def test_out_is_a_file_of_another_kind(self):
         self.write("mine.txt", "precious")
         for subcommand, scene in COMMANDS.items():
-            self.assert_refused(["mine.txt", "no result"], subcommand, *flags(scene),
+            self.assert_refused(["mine.txt", "not a result"], subcommand, *flags(scene),
                                 out="mine.txt")
 
     def test_out_before_a_scene_that_is_wrong(self):
@@ -43,7 +43,7 @@ class Resume(RefusingTest):
         self.refused_resume("text.h5", ["text.h5"])
         with h5py.File(self.folder / "other.h5", "w") as file:
             file["x"] = 1.0
-        self.refused_resume("other.h5", ["other.h5", "never held a run"])
+        self.refused_resume("other.h5", ["other.h5", "never contained a run"])
         (self.folder / "empty.h5").write_bytes(b"")
         self.refused_resume("empty.h5", ["empty.h5"])
 
@@ -61,7 +61,7 @@ class Resume(RefusingTest):
                 self.refused_resume("run.h5", ["run.h5"])
 
     def test_a_damaged_run(self):
-        """Wherever the damage is: HDF5 may crash where it sees it."""
+        """Damages every place: HDF5 itself may crash on it."""
         self.call("covariance", **self.KEYS, target_error=1e-6, out="run.h5", status=3)
         whole = (self.folder / "run.h5").read_bytes()
         for place in range(0, len(whole), len(whole) // 20):

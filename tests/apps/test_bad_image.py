@@ -1,4 +1,4 @@
-"""Pictures and frames that are refused: one line, status 2, nothing written."""
+"""Rejected pictures and frames: one line, status 2, nothing written."""
 
 import unittest
 
@@ -21,7 +21,7 @@ class BadScene(RefusingTest):
     def test_objects_inside(self):
         for z in 0, 1e-9, 10, 20:
             self.refused(["object_depth", "outside of the box"], object_depth=z)
-        for z in -0.4, 20.4:  # disks reach so far
+        for z in -0.4, 20.4:  # disks extend this far
             self.refused(["object_depth", "scatterer's radius"], DISKS, object_depth=z)
         self.refused(["camera_depth", "outside of the box"], camera_depth=20, camera=[-50, 50])
 
@@ -31,7 +31,7 @@ class BadScene(RefusingTest):
         self.refused(["object_extent = 1000", "more than a quarter"], object_extent=1000)
 
         self.refused(["object_extent", "more than a quarter"], object_scale=9)
-        self.refused(["object_count = 4", "3 points"], object_count=4)
+        self.refused(["object_count = 4", "at most 3"], object_count=4)
 
     def test_numbers(self):
         for bad in "nan", "inf":
@@ -50,11 +50,11 @@ class BadScene(RefusingTest):
         speckle = {**subsets, "blinking": "speckle"}
         self.refused(["blinking_frames = 1"], subsets, blinking_frames=1)
         self.refused(["lit"], subsets, lit=1.5)
-        self.refused(["lit"], speckle, lit=0.6)  # nothing has use for it
+        self.refused(["lit"], speckle, lit=0.6)  # not used
         self.refused(["blinking_frames"], blinking_frames=9)
         self.refused(["sources = 9", "blinking_frames"], subsets, sources=9, blinking_frames=8)
         self.refused(["average = 2", "one medium"], subsets, average=2)
-        self.refused(["reference_x", "no reference"], subsets, reference_x=10)
+        self.refused(["reference_x", "must not be given with blinking"], subsets, reference_x=10)
         self.refused(["excitation_wavelength"], subsets, excitation_wavelength=0.8)
         self.refused(["excitation_wavelength"], speckle, excitation_wavelength=-1)
         self.refused(["excitation_optical_depth"], speckle, optical_depth=None, mean_free_path=5,
@@ -104,15 +104,15 @@ class BadFrames(RefusingTest):
 
     def test_sources(self):
         sources = {"recovery": "sources"}
-        self.refused(["columns", "two or more"], self.frames(columns=("a",)), **sources)
-        self.refused(["points = 3", "at least as many frames"], self.frames(), **sources)
+        self.refused(["columns", "at least 2 columns"], self.frames(columns=("a",)), **sources)
+        self.refused(["points = 3", "number of frames"], self.frames(), **sources)
         self.refused(["mean is not positive"], "a,b\n" + "0,0\n" * 200, points=2, **sources)
         self.refused(["average"], self.frames(), points=2, average=2, **sources)
         self.refused(["longest", "less than a quarter"], self.frames(), points=2, longest=50,
                      **sources)
 
     def test_average(self):
-        self.refused(["average = 3", "does not divide"], self.frames(), average=3)
+        self.refused(["average = 3", "must divide"], self.frames(), average=3)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""bench: the three kinds of benchmark, their rows and exit status, and the report made of them."""
+"""bench: the three kinds of benchmark, their rows and exit status, and the report from them."""
 
 import json
 import subprocess
@@ -19,7 +19,7 @@ def texts(file, name):
 
 
 def report_of(folder, out):
-    """Runs plots/report.py; a python without matplotlib cannot."""
+    """Runs plots/report.py, which needs matplotlib."""
     files = [folder / f"{kind}.h5" for kind in KINDS]
     return subprocess.run([sys.executable, "-B", PLOTS / "report.py", *files, "--out", out],
                           capture_output=True, text=True, timeout=300)
@@ -31,12 +31,12 @@ def has_matplotlib():
 
 
 class Bench(ProgramTest):
-    """The results are made once."""
+    """Tests of results that are made once."""
 
     results = {}
 
     def bench(self, kind):
-        """The result file of a kind, and what was printed."""
+        """Returns the result file of a kind, and the output."""
         if kind not in self.results:
             done = self.call("bench", kind, "--quick", threads=2, out="bench.h5")
             self.results[kind] = (self.folder / "bench.h5").read_bytes(), done.stdout
@@ -104,7 +104,7 @@ class Bench(ProgramTest):
         self.assertTrue(all(number["text"] for number in numbers.values()))
 
     def test_a_failing_row_is_told(self):
-        """No row fails by itself: the report of one that did."""
+        """Reports a row that is made to fail, as none fails by itself."""
         if not has_matplotlib():
             self.skipTest("this python has no matplotlib")
         for kind in KINDS:

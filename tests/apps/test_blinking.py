@@ -1,4 +1,4 @@
-"""Points that blink: how bright they are, what single frames show, sources from the frames."""
+"""Blinking points: their brightness, single frames, sources separated from the frames."""
 
 import unittest
 
@@ -19,16 +19,16 @@ class Blinking(ProgramTest):
         return datasets(self.folder / name)
 
     def test_subsets(self):
-        """Each point in its share of the frames, independent of the others."""
+        """Each point is lit in its share of the frames, independently of the others."""
         bright = self.image(**{**WEIGHTS, "blinking": "subsets", "lit": 0.3})["point_brightness"]
         self.assertEqual(bright.shape, (4000, 4))
         self.assertEqual(set(np.unique(bright)), {0, 1})
-        chance = 4 / len(bright)**0.5
-        self.assertLess(abs(bright.mean(axis=0) - 0.3).max(), chance * 0.21**0.5)
-        self.assertLess(abs(np.corrcoef(bright.T) - np.eye(4)).max(), chance)
+        fluctuation = 4 / len(bright)**0.5
+        self.assertLess(abs(bright.mean(axis=0) - 0.3).max(), fluctuation * 0.21**0.5)
+        self.assertLess(abs(np.corrcoef(bright.T) - np.eye(4)).max(), fluctuation)
 
     def test_speckle(self):
-        """Exponentially distributed, and alike within a grain as the light's covariance has it."""
+        """Brightness is exponentially distributed and correlated within a grain as by the light's covariance."""
         found = self.image(**{**WEIGHTS, "object_x": [0, 4, 8, 150]}, blinking="speckle",
                            excitation_wavelength=0.8)
         bright, alike = found["point_brightness"], found["pair_excitation"]
@@ -41,12 +41,12 @@ class Blinking(ProgramTest):
                         4 * (0.25 / frames)**0.5)
         correlation = np.corrcoef(bright.T)[np.triu_indices(4, 1)]
         self.assertLess(abs(correlation - alike).max(), 6 / frames**0.5)
-        self.assertGreater(alike[0], alike[1])  # 4 apart, 8 apart
+        self.assertGreater(alike[0], alike[1])  # distances 4 and 8
         self.assertGreater(alike[1], 0.05)
         self.assertLess(alike[2], 0.02)
 
     def test_speckle_grain(self):
-        """The grains of excitation are as wide as its wavelength."""
+        """The grains of the excitation are as wide as its wavelength."""
         alike = [self.image(**{**WEIGHTS, "blinking_frames": 2, "object_x": [0, x]}, blinking="speckle",
                             excitation_wavelength=wavelength)["pair_excitation"][0]
                  for x, wavelength in ((6, 1), (9, 1.5), (6, 1.5))]
@@ -54,7 +54,7 @@ class Blinking(ProgramTest):
         self.assertGreater(alike[2], alike[0] + 0.1)
 
     def test_contrast_of_frames(self):
-        """Four equal points of independent exponential brightness: 2/(N + 1) in the mean square."""
+        """Four equal points of independent exponential brightness have a squared contrast of 2/(N + 1)."""
         found = self.image(**{**IMAGE, "object_x": [0, 60, 150, 310], "points": 0, "object_extent": 80,
                               "repeats": 12, "blinking_frames": 100}, blinking="speckle")
         error = found["frame_contrast_error"]
@@ -64,7 +64,7 @@ class Blinking(ProgramTest):
         self.assertLess(error, 0.03)
 
     def test_sources(self):
-        """All points, not mirrored, in frames of few photons; from the frames alone as well."""
+        """All points are found, not mirrored, in frames of few photons, also from the frames alone."""
         for extra in ({"blinking": "subsets"},
                       {"blinking": "speckle", "photons": 30, "read_noise": 2, "background": 0.5}):
             found = self.image(**{**IMAGE, **extra}, blinking_frames=40)
@@ -77,7 +77,7 @@ class Blinking(ProgramTest):
             for name, values in found.items():
                 if values.dtype.kind == "f":
                     self.assertTrue(np.all(np.isfinite(values)), name)
-        self.assertIn("as sources all points found in 1", self.output)
+        self.assertIn("all points recovered as sources in 1", self.output)
         frames = found["frames"] - 0.5
         np.savetxt(self.folder / "frames.csv", frames.T, delimiter=",",
                    header=",".join(f"f{i}" for i in range(len(frames))), comments="")
@@ -97,7 +97,7 @@ class Blinking(ProgramTest):
                                    own["factor_residual"], rtol=1e-3)
 
     def test_chain(self):
-        """Farther than any two of the ends are alike, where one frame's autocorrelation is lost."""
+        """Chains beyond the memory-effect range, where the autocorrelation of one frame fails."""
         found = self.image(**{**IMAGE, "width": 600, "optical_depth": 12,
                               "object_depth": -20000, "pixels": 2048,
                               "object_x": [-900, -530, -180, 160, 500, 910],

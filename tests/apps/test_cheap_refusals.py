@@ -1,5 +1,5 @@
-"""Bad input in scenes that would cost much: refused within 0.3 CPU seconds (ProgramTest.call), by
-one line that names the key, and nothing is written."""
+"""Bad input in expensive scenes: rejected within 0.3 CPU seconds (ProgramTest.call) by one line that
+names the key, and nothing is written."""
 
 import unittest
 
@@ -82,7 +82,7 @@ CASES = [
     ("sweep", WIDE_SWEEP, {"tilts": None}, ["tilts"]),
     ("place", FLUID_PLACED, {"out": None}, ["out is not given"]),
     ("place", FLUID_PLACED, {"structure": "points.csv"}, ["points.csv", "no result"]),
-    ("place", FLUID_PLACED, {"fractions": [1, 2]}, ["fractions = 2"]),
+    ("place", FLUID_PLACED, {"fractions": [1, 2]}, ["fractions: has 2"]),
     ("place", FLUID_PLACED, {"packing_fraction": 0.72}, ["packing fraction", "0.69"]),
     ("trace", RAYS, {"out": None}, ["out is not given"]),
     ("trace", RAYS, {"stop_sphere": [0, 0, 1, -1]}, ["stop_sphere, radius = -1"]),

@@ -1,5 +1,5 @@
-"""What is made of the key tables for shells and manuals: bash completes subcommands and their flags, and the manual
-page is clean."""
+"""Shell completion and manual page from the key tables: bash and zsh complete subcommands and their flags, and the
+manual page has no warnings."""
 
 import re
 import shutil
@@ -10,7 +10,7 @@ from program import PROGRAM
 
 
 def completed(*words):
-    """What bash offers for the last word."""
+    """Returns the completions of the last word by bash."""
     script = (f'source <("{PROGRAM}" keys completion); COMP_WORDS=(flatspeckle "$@"); COMP_CWORD=$#; '
               '_flatspeckle || true; echo "${COMPREPLY[@]}"')
     return subprocess.run(["bash", "-euc", script, "bash", *words], capture_output=True, text=True,

@@ -1,4 +1,4 @@
-"""Index fields from what their light should do."""
+"""Index fields designed for given targets of their rays."""
 
 import signal
 import time
@@ -18,7 +18,7 @@ TRACED = {"light": "disk", "origin": [0, 0, -1.2], "beam_radius": 0.9, "ray_coun
 
 
 def views(count, across):
-    """Parallel rays of so many directions in the plane y = 0."""
+    """Returns parallel rays in `count` directions in the plane y = 0."""
     rows = ["x,y,z,dx,dy,dz"]
     places = 1.2 * ((np.arange(across) + 0.5) / across - 0.5) * 2
     for angle in np.pi * np.arange(count) / count:
@@ -37,7 +37,7 @@ class Design(RefusingTest):
 
     def test_ball_that_trace_reads(self):
         said, found = self.design("lens.h5", **SMALL)
-        self.assertIn("held-out rays miss by", said)
+        self.assertIn("held-out rays miss their targets by", said)
         self.assertEqual(found["ball_spline"].shape, (7, 7, 7))
         self.assertLess(found["rms/seen"], 2e-3)
         self.assertLess(found["profile/spread"].max(), 5e-3)
@@ -57,7 +57,7 @@ class Design(RefusingTest):
         self.assertLess(rays["invariants/angular_momentum_change"].max(), 1e-8)
 
     def test_fibre_that_trace_reads(self):
-        """The exponent of least dispersion, seen by rays of trace over many turns."""
+        """Finds the exponent of least dispersion, checked by rays of trace over many periods."""
         self.design("fibre.h5", **FIBRE)
         law = {"index": 1.47, "delta": 0.01, "core_radius": 25}
         for name, field in (("parabola", law), ("found", {"graded_spline": "fibre.h5"})):
@@ -67,7 +67,7 @@ class Design(RefusingTest):
         self.assertLess(spread[1], 0.6 * spread[0])
 
     def test_box_that_trace_reads(self):
-        """Its grid, with margins, is the same field: rays of trace hit where those of the search do."""
+        """The stored grid, with margins, is the designed field: rays of trace end where those of the search do."""
         self.write("picture.csv", "\n".join(",".join(str(1 + (i > 3) + j % 3) for i in range(8)) for j in range(8)))
         self.design("box.h5", **PICTURE, pictures="picture.csv")
         found = datasets(self.folder / "box.h5")
@@ -80,9 +80,9 @@ class Design(RefusingTest):
         self.assertGreater(np.abs(rays["exit/dx"]).max(), 1e-4)
 
     def test_deflections_of_trace(self):
-        """Blobs are found again from what rays in four views did."""
+        """Blobs are recovered from the deflections of rays in four views."""
         self.write("blobs.csv", "x,y,z,height,width\n0.2,0.1,-0.1,0.001,0.3\n-0.3,0,0.2,0.0015,0.25\n")
-        self.write("views.csv", views(6, 12) + "0,1,-1.9,0,0,1\n1,0.2,-1.9,0,0,1\n")  # the last go along faces
+        self.write("views.csv", views(6, 12) + "0,1,-1.9,0,0,1\n1,0.2,-1.9,0,0,1\n")  # the last two run along faces
         self.call("trace", field="blobs", blobs="blobs.csv", rays="views.csv", stop_box=[-3, -3, -3, 3, 3, 3],
                   max_length=9, out="measured.h5")
         _, found = self.design("found.h5", design="box", nodes=[9], goal="deflections", measured="measured.h5",
@@ -101,19 +101,19 @@ class Design(RefusingTest):
 
     def test_bounds_are_told(self):
         done = self.call("design", out="held.h5", **SMALL, most_index=1.3)
-        self.assertIn("stand at", done.stderr)
+        self.assertIn("are at least_index or most_index", done.stderr)
         self.assertGreater(datasets(self.folder / "held.h5")["at_bounds"], 0)
 
     def test_coefficients_that_no_ray_sees_are_told(self):
         done = self.call("design", out="narrow.h5", **{**SMALL, "directions": 1, "aperture": 0.2, "nodes": [9]})
-        self.assertIn("seen by no ray", done.stderr)
+        self.assertIn("crossed by no ray", done.stderr)
         self.assertGreater(datasets(self.folder / "narrow.h5")["unseen"], 50)
         done = self.call("design", out="all.h5", **SMALL)
-        self.assertNotIn("seen by no ray", done.stderr)
+        self.assertNotIn("crossed by no ray", done.stderr)
         self.assertEqual(datasets(self.folder / "all.h5")["unseen"], 0)
 
     def test_light_of_a_point_leaves_parallel(self):
-        """As trace sees it too."""
+        """The result agrees with trace."""
         point = {"sources": [0, 0, -1], "half_angle": 0.7, "rays_per_source": 200}
         _, found = self.design("parallel.h5", design="ball", nodes=[5], goal="collimation", **point)
         self.assertLess(found["rms/held_out_half_step"], 2e-3)
@@ -132,7 +132,7 @@ class Design(RefusingTest):
         self.assertLess(datasets(self.folder / "start.h5")["throughput"], 0.1)
 
     def test_resumed(self):
-        """Cut off after some steps and gone on with: the same bits."""
+        """A search that is cut off and resumed gives the same bits."""
         keys = {**SMALL, "nodes": [5, 9], "directions": 25, "rays_per_direction": 20, "threads": 1}
         self.design("whole.h5", **keys)
         run = self.start("design", out="cut.h5", **keys)
@@ -146,9 +146,9 @@ class Design(RefusingTest):
             self.assert_refused(["another search"], "design", out="cut.h5", resume=True, **{**keys, "nodes": [5]})
             kept = (self.folder / "cut.h5.state").read_bytes()
             (self.folder / "new.h5.state").write_bytes(kept)
-            self.assertIn("--resume would go on", self.call("design", out="new.h5", **keys).stderr)
+            self.assertIn("--resume would continue it", self.call("design", out="new.h5", **keys).stderr)
             (self.folder / "new.h5.state").write_bytes(kept)
-            self.assertIn("another search, which is given up",
+            self.assertIn("another search, which is discarded",
                           self.call("design", out="new.h5", **{**keys, "nodes": [3]}).stderr)
             self.design("cut.h5", resume=True, **keys)
         self.assertFalse((self.folder / "cut.h5.state").exists())
@@ -170,7 +170,7 @@ class Design(RefusingTest):
         self.assert_refused(["another search", "asked.csv"], "design", resume=True, **keys)
 
     def test_a_signal_within_a_long_step(self):
-        """Of 400,000 rays a step takes some four seconds of the processor, whoever else uses it."""
+        """A step of 400,000 rays takes about four seconds of processor time, on a busy machine too."""
         run = self.start("design", design="guide", goal="equal_path", delta=0.01, coefficients=0, ray_count=400000,
                          threads=1, out="cut.h5")
         time.sleep(1)
@@ -199,7 +199,7 @@ class Design(RefusingTest):
         for words, keys in [
                 (["nodes = 8", "must be 9"], {"nodes": [5, 8]}),
                 (["nodes", "from 2"], {"nodes": [1]}),
-                (["start_excess = 3", "bounds"], {"start_excess": 3}),
+                (["start_excess = 3", "range"], {"start_excess": 3}),
                 (["least_index", "at most 1"], {"least_index": 1.2}),
                 (["least_index", "positive"], {"least_index": 0}),
                 (["most_index", "at least 1"], {"most_index": 0.9}),
@@ -229,7 +229,7 @@ class Design(RefusingTest):
                 (["noise", "target"], {"target": 0.1, "noise": 0.1}),
                 (["sources is not given"], {"goal": "collimation"}),
                 (["sources = 0 0 0.5", "outside"], {"goal": "collimation", "sources": [0, 0, 0.5]}),
-                (["half_angle", "beside"], {"goal": "collimation", "sources": [0, 0, -9]}),
+                (["half_angle", "misses"], {"goal": "collimation", "sources": [0, 0, -9]}),
                 (["aperture_radius"], {"goal": "throughput", "sources": [0, 0, -1]}),
                 (["aperture_distance = 1", "behind"],
                  {"goal": "throughput", "sources": [0, 0, -1], "aperture_radius": 0.1, "aperture_distance": 1})]:

@@ -1,4 +1,4 @@
-"""Derivatives and delays beside the covariance."""
+"""Derivatives and delays stored with the covariance."""
 
 import unittest
 
@@ -15,7 +15,7 @@ SMALL_TILTS = {**TILTS, "tilts": [0, 0.001, 0.003, 0.006]}
 POINTS = {"domain": "slab", "width": None, "count": None, "density": 0.1, "method": "transport"}
 LV = ("light_angle", "view_angle")
 MATRIX = (*LV, "light_angle_2", "view_angle_2")
-# request -> the shape of one parameter, and whether it is complex
+# request: shape of one parameter, and whether it is complex
 REQUESTS = {
     "intensity": (VIEWS, {"gradient": (LV, False)}),
     "full": ({**VIEWS, "covariance": "full"}, {"gradient": (MATRIX, True)}),
@@ -132,7 +132,7 @@ class Extras(ProgramTest):
                                        file["field_correlation"], rtol=1e-12)
 
     def test_hardly_any_scattering(self):
-        """All that is left is in proportion to the albedo, and as soon found."""
+        """Results remain proportional to the albedo, at the same cost."""
         found = []
         for albedo in (1e-7, 1e-100):
             self.call("covariance", **{**SLAB, **SMALL_TILTS}, albedo=albedo, method="transport",
@@ -142,7 +142,7 @@ class Extras(ProgramTest):
         np.testing.assert_allclose(found[1], found[0], rtol=1e-5)
 
     def test_resumed(self):
-        """In the same numbers, and not with other extras."""
+        """Resuming gives the same numbers and rejects other extras."""
         for keys in ({"delays": [0.1, 1]}, {"gradient": True}):
             self.call("covariance", **HG, **VIEWS, **keys, samples=4000, out="whole.h5")
             self.call("covariance", **HG, **VIEWS, **keys, samples=2000, target_error=1e-9,
@@ -162,7 +162,7 @@ class Refused(RefusingTest):
                             ({**POINTS, "frequency_shifts": [0.3]},
                              ["frequency_shifts = 0.3", "-0.1 to 0.1"]),
                             ({**POINTS, "frequency_shifts": [0.01], "delays": [0.1]},
-                             ["frequency_shifts: give one"]),
+                             ["frequency_shifts: give only one"]),
                             ({**POINTS, "frequency_shifts": [-0.1], "light_angles": [1.5],
                               "view_angles": [-1.5]}, ["frequency_shifts = -0.1", "horizon"]),
                             ({"delays": [-0.1]}, ["delays = -0.1", "must not be negative"]),

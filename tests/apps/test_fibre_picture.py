@@ -1,5 +1,5 @@
-"""Pictures of the graded fibre against those of its rays in closed form. By night: what share of the pixels that are not
-marked lies beyond two errors."""
+"""Pictures of the graded fibre against closed-form rays. By night: share of the pixels not marked as undersampled
+that lie beyond two errors."""
 
 import unittest
 
@@ -13,7 +13,7 @@ from renders import RenderTest
 class Picture(RenderTest):
     def test_it_is_that_of_the_rays(self):
         truth = fibre_picture(6, blocks=1)
-        for method in ("path", "light", "bidirectional", "analog"):
+        for method in ("path", "light", "bidirectional", "forward"):
             with self.subTest(method=method):
                 found = self.scene("grin_fibre", pixels=[6, 6], path_bins=[80.42, 80.74, 2], method=method, samples=15000)
                 self.assert_within(found["image"], found["image_error"], truth)
@@ -28,7 +28,7 @@ class Picture(RenderTest):
 @nightly
 class Pixels(RenderTest):
     def assert_few_beyond(self, samples, seeds):
-        """At most 8 %, and what chance adds to so many pixels: one standard error."""
+        """Checks that at most 8 % lie beyond, plus one standard error of the share."""
         beyond = seen = 0
         truth = fibre_picture(24)
         for seed in seeds:

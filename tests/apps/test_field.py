@@ -1,4 +1,4 @@
-"""Speckle fields: what the file holds, that it is what `covariance` says, and what is refused."""
+"""Speckle fields: contents of the file, agreement with `covariance`, and rejected input."""
 
 import signal
 import unittest
@@ -84,7 +84,7 @@ class Contents(FieldTest):
 
 class Statistics(FieldTest):
     def test_covariance(self):
-        """Of 1e4 fields, by day 4000, within 4 standard errors of what `covariance` estimates."""
+        """The covariance of 1e4 fields, by day 4000, is within 4 standard errors of `covariance`."""
         fields = 10_000 if WHOLE else 4000
         self.call("covariance", **BOX, **VIEWS, covariance="full", samples=40 * fields, seed=5,
                   out="full.h5")
@@ -137,7 +137,7 @@ class Reproducibility(FieldTest):
             self.assert_same_data("1.h5", "3.h5")
 
     def test_a_field_is_its_number_s(self):
-        """More of them do not change the first ones."""
+        """More fields do not change the first ones."""
         for method in "paths", "covariance":
             keys = {**BOX, **VIEWS, "method": method,
                     "paths_per_field": 50 if method == "paths" else None}

@@ -63,7 +63,7 @@ class FieldMap(ProgramTest):
                 self.assertGreater(np.abs(inside).min(), 1e-3)
 
     def test_tiles_fit_together(self):
-        """Beyond one tile; the right lower quarter, mapped alone, is one."""
+        """The map has several tiles; its lower right quarter alone is a single one."""
         whole = self.call("solve", **SEVERAL_TILES, out="whole.h5")
         self.assertRegex(whole.stdout, r"in [2-9] tiles")
         self.call("solve", **{**POINTS, "map": [0, 5, 2, 8]}, map_pixels=[550, 650], out="part.h5")
@@ -126,7 +126,7 @@ class BadInput(ProgramTest):
 
 
 class Unfinished(ProgramTest):
-    """What was at the path before stays there, and nothing beside it."""
+    """An unfinished map leaves the older file in place and no others."""
 
     def setUp(self):
         super().setUp()

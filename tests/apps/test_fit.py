@@ -23,10 +23,10 @@ class Fit(ProgramTest):
         return done, datasets(self.folder / "fit.h5")
 
     def test_tables(self):
-        """By night, the same end from a start that the scene states."""
+        """By night a start given by the scene leads to the same result."""
         done, found = self.fit(*ALL)
-        pulls = (found["estimate"] - TRUTH) / found["estimate_error"]
-        self.assertLess(np.abs(pulls).max(), 3)
+        normalised = (found["estimate"] - TRUTH) / found["estimate_error"]
+        self.assertLess(np.abs(normalised).max(), 3)
         self.assertEqual([name.decode() for name in found["parameter_name"]],
                          ["g", "albedo", "optical_depth"])
         chi_squared = attributes(self.folder / "fit.h5")["chi_squared"]
@@ -40,7 +40,7 @@ class Fit(ProgramTest):
         self.assertLess(off.max(), 0.1)
 
     def test_a_result_of_many_close_tilts(self):
-        """Errors that are so correlated that what is left of them in some sums is rounding."""
+        """Errors are so correlated that they cancel to rounding in some sums."""
         tilts = [0, 0.0003, 0.0006, 0.0009, 0.0012, 0.0016, 0.002, 0.0025, 0.003, 0.004, 0.006, 0.01]
         for seed in (1, 2) if WHOLE else (1,):
             self.call("covariance", domain="slab", depth=100, scatterer="hg", g=0.9, albedo=0.99,
@@ -49,8 +49,8 @@ class Fit(ProgramTest):
             self.call("fit", "--free", "g=0.5:0.99", "optical_depth=1:30", depth=100, albedo=0.99,
                       measurement="measured.h5", out="fit.h5")
             found = datasets(self.folder / "fit.h5")
-            pulls = (found["estimate"] - [0.9, 10]) / found["estimate_error"]
-            self.assertLess(np.abs(pulls).max(), 4)
+            normalised = (found["estimate"] - [0.9, 10]) / found["estimate_error"]
+            self.assertLess(np.abs(normalised).max(), 4)
             self.assertLess(attributes(self.folder / "fit.h5")["chi_squared"], 9 + 4 * 18**0.5)
 
     def test_a_model_that_cannot_be(self):
@@ -79,7 +79,7 @@ class Fit(ProgramTest):
         self.assertLess(off.max(), 0.3)
 
     def test_results(self):
-        """Power through two thicknesses of one medium, by Monte Carlo."""
+        """Fits the power transmitted by two thicknesses of one medium, by Monte Carlo."""
         medium = {"domain": "slab", "scatterer": "hg", "g": 0.5, "albedo": 0.9,
                   "mean_free_path": 50, "samples": 20000}
         for depth in (50, 200):
@@ -87,11 +87,11 @@ class Fit(ProgramTest):
         self.call("fit", "--free", "albedo=0.5:1", "mean_free_path=10:200", g=0.5,
                   measurement=["50.h5", "200.h5"], out="fit.h5")
         found = datasets(self.folder / "fit.h5")
-        pulls = (found["estimate"] - [0.9, 50]) / found["estimate_error"]
-        self.assertLess(np.abs(pulls).max(), 4)
+        normalised = (found["estimate"] - [0.9, 50]) / found["estimate_error"]
+        self.assertLess(np.abs(normalised).max(), 4)
 
     def test_curves_of_one_run(self):
-        """Tilts of one run of Monte Carlo see the same paths: its sums tell how errors correlate."""
+        """Tilts of one Monte Carlo run share paths: its sums give the correlation of errors."""
         self.call("covariance", domain="slab", depth=2000, scatterer="hg", g=0.8, optical_depth=4,
                   albedo=0.98, covariance="memory_effect", view_angles=0.1, seed=3, samples=100000,
                   tilts=[0, 0.0002, 0.0003, 0.0004, 0.0006], out="t.h5")
@@ -119,20 +119,20 @@ class Fit(ProgramTest):
         self.assertIn("patterns to 1 %", done.stdout)
 
     def test_paths(self):
-        """Monte Carlo finds what transport finds, to what chance adds, and tells how much that is."""
+        """Monte Carlo agrees with transport within its stated statistical error."""
         files = [MEASURED / "slab_transmission.csv", MEASURED / "slab_transmittance.csv"]
         keys = {"free": ["g=0.5:0.95", "optical_depth=1:20"], "albedo": 0.98}
         _, transport = self.fit(*files, **keys)
         _, paths = self.fit(*files, **keys, method="mc", model_share=0.3)
-        chance = np.sqrt(np.diag(paths["chance_covariance"]))
+        statistical = np.sqrt(np.diag(paths["chance_covariance"]))
         off = np.abs(paths["estimate"] - transport["estimate"])
-        self.assertLess((off / chance).max(), 4)
-        measured = np.sqrt(paths["estimate_error"]**2 - chance**2)
-        self.assertLess((chance / measured).max(), 0.3**0.5)
+        self.assertLess((off / statistical).max(), 4)
+        measured = np.sqrt(paths["estimate_error"]**2 - statistical**2)
+        self.assertLess((statistical / measured).max(), 0.3**0.5)
         np.testing.assert_allclose(measured, transport["estimate_error"], rtol=0.3)
 
     def test_box(self):
-        """Cylinders in a box, by intensities of Monte Carlo's own."""
+        """Fits cylinders in a box to intensities by Monte Carlo."""
         box = {"domain": "box", "width": 20, "depth": 10, "scatterer": "tm"}
         self.call("covariance", **box, radius=0.16, index="1.5", density=0.33, seed=7, method="mc",
                   samples=int(40000 * SAMPLES), view_angles=[0.2, 0.5, 0.9, 1.3, 1.8, 2.4, 2.8], out="box.h5")
@@ -140,11 +140,11 @@ class Fit(ProgramTest):
         self.call("fit", "--free", "density=0.1:1", "radius=0.1:0.25", *by_night, index=None if WHOLE else "1.5", scatterer="tm",
                   measurement="box.h5", model_share=0.5, threads=1, out="fit.h5")
         found = datasets(self.folder / "fit.h5")
-        pulls = (found["estimate"] - [0.33, 0.16, 1.5][:len(found["estimate"])]) / found["estimate_error"]
-        self.assertLess(np.abs(pulls).max(), 4)
+        normalised = (found["estimate"] - [0.33, 0.16, 1.5][:len(found["estimate"])]) / found["estimate_error"]
+        self.assertLess(np.abs(normalised).max(), 4)
 
     def test_motion(self):
-        """Diffusion and shear from decays and from contrasts of a run; delays of a table, with one of 0."""
+        """Fits diffusion and shear to decays and contrasts of a run; the table's delays include 0."""
         slab = {"domain": "slab", "depth": 50, "scatterer": "hg", "g": 0.6, "optical_depth": 5,
                 "view_angles": [0.2, 0.9, 2.64] if WHOLE else [0.2, 2.64]}
         self.call("covariance", **slab, method="mc", samples=20000, seed=5, diffusion=0.5, shear=0.02,
@@ -157,8 +157,8 @@ class Fit(ProgramTest):
                           exposures=[0.02, 0.05, 0.1, 0.2] if WHOLE else [0.02, 0.1], beta=0.5, out="contrast.h5")
             self.call("fit", "--free", "diffusion=0.05:5", "shear=0:0.1", **free, **words, out="fit.h5")
             found = datasets(self.folder / "fit.h5")
-            pulls = (found["estimate"] - [0.5, 0.02]) / found["estimate_error"]
-            self.assertLess(np.abs(pulls).max(), 4)
+            normalised = (found["estimate"] - [0.5, 0.02]) / found["estimate_error"]
+            self.assertLess(np.abs(normalised).max(), 4)
             self.assertGreater(found["datum_time"].min(), 0)
         self.write("decay.csv", "delay,field_correlation,error\n0,1,0\n0.01,0.9,0.01\n0.02,0.8,0.01\n")
         done = self.call("fit", "--free", "diffusion=0.001:5", **free, measurement="decay.csv", out="fit.h5")
@@ -166,18 +166,18 @@ class Fit(ProgramTest):
         self.assertEqual(len(datasets(self.folder / "fit.h5")["measured"]), 2)
 
     def test_power_of_a_box(self):
-        """By walks of its own, against those of flux."""
+        """Fits by its own walks to powers of flux."""
         box = {"domain": "box", "width": 20, "depth": 10, "scatterer": "hg"}
         self.call("flux", **box, g=0.5, albedo=0.9, mean_free_path=4, light_angles=[0, 0.7],
                   samples=int(100000 * SAMPLES), seed=3, out="power.h5")
         self.call("fit", "--free", "g=0:0.9", "albedo=0.5:1", "mean_free_path=1:20", scatterer="hg",
                   measurement="power.h5", model_share=0.5, threads=1, out="fit.h5")
         found = datasets(self.folder / "fit.h5")
-        pulls = (found["estimate"] - [0.5, 0.9, 4]) / found["estimate_error"]
-        self.assertLess(np.abs(pulls).max(), 4)
+        normalised = (found["estimate"] - [0.5, 0.9, 4]) / found["estimate_error"]
+        self.assertLess(np.abs(normalised).max(), 4)
 
     def test_killed_and_resumed(self):
-        """The same to the last bit, from the steps of a search that was killed."""
+        """A killed search, resumed from its steps, gives the same bits."""
         words = ["fit", "--free", "g=0.5:0.95", "optical_depth=1:20"]
         keys = {"depth": 2000, "albedo": 0.98, "method": "mc", "threads": 1, "model_share": 0.5,
                 "measurement": str(MEASURED / "slab_transmission.csv")}
@@ -198,7 +198,7 @@ class Fit(ProgramTest):
         self.assertFalse(journal.exists())
 
     def test_compare(self):
-        """Of two media for the same curves the right one is likelier."""
+        """Of two media for the same curves the true one is likelier."""
         for name, scatterer in (("hg", {"scatterer": "hg"}), ("rayleigh", {"scatterer": "rayleigh"})):
             free = ["optical_depth=1:20"] + (["g=0.5:0.95"] if name == "hg" else [])
             self.call("fit", "--free", *free, **scatterer, depth=2000, albedo=0.98, out=f"{name}.h5",

@@ -1,5 +1,5 @@
-"""Cylinders in a box, measured by exact placements: what fit makes of them, and the bias that it tells of. By night two
-crowds by several seeds."""
+"""Fits of cylinders in a box measured by exact placements, with the bias that fit states. By night two densities with
+several seeds."""
 
 import os
 import unittest
@@ -16,7 +16,7 @@ FREE = ["density=0.002:0.06", "radius=0.2:0.7", "index=1.2:1.8"]
 
 
 class Fits(ProgramTest):
-    def pulls(self, count, radius, seed, placements=2000):
+    def fitted(self, count, radius, seed, placements=2000):
         self.call("covariance", **BOX, count=count, radius=radius, index="1.5", method="wave", view_angles=VIEWS,
                   samples=placements, seed=seed, out="exact.h5")
         self.call("fit", "--free", *FREE, scatterer="tm", measurement="exact.h5", threads=1, out="fit.h5")
@@ -24,30 +24,30 @@ class Fits(ProgramTest):
         truth = np.array([count / 800, radius, 1.5])
         bias = np.sqrt(np.diag(found["neglected_covariance"]))
         self.assertTrue((bias < found["estimate_error"]).all())
-        pulls = (found["estimate"] - truth) / found["estimate_error"]
+        normalised = (found["estimate"] - truth) / found["estimate_error"]
         print(f"{count} of radius {radius}, seed {seed}: estimate {found['estimate']}, error {found['estimate_error']}, "
-              f"expected bias {bias}, pulls {pulls}, chi^2 {attributes(self.folder / 'fit.h5')['chi_squared']:.1f}")
-        self.assertLess(np.abs(pulls).max(), 3)
+              f"expected bias {bias}, residuals {normalised}, chi^2 {attributes(self.folder / 'fit.h5')['chi_squared']:.1f}")
+        self.assertLess(np.abs(normalised).max(), 3)
         return found
 
 
 class Once(Fits):
     def test_few_placements(self):
-        found = self.pulls(14, 0.48, 11, placements=400)
+        found = self.fitted(14, 0.48, 11, placements=400)
         self.assertLess((found["estimate_error"] / found["estimate"]).max(), 0.15)
 
 
 @nightly
 class Seeds(Fits):
-    """Two crowds, several seeds, 2000 placements each."""
+    """Two densities, several seeds, 2000 placements each."""
 
     def test_k_mfp_500(self):
         for seed in SEEDS:
-            self.pulls(5, 0.35, seed)
+            self.fitted(5, 0.35, seed)
 
     def test_k_mfp_100(self):
         for seed in SEEDS:
-            self.pulls(14, 0.48, seed)
+            self.fitted(14, 0.48, seed)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ from program import ProgramTest
 from refusing import RefusingTest
 
 K = 2 * np.pi
-# So thin that light scatters once.
+# Slab so thin that light scatters once.
 THIN = {"domain": "slab", "depth": 10, "scatterer": "hg", "g": 0.3, "optical_depth": 1e-8, "method": "mc",
         "samples": 4000, "light_angles": 0}
 THICK = {**THIN, "optical_depth": 4, "samples": 20000, "view_angles": [0.3, 2.8]}
@@ -17,7 +17,7 @@ VIEWS = np.array([0.5, 2.5])
 
 
 def contrast(square, time):
-    """K^2 of |g1|^2 by the trapezoidal rule."""
+    """Returns K^2 from |g1|^2 by the trapezoidal rule."""
     tau = np.linspace(0, time, 20001)
     return 2 / time * np.trapz(square(tau) * (1 - tau / time), tau)
 

@@ -1,4 +1,4 @@
-"""flux: shares of power in a result file, what is refused, and going on after an interruption."""
+"""flux: shares of power in the result file, rejected input, and resumption after an interruption."""
 
 import unittest
 
@@ -35,7 +35,7 @@ class Flux(ProgramTest):
             self.assertTrue(np.all(np.abs(through - file["transmittance"][:]) < spread))
 
     def test_in_space(self):
-        """By polar angle; van de Hulst's slab."""
+        """Exit radiance is by polar angle; the slab is van de Hulst's."""
         keys = {"domain": "slab", "depth": 2, "optical_depth": 2, "scatterer": "hg", "g": 0.75,
                 "albedo": 0.9, "dimension": 3}
         with self.run_flux(keys, angle_bins=30) as file:
@@ -45,7 +45,7 @@ class Flux(ProgramTest):
             np.testing.assert_allclose(through, file["transmittance"][:], rtol=1e-4)
             self.assertEqual(file.attrs["dimension"], 3)
         done = self.call("flux", **keys, method="mc", out="y.h5", status=2)
-        self.assertIn("flux in space is by transport", done.stderr)
+        self.assertIn("requires method = transport", done.stderr)
 
     def test_forward_peak_in_space(self):
         keys = {"domain": "slab", "depth": 1, "optical_depth": 1, "scatterer": "hg", "g": 0.999, "dimension": 3}
@@ -57,7 +57,7 @@ class Flux(ProgramTest):
         for keys, words in (({"angle_bins": 0}, "angle_bins = 0"),
                             ({"view_angles": [0.1]}, "view_angles: unknown key"),
                             ({"covariance": "full"}, "covariance: unknown key"),
-                            ({"tilts": [0.1]}, "tilts: unknown key; a key of covariance, "),
+                            ({"tilts": [0.1]}, "tilts: unknown key; it is a key of covariance, "),
                             ({"method": "wave"}, "must be one of mc transport auto"),
                             ({"light_angles": [2]}, "light_angles = 2")):
             done = self.call("flux", **(SLAB | keys), out="x.h5", status=2)

@@ -1,6 +1,6 @@
-"""docs/format.md shows the tables of the program, and result files are what these say: every
-dataset and attribute has a row, and every row is met by some file. With --update puts the tables
-of the program into the document."""
+"""docs/format.md shows the tables of the program, and result files agree with them: every dataset and
+attribute has a row, and every row occurs in some file. With --update it writes the tables of the
+program into the document."""
 
 import itertools
 import re
@@ -21,7 +21,7 @@ TABLES = subprocess.run([PROGRAM, "datasets"], capture_output=True, text=True, c
 
 
 def members(file, kind=h5py.Dataset):
-    """name -> object, all groups down."""
+    """Returns {name: object} of all groups."""
     found = {}
     file.visititems(lambda name, item: found.update({name: item} if isinstance(item, kind) else {}))
     return found
@@ -32,12 +32,12 @@ def is_scale(dataset):
 
 
 def of_method(name):
-    """The name that a row has for it: tables do not tell groups of methods, states and sensors apart."""
+    """Returns its name in the tables, which share rows among groups of methods, states and sensors."""
     return re.sub(r"^(mc|wave|state/\w+|sensors/[\w-]+)(/|$)", "", name)
 
 
 def cells_of_tables():
-    """Cells of each row, by the heading of their first column."""
+    """Returns the cells of each row, by the heading of their first column."""
     found = {"word": [], "dataset": [], "attribute": []}
     for line in TABLES.splitlines():
         cells = [cell.replace("\\|", "|").replace("`", "").strip()
@@ -54,7 +54,7 @@ ROLES = {word: meanings.split(" or ") for word, meanings in CELLS["word"]}
 
 
 def meanings(words):
-    """What axes or a unit may be: for the axes of a sweep, any of them in their order."""
+    """Yields the possible axes or units: of the axes of a sweep any, in their order."""
     choices = [ROLES.get(word, [word]) for word in words.split()]
     for choice in itertools.product(*choices):
         every = " ".join(choice).split()
@@ -65,7 +65,7 @@ def meanings(words):
 
 
 def expected_datasets():
-    """(name, type, axes, units, long name) -> the row that says so."""
+    """Returns {(name, type, axes, units, long name): row}."""
     found = {}
     for number, (name, kind, axes, units, long_name) in enumerate(CELLS["dataset"]):
         for both in itertools.product(meanings(axes), meanings(units)):
@@ -75,7 +75,7 @@ def expected_datasets():
             if name.endswith(" ±"):
                 found[name[:-2] + "_error", "float64", *both, "standard error: " + long_name] = number
                 found[name[:-2] + "_rare", "uint64", both[0], "1",
-                      "1 where a few batches carry the standard error: " + long_name] = number
+                      "1 where a few batches dominate the standard error: " + long_name] = number
     return found
 
 
@@ -132,7 +132,7 @@ class Format(ResultsTest):
         self.met, self.seen = set(), set()
         self.on_each_file(self.check_datasets)
         met = [CELLS["dataset"][number] for number in self.met]
-        for row in CELLS["dataset"]:  # sensors share some
+        for row in CELLS["dataset"]:  # sensors share some rows
             self.assertIn(row, met)
         axes = set(" ".join(self.seen).split())
         for word, choices in ROLES.items():
@@ -149,7 +149,7 @@ class Format(ResultsTest):
     def test_attributes(self):
         self.met = set()
         self.on_each_file(self.check_attributes)
-        only_of_undefined = {("", "undefined", "texts")}  # of results that are not finite
+        only_of_undefined = {("", "undefined", "texts")}  # only in results that are not finite
         self.assertEqual(self.met, ATTRIBUTES - only_of_undefined)
 
     def check_values(self, file):

@@ -1,5 +1,5 @@
 """xarray reads result files through h5netcdf: labelled axes, coordinates, complex numbers, and the
-values that h5py reads. Exits with 77 where the two are not installed."""
+values that h5py reads. Exits with 77 if they are not installed."""
 
 import importlib.util
 import sys
@@ -24,7 +24,7 @@ def own_datasets(group):
 
 class Xarray(ResultsTest):
     def open(self, path, group="/"):
-        """The recipe of docs/format.md: coordinates of a group come from the root, where it has none."""
+        """Opens by the recipe of docs/format.md: coordinates that a group lacks come from the root."""
         import xarray
         keys = {"phony_dims": "sort"} if group.startswith("/state") else {}
         dataset = xarray.open_dataset(path, engine="h5netcdf", group=group, **keys)
@@ -83,7 +83,7 @@ class Xarray(ResultsTest):
         self.assertEqual(curve.dims, ("tilt",))
 
     def test_stored_again(self):
-        """With the complex numbers."""
+        """A copy keeps the complex numbers."""
         full = self.open(self.folder / "full.h5")
         again = self.folder / "again.nc"
         with self.assertWarns(UserWarning):

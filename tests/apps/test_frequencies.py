@@ -1,4 +1,4 @@
-"""Correlations between frequencies: by Monte Carlo, exactly, by transport, and held together."""
+"""Frequency correlations by Monte Carlo, exact placements and transport, and their comparison."""
 
 import unittest
 
@@ -104,7 +104,7 @@ class Refused(RefusingTest):
                 self.assert_refused_both_ways("covariance", BOX, {**keys, **method}, words)
             self.assert_refused_both_ways("validate", BOX, keys, words)
         self.assert_refused_both_ways("covariance", BOX, {"frequency_shifts": [0.1], "delays": [1]},
-                                      ["frequency_shifts: give one"])
+                                      ["frequency_shifts: give only one"])
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
-"""An index that varies around the scatterers: exact placements, Monte Carlo, and what is refused. By night:
-speckle of slabs whose mean field is refracted, and boxes of rods that guide it."""
+"""Graded index around the scatterers: exact placements, Monte Carlo, and rejected input. By night: speckle of
+slabs whose mean field is refracted, and boxes of rods that guide it."""
 
 import unittest
 
@@ -56,9 +56,9 @@ class Graded(ProgramTest):
         # |4 i G G'|, with 1/sqrt(8 pi k J) for |G|: leading order in 1/(k distance).
         def size(p, q):
             p, q = np.array(p, float), np.array(q, float)
-            mean, way = (2 + 0.05 * (p[1] + q[1])) / 2, (q - p) @ (q - p)
-            sigma = np.sqrt(2 * way / (mean + np.sqrt(mean**2 - 0.05**2 * way / 4)))
-            return 1 / np.sqrt(8 * np.pi * 2 * np.pi * sigma * (way / sigma**2 - (0.025 * sigma)**2 / 4))
+            mean, square = (2 + 0.05 * (p[1] + q[1])) / 2, (q - p) @ (q - p)
+            sigma = np.sqrt(2 * square / (mean + np.sqrt(mean**2 - 0.05**2 * square / 4)))
+            return 1 / np.sqrt(8 * np.pi * 2 * np.pi * sigma * (square / sigma**2 - (0.025 * sigma)**2 / 4))
         expected = 4 * size((0, -4), (1, 5)) * size((1, 5), (8, 14))
         self.assertAlmostEqual(abs(one[0, 2]) / expected, 1, delta=0.003)
 
@@ -72,7 +72,7 @@ class Graded(ProgramTest):
 
 
     def test_samples_of_a_field_are_the_field(self):
-        """By the same random numbers."""
+        """A sampled field gives the same numbers with the same random numbers."""
         z = -6 + 0.5 * np.arange(45)
         excess = np.sqrt(1 + 0.05 * z) - 1
         with h5py.File(self.folder / "linear.h5", "w") as file:
@@ -87,7 +87,7 @@ class Graded(ProgramTest):
 
 
 class Guiding(ProgramTest):
-    """Boxes deeper than wide, whose scatterers shift the phase: weak guides of the mean field."""
+    """Boxes deeper than wide whose scatterers shift the phase, which weakly guide the mean field."""
 
     VIEWS = [0.4, 0.8, 1.3, 2, 2.6]
     RODS = {"width": 5, "depth": 30, "scatterer": "tm", "radius": 0.1, "index": 1.5, "count": 100,
@@ -95,8 +95,8 @@ class Guiding(ProgramTest):
     POINTS = {"width": 5, "depth": 20, "scatterer": "point", "phase_shift": 0.5, "count": 20}
 
     def deviations(self, out, wave_samples, **keys):
-        """Returns relative deviations of Monte Carlo from the exact placements of straight.h5, their errors, and what is
-        allowed."""
+        """Returns relative deviations of Monte Carlo from the exact placements of straight.h5, their errors, and the
+        deviations allowed."""
         self.call("validate", **keys, view_angles=self.VIEWS, samples=40000, wave_samples=wave_samples, out=out)
         with h5py.File(self.folder / out) as file, h5py.File(self.folder / "straight.h5") as exact_file:
             mc, exact = file["mc/intensity"][()], exact_file["wave/intensity"][()]
@@ -129,7 +129,7 @@ class Slabs(ProgramTest):
             "tilts": [0, *TILTS]}
 
     def seen(self, **keys):
-        """Phases of the covariances of tilted lights and their errors, intensities and theirs."""
+        """Returns phases of the covariances of tilted lights, their errors, intensities and their errors."""
         self.call("covariance", **self.SLAB, **keys, out="result.h5")
         with h5py.File(self.folder / "result.h5") as file:
             found = file["covariance"][()]
@@ -138,7 +138,7 @@ class Slabs(ProgramTest):
                     file["reference_intensity_error"][()])
 
     def test_speckle_is_refracted(self):
-        """k_shift/k is 0.05."""
+        """Here k_shift/k is 0.05."""
         exact, error, bright, bright_error = self.seen(method="wave", wave_samples=1000, wave_tolerance=1e-3)
         keys = {"samples": 100000, "structure": "hard_disks"}
         refracted, _, intensity, _ = self.seen(**keys, index_field="mean_field")
@@ -171,8 +171,8 @@ class Refused(RefusingTest):
 
     def test_what_graded_media_have_not(self):
         self.check(["phase functions"], **LINEAR, scatterer="tm", radius=0.1)
-        self.check(["no beams"], **LINEAR, near_sources=None, beam_waist=3)
-        self.check(["near_sources alone"], **LINEAR, near_sources=None, light_angles=0, method="wave", samples=None,
+        self.check(["not beams"], **LINEAR, near_sources=None, beam_waist=3)
+        self.check(["near_sources only"], **LINEAR, near_sources=None, light_angles=0, method="wave", samples=None,
                    wave_samples=10)
         self.check(["exact solver"], index_field="blobs", index_blobs=self.blobs(), method="wave",
                    samples=None, wave_samples=10)

@@ -1,5 +1,5 @@
-"""Every command of the README and the guides. Here: its keys are known and its values accepted, by day of every other one. By
-night each guide's blocks run one after the other, as a reader would."""
+"""Every command of the README and the guides has valid keys and values, by day every other one. By night the
+blocks of each guide run one after the other, as for a reader."""
 
 import os
 import pathlib
@@ -15,16 +15,16 @@ from program import DATA, PROGRAM, WHOLE, ProgramTest, nightly
 ROOT = DATA.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 BLOCK = re.compile(r"```(sh|python)\n(.*?)```|((?:^    [^\n]*\S[^\n]*\n)+)", re.DOTALL | re.MULTILINE)
-WRITES = re.compile(r"^import .*(savetxt|, \"wb?\"\))", re.DOTALL | re.MULTILINE)  # a file for the commands after it
+WRITES = re.compile(r"^import .*(savetxt|, \"wb?\"\))", re.DOTALL | re.MULTILINE)  # writes a file for later commands
 RESOLVE = ("solve", "place", "covariance", "validate", "field", "image", "recover", "fit", "flux", "sweep", "trace",
            "render", "design", "optimise")
-# What is not run: it prepares the machine, or needs several of them, or hours.
+# Commands that are not run: they prepare the machine, need several machines, or hours.
 APART = re.compile(r"^\s*(scripts/|cmake|ctest|cpack|mpirun|#SBATCH|build/|bench_|export )|--method mc|merge |bench |"
                    r"--frames frames.csv|SLURM_|--config reflection", re.MULTILINE)
 
 
 def blocks(page):
-    """What a reader may run, in its order: (language, text)."""
+    """Returns the blocks that a reader may run, in order: (language, text)."""
     for language, fenced, indented in BLOCK.findall(page.read_text()):
         if language:
             yield language, fenced
@@ -33,7 +33,7 @@ def blocks(page):
 
 
 def to_be_run(block, left_out):
-    """A block's lines, less those that are run apart or read what such a line would have written."""
+    """Returns a block's lines without those that are not run and those that read files these would have written."""
     for line in block.replace("\\\n", " ").splitlines():
         if APART.search(line) or left_out.intersection(line.split()):
             left_out.update(re.findall(r"--out (\S+)", line))
@@ -42,7 +42,7 @@ def to_be_run(block, left_out):
 
 
 def commands(block):
-    """Words after `flatspeckle`, of each line of it."""
+    """Returns the words after `flatspeckle`, of each of its lines."""
     for line in block.replace("\\\n", " ").splitlines():
         if line.strip().startswith("flatspeckle "):
             line = re.sub(r"\s#.*", "", re.sub(r'"?\$\{?\w+\}?"?', "0.5", line))
@@ -63,7 +63,7 @@ class Written(ProgramTest):
         done = subprocess.run([PROGRAM, *words, "--print-config"], cwd=self.folder, capture_output=True,
                               text=True, timeout=60)
         missing = re.search("no such file|cannot read|not (a )?readable", done.stderr) and "data/" not in done.stderr
-        if not missing:  # a file that another command or the reader makes
+        if not missing:  # else a file made by another command or the reader
             self.assertEqual(done.returncode, 0, done.stderr)
 
 

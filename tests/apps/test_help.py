@@ -61,7 +61,7 @@ class Help(ProgramTest):
                         self.assertTrue(names & set(listed))
 
     def test_help_wins(self):
-        """Also when the rest is wrong or missing."""
+        """--help wins even if the rest is wrong or missing."""
         self.call("covariance", "--width", -3, "--help")
 
     def test_program(self):

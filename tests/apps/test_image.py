@@ -1,4 +1,4 @@
-"""Pictures through a medium: what the file holds, that chance alone makes it, and what is refused."""
+"""Pictures through a medium: contents of the file, dependence on the seed alone, and rejected input."""
 
 import unittest
 
@@ -41,7 +41,7 @@ class Image(ProgramTest):
         np.testing.assert_allclose(found["object_x"], [0, 60])
 
     def test_prediction_and_pictures_over_the_same_axes(self):
-        """A sweep of both, and of the prediction alone, which is the same; it falls with OD."""
+        """Sweeps of both and of the prediction alone agree; it falls with the optical depth."""
         success = {}
         for repeats in 0, 2:
             self.call("sweep", **{**{k: v for k, v in IMAGE.items() if k != "optical_depth"}, "repeats": repeats},
@@ -63,7 +63,7 @@ class Image(ProgramTest):
         self.assertGreater(np.abs(frames["one"] - frames["other"]).max(), 0.1)
 
     def test_gaussian(self):
-        """Contrast 1/sqrt(N), E|u|^4 = 2 (E|u|^2)^2: less by a hundredth where paths are few."""
+        """Contrast is 1/sqrt(N) and E|u|^4 = 2 (E|u|^2)^2, less by a hundredth for few paths."""
         media = {**IMAGE, "points": 0, "object_extent": 150, "repeats": 20, "pixels": 1024,
                  "paths_per_field": 3000}
         for brightness in ([1], [1, 1, 1], [1, 2, 3]) if WHOLE else ([1], [1, 2, 3]):
@@ -78,7 +78,7 @@ class Image(ProgramTest):
                             4 * found["fourth_moment_error"] + 0.01)
 
     def test_reference(self):
-        """Frames divided by that of a point: a picture, worse behind more, as predicted."""
+        """Deconvolution by the frame of a point gives a picture, worse behind deeper media, as predicted."""
         scene = {**IMAGE, "width": 600, "object_x": [-120, 30, 160], "object_depth": -8000,
                  "object_brightness": [1, 3, 2], "reference_x": 10, "pixels": 1024, "repeats": 8 if WHOLE else 5,
                  "points": 0}
@@ -113,10 +113,10 @@ class Image(ProgramTest):
         dark = self.image(**IMAGE, photons=3, read_noise=2, background=1)
         self.assertAlmostEqual(dark["frame"].mean(), 2, delta=0.1)
         self.assertGreater(dark["frame"].std(), self.image(**IMAGE)["frame"].std())
-        self.refused("read_noise = 2: nothing here has use for it", **IMAGE, read_noise=2)
+        self.refused("read_noise = 2: is not used here", **IMAGE, read_noise=2)
 
     def test_exact_placements(self):
-        """Their contrast is that of light paths."""
+        """Exact placements have the contrast of light paths."""
         contrast = {method: self.image(f"{method}.h5", **POINTS, method=method, points=0,
                                        repeats=100)["contrast"] for method in ("paths", "wave")}
         error = np.hypot(*(c.std() / 10 for c in contrast.values()))
@@ -142,14 +142,14 @@ class Image(ProgramTest):
         self.refused("object_x", **other(object_x=None))
         self.refused("object_depth", **other(object_depth=None))
         self.refused("camera", **other(camera=None))
-        self.refused("camera = 0.1: must be more than the first", **other(camera=[0.4, 0.1]))
-        self.refused("camera: sines", **other(camera=[-2, 2]))
-        self.refused("object_brightness = 2: numbers for 3 points",
+        self.refused("camera = 0.1: must be larger than the first value", **other(camera=[0.4, 0.1]))
+        self.refused("camera: must be sines", **other(camera=[-2, 2]))
+        self.refused("object_brightness: has 2 values, must have one for each of the 3 points",
                      **other(object_brightness=[1, 2]))
         self.refused("object_brightness", **other(object_brightness=[1, 2, -1]))
-        self.refused("object_extent = 1000: takes", **other(object_extent=1000))
-        self.refused("regularisation = 1: nothing here has use for it", **other(regularisation=1))
-        self.refused("iterations = 9: nothing", **other(reference_x=3, iterations=9))
+        self.refused("object_extent = 1000: corresponds to", **other(object_extent=1000))
+        self.refused("regularisation = 1: is not used here", **other(regularisation=1))
+        self.refused("iterations = 9: is not used here", **other(reference_x=3, iterations=9))
         self.refused("object_extent", **other(reference_x=5000))
         self.refused("slab", **other(domain="slab", width=None))
         self.refused("photons", **other(photons=-1))

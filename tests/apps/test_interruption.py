@@ -1,4 +1,4 @@
-"""Interrupted, killed, resumed: nothing is lost or damaged, and the numbers stay the same."""
+"""Interrupted, killed and resumed runs: nothing is lost or damaged, and the numbers are the same."""
 
 import random
 import signal
@@ -24,15 +24,15 @@ SHORT = {**BOX, **TILTS, "samples": 20_000, "threads": 2}
 NEVER = 1e-9  # a target error that is not reached
 
 
-def seal(path):
-    """As the program does, for changes that it is to see."""
+def set_checksum(path):
+    """Writes the checksum as the program does, so that it accepts a changed file."""
     data = path.read_bytes()
     path.write_bytes(data + struct.pack("<4sIQ", b"seal", zlib.crc32(data), len(data)))
 
 
 class Interruption(ProgramTest):
     def interrupt(self, number, delay, *words, caught=RESUMES, **keys):
-        """Signals once the run has begun, which `caught` tells; returns the exit status."""
+        """Signals once the run has begun, i.e. handles `caught`; returns the exit status."""
         process = self.start(*words, **keys)
         self.wait_until_it_catches(process, caught)
         time.sleep(delay)
@@ -47,7 +47,7 @@ class Interruption(ProgramTest):
         self.assertEqual([path for path in self.listing() if ".tmp" in path], [])
 
     def test_resumed_equals_uninterrupted(self):
-        """By night of both parts of `validate`, by day of its second one."""
+        """Covers both parts of `validate` by night, its second one by day."""
         for name, (subcommand, keys) in LONG.items():
             if name == "validate, in mc" and not WHOLE:
                 continue
@@ -109,7 +109,7 @@ class Interruption(ProgramTest):
         self.assert_same_data("run.h5", "whole.h5")
 
     def test_a_part_that_waits_its_turn_is_kept(self):
-        """More samples for the first part: meanwhile the file still holds the second one."""
+        """While the first part takes more samples, the file still contains the second one."""
         scene = LONG["validate, in wave"][1]
         self.interrupt(signal.SIGINT, 0.1, "validate", **scene, threads=2, out="run.h5")
         before = datasets(self.folder / "run.h5", leave_out=())["state/wave/group_sums"]
@@ -127,7 +127,7 @@ class Interruption(ProgramTest):
         self.interrupt(signal.SIGINT, 0.05, "covariance", **keys)
         for noted, of in ((True, {}), (False, {}), (False, {"seed": 2})):
             done = self.call("covariance", **{**keys, **of, "samples": 1000})
-            self.assertEqual("--resume would go on" in done.stderr, noted)
+            self.assertEqual("--resume would continue it" in done.stderr, noted)
 
     def test_another_seed_may_not(self):
         keys = LONG["mc"][1]
@@ -147,11 +147,11 @@ class Interruption(ProgramTest):
         self.wait_until(process, lambda: not catches(process, signal.SIGINT))
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=60), -signal.SIGINT)
-        (self.folder / ".run.h5.lock").unlink()  # it holds no longer
+        (self.folder / ".run.h5.lock").unlink()  # no longer locked
         self.assertEqual(self.listing(), before)
 
     def test_solve_ends_at_once(self):
-        """It has nothing to resume."""
+        """A solve has nothing to resume."""
         process = self.start("solve", width=200, depth=200, count=3000, out="run.h5")
         self.wait_until_it_catches(process, signal.SIGINT)
         time.sleep(0.1)
@@ -164,7 +164,7 @@ RAYS = {"field": "parabolic", "alpha": 0.5, "index": 1.5, "connect": [0, 0, 0, 0
 
 
 class Alike(ProgramTest):
-    """SIGINT, SIGTERM and SIGHUP do the same, and leave nothing but what can be gone on with."""
+    """SIGINT, SIGTERM and SIGHUP do the same, and leave only files that can be resumed."""
 
     def ended(self, process, number, delay=0.1):
         self.wait_until(process, lambda: catches(process, number) and
@@ -207,7 +207,7 @@ class Alike(ProgramTest):
         self.check_other_measurement(keys)
 
     def check_other_measurement(self, keys):
-        """Of a file that has changed meanwhile, though not in its values."""
+        """Checks that a fit is not resumed with a table that has changed, though only in its errors."""
         process = self.start("fit", **keys, out="x.h5")
         self.wait_until(process, lambda: (self.folder / "x.h5.search").exists())
         process.kill()
@@ -219,8 +219,8 @@ class Alike(ProgramTest):
 
 class Links(ProgramTest):
     def test_a_link_is_the_file_that_it_leads_to(self):
-        """Of two runs to one file by two names the second is refused; the first result is kept until
-        the second is there."""
+        """The second of two runs to one file by two names is rejected; the older result is kept until the
+        new one is there."""
         self.call("covariance", **SHORT, seed=5, out="run.h5")
         older = (self.folder / "run.h5").read_bytes()
         (self.folder / "alias.h5").symlink_to("run.h5")
@@ -308,11 +308,11 @@ class Target(ProgramTest):
 
 
 WIDE = {**BOX, "covariance": "full", "light_angles": [1e-2 * i for i in range(14)],
-        "view_angles": [1e-2 * i for i in range(1, 15)], "threads": 2}  # of 19306 sums
+        "view_angles": [1e-2 * i for i in range(1, 15)], "threads": 2}  # with 19306 sums
 
 
 class Extension(ProgramTest):
-    """What has ended goes on where more is asked for, and ends as if that had been asked at once."""
+    """A finished run is extended on request, with the result of a run of the full length."""
     SLAB = {"domain": "slab", "depth": 100, "scatterer": "hg", "optical_depth": 2, "g": 0.5}
     RUNS = {"covariance": ({**SHORT}, {"samples": 61_000}),
             "flux": ({**SLAB, "samples": 20_000}, {"samples": 60_000}),
@@ -349,11 +349,11 @@ class Extension(ProgramTest):
         self.assertLess(samples[0], samples[1])
 
     def test_large_sums_are_kept_on_demand(self):
-        """A run that starts afresh keeps the finished result if it is interrupted; by night it gives the same result."""
+        """An interrupted run that starts afresh keeps the finished result; by night its result is the same."""
         for keeps, samples, afresh in ((True, 112_000, False), (False, 116_000, False), (False, 120_000, True))[:3 if WHOLE else 2]:
             done = self.call("covariance", **WIDE, keep_state=keeps, samples=samples, out="run.h5", resume=True)
             self.assertEqual("--keep_state" in done.stdout, not keeps)
-            self.assertEqual("afresh" in done.stderr, afresh)
+            self.assertEqual("does not contain the sums" in done.stderr, afresh)
         self.check_interrupted_afresh()
         if WHOLE:
             self.call("covariance", **WIDE, samples=120_000, out="whole.h5")
@@ -389,7 +389,7 @@ class Resume(ProgramTest):
             version = file.attrs["version"]
             self.assertIn(f"flatspeckle {version}\n", file.attrs["identity"])
             file.attrs["identity"] = file.attrs["identity"].replace(version, "0.0.0")
-        seal(self.folder / "run.h5")
+        set_checksum(self.folder / "run.h5")
         done = self.call("covariance", "--resume", **SHORT, out="run.h5", status=2)
         self.assertIn("another run (flatspeckle 0.0.0)", done.stderr)
 
@@ -397,7 +397,7 @@ class Resume(ProgramTest):
         self.call("covariance", **SHORT, out="run.h5")
         before = self.listing()
         done = self.call("covariance", "--resume", **SHORT, out="run.h5")
-        self.assertIn("complete, and no more is asked for", done.stdout)
+        self.assertIn("complete; this call requests no more", done.stdout)
         self.call("covariance", "--resume", **{**SHORT, "samples": 2000}, out="run.h5")
         self.call("covariance", "--resume", **SHORT, seconds=1e-3, out="run.h5")
         self.assertEqual(self.listing(), before)

@@ -1,5 +1,4 @@
-"""Results are checked by invariants of their own: each has one with its limit, and a result that fails it has not
-converged."""
+"""Every kind of result is checked by an invariant with a limit; a result that violates it has not converged."""
 
 import unittest
 
@@ -14,7 +13,7 @@ IMAGE = {"domain": "box", **HG, "width": 60, "object_x": [0, 20], "object_depth"
          "pixels": 128, "repeats": 2, "paths_per_field": 20, "prediction_paths": 300000}
 STAGE = {"stage_box": [-1, -1, 0, 1, 1, 4], "mu_s": 0.5, "point_light": [0, 0, 1, 1], "sensor": "area", "sensor_at": [0, 0, 4],
          "sensor_size": [2, 2], "pixels": [8, 8],
-         "method": "analog", "samples": 20000}
+         "method": "forward", "samples": 20000}
 
 RUNS = {  # invariant: subcommand, keys
     "light": [("render", STAGE)],
@@ -52,7 +51,7 @@ class Invariants(ProgramTest):
                     (self.folder / "x.h5").unlink()
 
     def test_a_failing_one_says_that_nothing_has_converged(self):
-        """Steps too long for the field lose |v| = n."""
+        """Steps too long for the field violate |v| = n."""
         coarse = RAYS | {"integrator": "leapfrog", "step": 1.5}
         done = self.call("trace", **coarse, out="x.h5", status=3)
         self.assertIn("invariants/index_mismatch: off by ", done.stdout)

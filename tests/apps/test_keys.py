@@ -1,5 +1,5 @@
 """docs/keys.md is what `flatspeckle keys markdown` prints below its introduction. With --update
-puts it there."""
+it writes that text there."""
 
 import subprocess
 import sys

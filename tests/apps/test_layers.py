@@ -67,7 +67,7 @@ class Layers(ProgramTest):
         self.assertTrue(np.all(np.abs(mc - exact) <= 4 * error + 1e-4), (mc, exact, error))
 
     def test_clear_layers_change_nothing(self):
-        """Of light without phases."""
+        """Clear layers change nothing for light without phases."""
         found = []
         for table in ("thickness,optical_depth\n4,0\n3,2\n5,0\n3,1\n", "thickness,optical_depth\n3,2\n3,1\n"):
             self.write("layers.csv", table)
@@ -127,7 +127,7 @@ class Refused(RefusingTest):
     def test_what_layers_have_not(self):
         self.check(["dimension = 3", "without layers", "leave out layers"], dimension=3)
         self.check(["dimension = 3", "without layers", "leave out layers"], command="flux", dimension=3)
-        self.check(["layers", "gradient", "take mc"], method="transport", samples=None, gradient=True)
+        self.check(["layers", "gradient", "use method = mc"], method="transport", samples=None, gradient=True)
         points = "thickness,density\n3,0.05\n3,0.25\n"
         disks = {**BOX, "scatterer": "tm", "radius": 0.2}
         self.check(["equilibrium"], points, method="wave", placement="equilibrium", **disks)

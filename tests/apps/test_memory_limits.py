@@ -1,4 +1,4 @@
-"""What `ulimit -v` leaves: a run goes on or ends in one line, and soon."""
+"""Runs under `ulimit -v`: each succeeds or ends soon with one line."""
 
 import resource
 import subprocess
@@ -35,7 +35,7 @@ class MemoryLimits(ProgramTest):
             self.close_in(name, command, keys, done)
 
     def close_in(self, name, command, keys, done):
-        """On the least that suffices, where libraries get almost what they need."""
+        """Bisects to the least memory that suffices and runs near it, where libraries get almost what they need."""
         low = max((mb for mb, status in done.items() if status != 0), default=MEGABYTES[0] // 2)
         high = min(mb for mb, status in done.items() if status == 0 and mb > low)
         while high - low > 1:

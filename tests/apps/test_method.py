@@ -1,4 +1,4 @@
-"""What method = auto stands for, and slabs by Monte Carlo and transport beside each other."""
+"""Choice of method = auto, and slabs by Monte Carlo and transport side by side."""
 
 import unittest
 
@@ -37,12 +37,12 @@ class Method(ProgramTest):
         self.assertIn("tolerance = 1e-06", rough)
         self.assertIn("tolerance = 1e-08", fine)
 
-    def test_what_only_chance_heeds(self):
+    def test_options_of_monte_carlo_only(self):
         for subcommand, keys in (("covariance", SLAB), ("flux", SLAB), ("sweep", SWEEP)):
             for key in ("samples", "seconds"):
                 done = self.call(subcommand, **keys, method="transport", out="x.h5", status=2,
                                  **{key: 10})
-                self.assertIn(f"{key} = 10: nothing here has use for it", done.stderr)
+                self.assertIn(f"{key} = 10: is not used here", done.stderr)
 
     def test_validate_and_sweep_of_both(self):
         self.call("validate", **SLAB, view_angles=[0, 0.5, 3.1], samples=20000, out="x.h5")
@@ -64,10 +64,10 @@ class Method(ProgramTest):
         with h5py.File(self.folder / "x.h5") as file:
             taken = {name: file[f"{name}/trace/wall_s"][-1] for name in ("mc", "wave")}
         self.assertLess(taken["mc"], taken["wave"])
-        self.assertIn("placements: its errors are rough", done.stderr)
+        self.assertIn("placements: the errors are rough", done.stderr)
 
     def test_the_allowance_is_what_there_is(self):
-        """Of resonant points crossed paths alone; view 0 is forward, and of no other is anything to be said."""
+        """Resonant points allow for crossed paths only; their one view is forward, so no difference is stated."""
         parts = ("crossed paths", "refraction", "correlated positions")
         few = {"samples": 2000, "wave_samples": 4, "threads": 1}
         said = self.call("validate", **BOX, **few, out="x.h5").stdout
@@ -89,11 +89,11 @@ class Method(ProgramTest):
         (self.folder / "before.csv").write_text("x,z\n0,-5\n")
         for keys in (beam, beam | moved, sensors, {"near_sources": "before.csv"}):
             with self.subTest(keys=keys):
-                self.assertIn("near ends", self.attributes("covariance", SLAB | keys)["plan"])
-        for keys, words in ((beam | {"samples": 400}, "of transport alone"),
+                self.assertIn("near endpoints", self.attributes("covariance", SLAB | keys)["plan"])
+        for keys, words in ((beam | {"samples": 400}, "require method = transport"),
                             (beam | sensors, "far views"), (beam | {"gradient": True}, "gradient"),
                             ({"near_sensors": "inside.csv"}, "outside of the slab"),
-                            ({"near_sources": "inside.csv"}, "z < 0"),
+                            ({"near_sources": "inside.csv"}, "must be below 0"),
                             (beam | {"dimension": 3}, "dimension")):
             with self.subTest(keys=keys):
                 done = self.call("covariance", **SLAB | keys, out="y.h5", status=2)

@@ -11,7 +11,7 @@ from program import PROGRAM, SLAB, WHOLE, attributes, flags
 from sweeps import SweepTest
 
 MPIRUN = os.environ["FLATSPECKLE_MPIRUN"]
-# Open MPI wants to be told that it may run as root, and more processes than there are cores.
+# Open MPI requires permission to run as root, and with more processes than cores.
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                "OMPI_MCA_rmaps_base_oversubscribe": "1"}
 
@@ -22,7 +22,7 @@ LONG = {**SWEEP, "samples": 150_000}
 
 class Mpi(SweepTest):
     def launch(self, ranks, *words, **keys):
-        """Starts so many processes of the program, in a group of their own."""
+        """Starts `ranks` processes of the program, in a group of their own."""
         command = [MPIRUN, "-n", str(ranks), PROGRAM, *words, *flags(keys)]
         process = subprocess.Popen(command, cwd=self.folder, env=ENVIRONMENT, text=True,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE,
@@ -45,7 +45,7 @@ class Mpi(SweepTest):
         return stdout, stderr
 
     def members(self, process):
-        """The program's own processes of this launch, rank 0 first."""
+        """Returns the processes of the program in this launch, rank 0 first."""
         found = {}
         for entry in os.listdir("/proc"):
             if not entry.isdigit():
@@ -64,7 +64,7 @@ class Mpi(SweepTest):
         return [found[rank] for rank in sorted(found)]
 
     def wait_for_a_point(self, process):
-        """Until the first has been finished; returns the folder of points."""
+        """Waits until the first point is finished; returns the folder of points."""
         shards = self.folder / "run.h5.shards"
         deadline = time.monotonic() + 60
         while not journals.points_in(shards):
@@ -117,7 +117,7 @@ class Mpi(SweepTest):
         _, stderr = self.run_ranks(3, "sweep", **{**SWEEP, "g": [2]}, out="run.h5", status=2)
         self.assertEqual(stderr.count("g = 2"), 1)
         _, stderr = self.run_ranks(3, "covariance", **SLAB, out="run.h5", status=2)
-        self.assertEqual(stderr.count("runs as one process"), 1)
+        self.assertEqual(stderr.count("must run as one process"), 1)
 
     def test_a_fault_of_rank_0_alone_ends_all(self):
         self.write("run.h5.shards", "in the way")

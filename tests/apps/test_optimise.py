@@ -1,4 +1,4 @@
-"""`optimise`: the best values of keys, seen by random numbers of their own, however often it was killed."""
+"""`optimise`: the best values of keys, evaluated with independent random numbers, however often it was killed."""
 
 import shutil
 import signal
@@ -11,7 +11,7 @@ import numpy as np
 from program import WHOLE, ProgramTest, datasets
 
 SOUND = {"field": "ultrasound", "index": 1.3333, "sound_wavenumber": 3.4851}
-# Sound that focuses a thin beam at the far side: near the axis in closed form.
+# Sound that focuses a thin beam at the far side; the paraxial amplitude has a closed form.
 Q = (np.pi / 40) ** 2
 PARAXIAL = Q * 1.3333 / (3.4851 ** 2 / 2 - Q)
 FOCUS = {**SOUND, "of": "trace", "light": "line", "ray_count": 5, "beam_radius": 0.01,
@@ -26,7 +26,7 @@ GUIDE = {**SOUND, "stage_box": [-2, -2, 0, 2, 2, 8], "mu_s": 0.2, "phase": "heny
 class Optimise(ProgramTest):
     @classmethod
     def setUpClass(cls):
-        """The search of GUIDE, made once, on two threads."""
+        """Makes the search of GUIDE once, on two threads."""
         cls.maker = ProgramTest("call")
         cls.maker.setUp()
         cls.addClassCleanup(cls.maker.doCleanups)
@@ -46,7 +46,7 @@ class Optimise(ProgramTest):
                 np.testing.assert_array_equal(values, b[name], name)
 
     def test_focus_in_closed_form(self):
-        """A thin beam near the axis: the paraxial amplitude."""
+        """A thin beam near the axis gives the paraxial amplitude."""
         self.call("optimise", **FOCUS, out="focus.h5")
         found = self.found("focus.h5")
         self.assertAlmostEqual(float(found["best/amplitude"]) / PARAXIAL, 1, delta=0.002)
@@ -56,7 +56,7 @@ class Optimise(ProgramTest):
             self.assertNotIn("at_bounds", file["best"].attrs)
 
     def test_foci_of_a_square_beam(self):
-        """Of 0.5 mm: its aberration asks for 1.061 of the paraxial amplitude (the power on a small disk peaks there)."""
+        """The aberration of a 0.5 mm beam requires 1.061 of the paraxial amplitude: power on a small disk peaks there."""
         for length in (10, 20, 30, 45) if WHOLE else (10,):
             q = (np.pi / 2 / length) ** 2
             paraxial = q * 1.3333 / (3.4851 ** 2 / 2 - q)
@@ -66,7 +66,7 @@ class Optimise(ProgramTest):
             self.assertAlmostEqual(float(self.found(f"{length}.h5")["best/amplitude"]) / paraxial / 1.061, 1, delta=0.01)
 
     def test_the_result_is_that_of_the_best(self):
-        """Its datasets are those of a run of its own there, by a fresh seed."""
+        """The result's datasets equal those of a separate run at the best values, with a fresh seed."""
         self.whole()
         found = self.found("whole.h5")
         keys = {key: GUIDE[key] for key in GUIDE if key not in ("vary", "maximise", "scattered", "target_error",
@@ -87,8 +87,8 @@ class Optimise(ProgramTest):
             self.assertEqual(list(file["search"].attrs["swept"]), ["amplitude", "sound_order"])
             self.assertEqual(len(file["search/amplitude"]), len(file["search/value"]))
 
-    def test_minimise_without_chance(self):
-        """Of a slab by transport: less reflectance, the thinner."""
+    def test_minimise_by_transport(self):
+        """The reflectance of a slab by transport is least at the smallest thickness."""
         done = self.call("optimise", of="flux", domain="slab", scatterer="hg", depth=100, albedo=0.99, light_angles=0,
                          g=0.5,
                   vary=["optical_depth=1:4", "g=0:0.9"], minimise="reflectance[0]", scattered=8, out="flux.h5")
@@ -99,10 +99,10 @@ class Optimise(ProgramTest):
         self.assertEqual(found["best/confidence"], 1)
         with h5py.File(self.folder / "flux.h5") as file:
             self.assertEqual(list(file["best"].attrs["at_bounds"]), ["optical_depth", "g"])
-        self.assertIn("optical_depth, g; a wider one", done.stdout)
+        self.assertIn("optical_depth, g; a wider range", done.stdout)
 
     def test_a_phase_has_no_bounds(self):
-        """Sound focuses best at phase 0, which is 2 pi."""
+        """Sound focuses best at phase 0, which equals 2 pi."""
         for phases, at_bounds in (("0:6.2832", None), ("0:6", ["sound_phase"])):
             with self.subTest(phases=phases):
                 self.call("optimise", **{**FOCUS, "amplitude": PARAXIAL, "vary": [f"sound_phase={phases}"]}, out="phase.h5")
@@ -131,7 +131,7 @@ class Optimise(ProgramTest):
 
     def test_time(self):
         done = self.call("optimise", **GUIDE, seconds=1e-3, out="short.h5", status=3)
-        self.assertIn("--resume goes on", done.stdout)
+        self.assertIn("continue with --resume", done.stdout)
         self.assertFalse(self.attribute("short.h5", "complete"))
         self.call("optimise", **GUIDE, resume=True, out="short.h5")
         self.whole()
@@ -142,7 +142,7 @@ class Optimise(ProgramTest):
             return bool(file.attrs[name])
 
     def test_a_place_without_a_result(self):
-        """It is named, and within bounds that leave it out the search goes on with what there is."""
+        """A failing place is named; with bounds that exclude it the search continues with finished evaluations."""
         keys = {**FOCUS, "field": "homogeneous", "lens": [0, 0, 0, 12.5, 60, 0, 5, 1.5168, 0, 0, 0], "light": "disk",
                 "ray_count": 20, "origin": [0, 0, -20], "beam_radius": 5, "sound_wavenumber": None, "index": None,
                 "stop_plane": [0, 0, 50, 0, 0, 1], "image_plane": [0, 0, 100, 0, 0, 1], "max_length": None,
@@ -165,10 +165,10 @@ class Optimise(ProgramTest):
                 ({"vary": ["amplitude=0:1:log"]}, ("amplitude", "above 0")),
                 ({"vary": ["amplitude"]}, ("amplitude", "low:high")),
                 ({"vary": ["sound_order=0,1"]}, ("sweep",)),
-                ({"vary": ["samples=1:2"]}, ("samples", "run")),
-                ({"vary": ["amplitude=0:1e-3", "amplitude=0:1e-3"]}, ("varied already",)),
+                ({"vary": ["samples=1:2"]}, ("samples", "does not change the result")),
+                ({"vary": ["amplitude=0:1e-3", "amplitude=0:1e-3"]}, ("varied twice",)),
                 ({"vary": ["amplitude=0:1e-3", "g=0:2"]}, ("g", "-1")),
-                ({"vary": ["amplitude=0:1e-3", "seed=1:9:9"]}, ("seed=1:9:9", "random numbers")),
+                ({"vary": ["amplitude=0:1e-3", "seed=1:9:9"]}, ("seed=1:9:9", "several seeds")),
                 ({"vary": ["amplitude=0:1e-3", "g=0.8:0.9:4", "mu_s=0.1:0.2:4"]}, ("scattered = 12", "16")),
                 ({"of": "place"}, ("of", "render")),
                 ({"against": "amplitude"}, ("amplitude",)),

@@ -1,4 +1,4 @@
-"""`validate` with places of the user's own: one speckle pattern over the mean intensity of Monte Carlo."""
+"""`validate` with the user's placement: one speckle pattern divided by the mean intensity of Monte Carlo."""
 
 import unittest
 
@@ -43,9 +43,9 @@ class OwnPlaces(RefusingTest):
                                                         "ratio_contrast_error")])
         mean, contrast, mean_error, contrast_error = np.array(found).T
         for values, errors in ((mean, mean_error), (contrast, contrast_error)):
-            pulls = (values - 1) / errors
-            self.assertLess(abs(pulls.mean()), 4 / np.sqrt(len(pulls)) + 0.08 / errors.mean())
-            self.assertLess(abs(pulls.std(ddof=1) - 1), 4 / np.sqrt(2 * len(pulls)))
+            normalised = (values - 1) / errors
+            self.assertLess(abs(normalised.mean()), 4 / np.sqrt(len(normalised)) + 0.08 / errors.mean())
+            self.assertLess(abs(normalised.std(ddof=1) - 1), 4 / np.sqrt(2 * len(normalised)))
 
     def test_what_is_refused(self):
         self.write("mine.csv", TABLE)
@@ -56,7 +56,7 @@ class OwnPlaces(RefusingTest):
                                ({"view_angles": "0.3:3.1:600"}, ["view_angles", "512"]),
                                ({"covariance": "full"}, ["placement", "intensity"]),
                                ({"domain": "slab"}, ["domain"]),
-                               ({"depth": 3}, ["mine.csv", "row 2", "outside"]),
+                               ({"depth": 3}, ["mine.csv", "row 2", "inside the box"]),
                                ({"wave_samples": 9}, ["wave_samples"]),
                                ({"placement": "poison", "count": 3}, ["placement = poison", "must be one of poisson hard_disk"])):
             with self.subTest(changes=changes):

@@ -1,4 +1,4 @@
-"""place: what it writes, that solve reads it back bit for bit, and what it refuses."""
+"""place: files that it writes, read back by solve bit for bit, and rejected input."""
 
 import unittest
 
@@ -12,7 +12,7 @@ MIXED = {"width": 12, "depth": 8, "radii": [0.3, 0.6], "fractions": [3, 1], "cou
 
 class PlaceTest(ProgramTest):
     def place(self, out="placed.csv", **keys):
-        """The columns of the file that is written."""
+        """Returns the columns of the file that is written."""
         self.call("place", out=out, **keys)
         lines = [line for line in (self.folder / out).read_text().splitlines() if line[0] != "#"]
         rows = np.array([[float(field) for field in line.split(",")] for line in lines[1:]])
@@ -117,7 +117,7 @@ class Structure(PlaceTest):
 
 
 class Correlated(PlaceTest):
-    """Monte Carlo takes the structure factor that was measured, and that of theory."""
+    """Monte Carlo accepts measured and theoretical structure factors."""
 
     SCENE = {"width": 12, "depth": 8, "scatterer": "tm", "radius": 0.16, "index": 1.2, "count": 200,
              "view_angles": [0.5, 3.0], "samples": 4000}
@@ -179,7 +179,7 @@ class Correlated(PlaceTest):
                 ({"structure": "s.h5", "radius": 0.14}, ["structure = s.h5", "contact distance"]),
                 ({"structure": "s.h5", "min_gap": 0.03}, ["structure = s.h5", "contact distance"]),
                 ({"structure": "hard_disks", "scatterer": "point", "radius": None, "index": None},
-                 ["structure = hard_disks", "points and hg are independent"]),
+                 ["structure = hard_disks", "scatterers are independent"]),
                 ({"structure": "hard_disks", "count": None, "optical_depth": 1},
                  ["optical_depth = 1", "count or density"])]:
             with self.subTest(changes=changes):
@@ -197,10 +197,10 @@ class Refused(PlaceTest):
         ({"depth": "nan"}, ["depth = nan", "must be positive"]),
         ({"radii": [0.4, -1]}, ["radii = -1", "must be positive"]),
         ({"radii": None}, ["packing_fraction = 0.4", "count"]),
-        ({"fractions": [1, 2]}, ["fractions = 2", "one for each"]),
+        ({"fractions": [1, 2]}, ["fractions: has 2 values", "one for each"]),
         ({"fractions": [0]}, ["fractions = 0", "must be positive"]),
         ({"count": 5}, ["count, packing_fraction", "one of them"]),
-        ({"packing_fraction": None}, ["no number", "count", "packing_fraction"]),
+        ({"packing_fraction": None}, ["count is not given", "packing_fraction"]),
         ({"packing_fraction": None, "count": 0}, ["count = 0", "1 to"]),
         ({"packing_fraction": None, "count": 10**15}, ["count = 1000000000000000", "1 to"]),
         ({"packing_fraction": -0.1}, ["packing_fraction = -0.1", "must be positive"]),

@@ -1,5 +1,5 @@
-"""The plot scripts, each as a user runs it: it draws the results that are its own and refuses all
-others in one line. Lines of theory agree with what the program stores, between its points too."""
+"""Each plot script, run as by a user, draws its own kinds of results and rejects all others in one line.
+Lines of theory agree with values stored by the program, also between its points."""
 
 import contextlib
 import io
@@ -59,6 +59,9 @@ KINDS = {
                          "object_x": [0, 3], "object_depth": -30, "camera": [-0.5, 0.5], "pixels": 512, "repeats": 2, "threads": 1}),
     "blinks": ("image", {**BOX, "count": None, "scatterer": "hg", "optical_depth": 1, "blinking": "subsets",
                          "object_x": [0, 3], "object_depth": -30, "camera": [-0.5, 0.5], "pixels": 512, "repeats": 2, "threads": 1}),
+    "unlit": ("image", {**BOX, "count": None, "scatterer": "hg", "optical_depth": 1, "object_x": [0, 3], "object_depth": -30,
+                        "camera": [-0.5, 0.5], "pixels": 512, "repeats": 0, "prediction_paths": 500, "threads": 1}),
+    "separated": ("recover", {"frames": "frames.csv", "recovery": "sources"}),
     "pictures": ("sweep", {**BOX, "count": None, "optical_depth": None, "of": "image", "scatterer": "hg", "vary": "optical_depth=1,2",
                            "object_x": [0, 3], "object_depth": -30, "camera": [-0.5, 0.5], "pixels": 512, "repeats": 2}),
     "power": ("flux", {**SLAB}),
@@ -78,29 +81,31 @@ KINDS = {
                          "map_cells": [3, 4]}),
     "rings": ("render", {**SPACE, "sensor": ["radial", "polar"], "sensor_at": [0, 0, 1], "sensor_size": None,
                          "sensor_radius": 0.9, "sensor_direction": [0, 0, 1], "rings": 5}),
+    "mixed": ("render", {**SPACE, "sensor": ["radial", "area"], "sensor_radius": 0.9, "sensor_direction": [0, 0, 1], "rings": 5,
+                         "pixels": [4, 4]}),
     "spectrum": ("solve", {**BOX, "wavelengths": [0.9, 1.1], "view_angles": [3.0, 3.1]}),
     "near": ("solve", {"placement": DATA / "reference/g10/placement.csv", "scatterer": "soft",
                        "map": [-2, 2, -2, 2], "map_pixels": [6, 5]}),
 }
-# What each script draws.
+# Kinds of results that each script draws.
 OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}, "memory_range": {"grid", "points"},
        "range_map": {"grid"}, "convergence": {"grid", "points"}, "tilt_shift": {"map"},
        "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"}, "graded_range": {"graded"},
        "refraction": {"curve", "layers", "graded"},
        "frequency": {"frequencies"}, "validation": {"both", "own_places"}, "speckle_field": {"fields", "grains"},
-       "image_success": {"pictures"}, "image": {"frames", "blinks"}, "sources": {"blinks"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
+       "image_success": {"pictures"}, "image": {"frames", "blinks"}, "sources": {"blinks", "separated"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
        "design": {"lens", "display", "core"}, "design_methods": {"lens", "display", "core"},
-       "render": {"picture", "pulse"}, "render_time": {"pulse"},
-       "light_map": {"light"}, "ring_profile": {"rings"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
+       "render": {"picture", "pulse", "mixed"}, "render_time": {"pulse"},
+       "light_map": {"light"}, "ring_profile": {"rings", "mixed"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
 
 
 def run_script(name, *words, drawn="fitted"):
-    """Returns (exit status, standard output, standard error) of a script, which draws coarse pictures: "fitted" as it would,
-    "once" without fitting the labels, and "never" makes the figure only."""
+    """Returns (exit status, standard output, standard error) of a script that draws coarse pictures: "fitted" as usual,
+    "once" without fitting the labels; "never" only makes the figure."""
     save, heard, said = matplotlib.figure.Figure.savefig, io.StringIO(), io.StringIO()
 
     def coarse(figure, place, **looks):
-        if not place.endswith(".png"):  # the other format takes as long again
+        if not place.endswith(".png"):  # the other format would take the same time again
             return
         if drawn == "fitted":
             save(figure, place, **{**looks, "dpi": 72})
@@ -129,12 +134,13 @@ class Plots(ProgramTest):
         cls.maker.setUp()
         cls.addClassCleanup(cls.maker.doCleanups)
         cls.maker.write("asked.csv", "1,2,3,4\n" * 4)
+        cls.maker.write("frames.csv", "a,b\n" + "".join(f"{1 + i * i % 7},{1 + i * i % 11}\n" for i in range(80)))
         cls.maker.write("three.csv", "x,z\n0,1\n3,4\n-5,9\n")
         cls.maker.write("points.csv", "g,optical_depth\n0,1\n0.5,3\n")
         cls.maker.write("rows.csv", "thickness,optical_depth\n4,1\n6,2\n")
 
     def make(self, kind):
-        """The file of a kind, made once for all tests."""
+        """Returns the file of a kind, made once for all tests."""
         file = self.maker.folder / f"{kind}.h5"
         if not file.exists():
             subcommand, keys = KINDS[kind]
@@ -167,8 +173,8 @@ class Plots(ProgramTest):
             self.assertIn(path.name, heard)
 
     def test_each_draws_its_own_and_refuses_the_others_in_one_line(self):
-        """By night all of the others, by day one in 24; by day every other figure of a script is made, of every third its first
-        is drawn, and the labels of every twelfth are fitted."""
+        """By night all others are tried, by day one in 24. By day every other figure of a script is made, of every
+        third the first is drawn, and the labels of every twelfth are fitted."""
         for number, (script, own) in enumerate(OWN.items()):
             for other, kind in enumerate(KINDS):
                 if kind != min(own) and (number + other) % (2 if kind in own else 24) and not WHOLE:
@@ -189,6 +195,13 @@ class Plots(ProgramTest):
                                       "--out", self.folder / "both", drawn=DRAWN)
         self.assertEqual((status, heard), (0, ""))
 
+    def test_missing_data_are_named(self):
+        self.assertIn("repeats = 0", run_script("image", self.make("unlit"))[2])
+        self.call("sweep", **SLAB, of="flux", vary="albedo=0.9,1", out="flux.h5")
+        heard = run_script("experiment_map", self.folder / "flux.h5")[2]
+        self.assertIn("reflectance[0]", heard)
+        self.assertNotIn("power_within", heard)
+
     def test_maps_of_experiments_take_one_of_several_numbers(self):
         self.call("sweep", **SPACE, of="render", vary=["mu_a=0,0.5", "g=0,0.3,0.6"], phase="henyey_greenstein", out="map.h5")
         file, out = self.folder / "map.h5", self.folder / "map"
@@ -207,19 +220,19 @@ class Plots(ProgramTest):
     def test_curves_of_experiments_have_the_derivatives_by_their_key(self):
         self.call("sweep", of="render", field="ultrasound", sound_wavenumber=3.485, stage_box=[-5, -5, 0, 5, 5, 5], mu_s=0.1,
                   phase="isotropic", beam_light=[0, 0, 0, 0, 0, 1, 0.25, 1], sensor="radial", sensor_at=[0, 0, 5],
-                  radii=[0.1, 0.2], method="analog", gradient_by="amplitude", samples=2000, vary=["amplitude=1e-3:3e-3:3"],
-                  out="slopes.h5")
-        with h5py.File(self.folder / "slopes.h5") as file:
+                  radii=[0.1, 0.2], method="forward", gradient_by="amplitude", samples=2000, vary=["amplitude=1e-3:3e-3:3"],
+                  out="derivatives.h5")
+        with h5py.File(self.folder / "derivatives.h5") as file:
             place, values = file["amplitude"][...], file["power_within"][:, 1]
-            slopes = file["power_within_gradient"][:, 0, 1]
-        number = Number(Result(self.folder / "slopes.h5"), "power_within[1]")
-        np.testing.assert_array_equal(number.derivatives("amplitude"), slopes)
+            derivatives = file["power_within_gradient"][:, 0, 1]
+        number = Number(Result(self.folder / "derivatives.h5"), "power_within[1]")
+        np.testing.assert_array_equal(number.derivatives("amplitude"), derivatives)
         self.assertIsNone(number.derivatives("mu_s"))
         axis = mock.Mock()
-        experiment_map.draw_tangents(axis, place, values, slopes)
-        for call, at, value, slope in zip(axis.plot.call_args_list, place, values, slopes, strict=True):
+        experiment_map.draw_tangents(axis, place, values, derivatives)
+        for call, at, value, derivative in zip(axis.plot.call_args_list, place, values, derivatives, strict=True):
             x, y = call.args
-            np.testing.assert_allclose(y, value + slope * (x - at), rtol=1e-12)
+            np.testing.assert_allclose(y, value + derivative * (x - at), rtol=1e-12)
             self.assertTrue(x.min() <= at <= x.max() and np.ptp(x) > 3e-4)
 
     def test_captions_say_what_a_reader_does_not_see(self):
@@ -230,7 +243,7 @@ class Plots(ProgramTest):
 
 
 class Theory(ProgramTest):
-    """Formulas of the plots against the program's."""
+    """Formulas of the plots agree with those of the program."""
 
     def test_diffusion_ranges_delays_and_frequencies(self):
         from lib import theory

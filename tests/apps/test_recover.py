@@ -1,4 +1,4 @@
-"""Points found in frames of a user's own."""
+"""Points recovered from the user's frames."""
 
 import unittest
 
@@ -10,7 +10,7 @@ PLACES = {"a": [0, 17, 60], "b": [0, 40, 51]}
 
 
 def frame(places, random, pixels=6000, background=0.0):
-    """Points whose speckle is the first one's, shifted; under a smooth envelope."""
+    """Returns a frame of points with one shifted speckle pattern, under a smooth envelope."""
     u = random.normal(size=(2, pixels + 100))
     speckle = (u**2).sum(axis=0) / 2
     light = sum(speckle[x:x + pixels] for x in places) / len(places)
@@ -38,7 +38,7 @@ class Recover(ProgramTest):
         self.assertIn("points (pixels; mirrored or not)", output)
 
     def test_reference(self):
-        """The object as it is, neither shifted nor mirrored."""
+        """A reference gives the object neither shifted nor mirrored."""
         random = np.random.default_rng(2)
         speckle = random.exponential(size=6100)
         columns = [sum(b * speckle[50 - x:6050 - x] for x, b in points.items())
@@ -58,16 +58,16 @@ class Recover(ProgramTest):
         (self.folder / "r.h5").unlink()
         both = {"frames": "two.csv", "points": 2, "longest": 60}
         self.write("short.csv", "a\n1\n2\n")
-        self.refused("reference = 2: pixels, but the frames have 6000", **both,
+        self.refused("reference: has 2 pixels, the frames have 6000", **both,
                      reference="short.csv")
         np.savetxt(self.folder / "three.csv", np.ones((6000, 3)), delimiter=",", header="a,b,c",
                    comments="")
-        self.refused("reference = 3: columns", **both, reference="three.csv")
-        self.refused("deconvolution = richardson_lucy: nothing", **both,
+        self.refused("reference: has 3 columns", **both, reference="three.csv")
+        self.refused("deconvolution = richardson_lucy: is not used here", **both,
                      deconvolution="richardson_lucy")
 
     def test_phases(self):
-        """A picture whose largest values are the points'."""
+        """The largest values of the retrieved picture are at the points."""
         self.call("recover", frames="frames.csv", points=3, longest=80, out="r.h5",
                   recovery="phases", starts=30)
         found = datasets(self.folder / "r.h5")
@@ -79,7 +79,7 @@ class Recover(ProgramTest):
             at = [x - at[0] for x in at]
             self.assertIn(places, [at, sorted(at[-1] - x for x in at)])
         (self.folder / "r.h5").unlink()
-        self.refused("starts = 3: nothing", frames="frames.csv", points=3, longest=80, starts=3)
+        self.refused("starts = 3: is not used here", frames="frames.csv", points=3, longest=80, starts=3)
 
     def refused(self, words, status=2, **keys):
         line = self.call("recover", **keys, out="r.h5", status=status).stderr

@@ -1,4 +1,4 @@
-"""Pictures of scattering media against closed forms, and what the file holds."""
+"""Pictures of scattering media against closed forms, and contents of the file."""
 
 import math
 import unittest
@@ -19,7 +19,7 @@ class Maps(RenderTest):
     LAMP = {**BOX, **FOG, "point_light": [0, 0, 1, 1]}
 
     def test_alone_and_beside_a_picture(self):
-        """Its light paths are its own: whatever else is asked for, its numbers are the same."""
+        """A map has its own light paths, so its numbers do not depend on other outputs."""
         alone = self.render(**self.LAMP, **self.RINGS, sensor="none")
         self.assertIn("largest fluence", self.output)
         self.assertNotIn("image", alone)
@@ -35,7 +35,7 @@ class Maps(RenderTest):
         np.testing.assert_array_equal(clear["map/absorbed"], 0)
 
     def test_target(self):
-        """A target is of the fluence."""
+        """A target error applies to the fluence."""
         keys = {**self.LAMP, **self.RINGS, "sensor": "none"}
         target = 0.003
         self.call("render", **keys, samples=10**7, target_error=target, out="aimed.h5")
@@ -47,7 +47,7 @@ class Maps(RenderTest):
 
 class Scenes(RenderTest):
     def check_sums(self, found, config):
-        """Totals and pulses are those of the pixels; what is beyond the bins stands beside them."""
+        """Checks that totals and pulses are sums of pixels, with values beyond the bins stored separately."""
         image = found["image"]
         self.assertGreater(image.max(), 0)
         np.testing.assert_allclose(found["mean"], image.mean(), rtol=1e-12)
@@ -66,7 +66,7 @@ class Scenes(RenderTest):
         self.assert_same("render.h5", "again.h5")
 
     def test_each_runs(self):
-        """By day less the waveguide and the Luneburg ball, which other tests run."""
+        """Runs each scene, by day without the waveguide and the Luneburg ball, which other tests run."""
         for name in NAMES if WHOLE else [name for name in NAMES if name not in ("luneburg", "waveguide")]:
             with self.subTest(scene=name):
                 found = self.scene(name, samples=400, pixels=[12, 8])
@@ -81,77 +81,84 @@ class Scenes(RenderTest):
                     self.check_config_runs_again()
 
     def test_what_few_paths_bring_is_no_estimate(self):
-        """Path tracing would have to join through a hundred mean free paths: no number is better than
-        one of 39 orders too little."""
+        """Path tracing would have to connect through a hundred mean free paths: no number is better than
+        one that is 39 orders too small."""
         found = self.scene("slab", samples=2000, method="path")
         self.assertTrue(np.all(found["total_rare"] == 1))
         for name in ("total power", "mean of pixels"):
-            self.assertRegex(self.output, name + " +not found")
+            self.assertRegex(self.output, name + " +not resolved")
         self.scene("slab", samples=2000, method="light")
-        self.assertNotIn("not found", self.output)
+        self.assertNotIn("not resolved", self.output)
 
     def test_methods(self):
-        """All of them run on a curved and on a straight scene, and say which they are."""
+        """All methods run on a curved and on a straight scene and name themselves."""
         for scene in ("luneburg", "glass_ball") if WHOLE else ("luneburg",):
             for method in METHODS:
                 with self.subTest(scene=scene, method=method):
                     self.scene(scene, method=method, samples=500, pixels=[6, 4])
                     self.assertIn(method, attributes(self.folder / "render.h5")["plan"])
 
+    def test_the_former_name_of_a_method(self):
+        keys = {**BOX, **BEAM, **FOG, **AREA}
+        self.render("former.h5", **keys, method="analog")
+        self.render(**keys, method="forward")
+        self.assert_same("former.h5", "render.h5")
+        self.assertIn('method = "forward"', attributes(self.folder / "former.h5")["config"])
+
     def test_curves_are_counted(self):
-        """Where rays are curved or refracted, and there alone."""
+        """Curves are counted only if rays are curved or refracted."""
         found = self.render(**BOX, **BEAM, **FOG, **AREA, **FIBRE, method="bidirectional")
         self.assertGreater(found["trials/found"], 0)
         self.assertLessEqual(found["trials/found"], found["trials/pairs"])
         self.assertLessEqual(found["trials/found"], found["trials/converged"])
-        self.assertIn("joins:", self.output)
+        self.assertIn("connections:", self.output)
         straight = self.render(**BOX, **BEAM, **FOG, **AREA)
         self.assertNotIn("trials/found", straight)
-        self.assertNotIn("joins:", self.output)
+        self.assertNotIn("connections:", self.output)
 
     def test_darkness_is_told(self):
-        """A beam beside the sensor, and nothing that scatters."""
+        """A beam misses the sensor, and nothing scatters."""
         dark = {**BOX, **CAMERA, "sensor_at": [0.5, 0, 3.9], "samples": 100, "method": "path", "out": "dark.h5"}
-        note = "note: no light came to the sensor"
+        note = "note: no light reached the sensor"
         told = self.call("render", **dark, **BEAM)
         self.assertEqual(told.stderr.count(note), 1)
-        self.assertNotIn("few strong paths", told.stderr)  # there are none
+        self.assertNotIn("few high-weight paths", told.stderr)  # there are none
         self.assertNotIn("mean of pixels", told.stdout)
         self.assertNotIn(note, self.call("render", **dark, **BEAM, **FOG).stderr)
 
     def test_sound_that_is_left_out_is_told(self):
-        """Not that which is off."""
+        """Sound that is off is not reported."""
         quiet = {**BOX, **BEAM, **FOG, **AREA, "field": "ultrasound", "sound_wavenumber": 3, "samples": 100,
                  "method": "path", "out": "quiet.h5"}
         for amplitude, told in ((0, 0), (1e-12, 1), (1e-3, 0)):
-            self.assertEqual(self.call("render", **quiet, amplitude=amplitude).stderr.count("the sound turns no ray"), told)
+            self.assertEqual(self.call("render", **quiet, amplitude=amplitude).stderr.count("the sound deflects no ray"), told)
 
     def test_darkness_is_no_result(self):
-        """It has no error, and what asks for one alone ends."""
+        """A dark picture has no error, and a run with only a target error ends."""
         dark = {**BOX, **CAMERA, "sensor_at": [0.5, 0, 3.9], "method": "path", "out": "dark.h5"}
         for limit in ({}, {"seconds": 0.2}):
             ended = self.call("render", **dark, **BEAM, target_error=0.1, **limit, status=3)
             self.assertNotIn("error 0", ended.stderr)
 
     def test_a_target_needs_finite_variance(self):
-        """Path tracing to a lamp has none, and is refused a target; a number of samples it may have."""
+        """Path tracing to a lamp has infinite variance: a target is rejected, a number of samples accepted."""
         lamp = {**BOX, **FOG, **AREA, "point_light": [0, 0, 1, 1], "method": "path", "out": "lamp.h5"}
         refused = self.call("render", **lamp, target_error=0.1, status=2)
-        self.assertIn("target_error = 0.1: needs a method of finite variance", refused.stderr)
+        self.assertIn("target_error = 0.1: requires a method of finite variance", refused.stderr)
         self.call("render", **lamp, samples=100)
 
     def test_light_that_a_method_misses_is_told(self):
-        """A thin beam in fog by path tracing: one run ends in vain, the other with the difference as its error."""
+        """A thin beam in fog by path tracing: one run fails, the other has the difference as its error."""
         wide = {"stage_box": [-500, -500, 0, 500, 500, 2], "mu_s": 0.9, "mu_a": 0.1, "beam_light": [0, 0, 0, 0, 0, 1, 1e-3, 1],
                 "sensor": "area", "sensor_at": [0, 0, 2], "sensor_size": [1000, 1000], "pixels": [1, 1], "method": "path"}
         told = self.call("render", **wide, target_error=0.01, out="beam.h5", status=3).stderr
-        self.assertIn("is not that of light paths that hit it", told)
+        self.assertIn("differs from the mean of the light paths that hit the sensor", told)
         found = datasets(self.folder / "beam.h5")
         self.assertGreater(found["total_error"], 0.2)
         self.assertEqual(found["total_rare"], 1)
 
     def test_a_light_is_seen_through_a_body(self):
-        """By a pinhole, whatever the method."""
+        """A pinhole shows it by every method."""
         keys = {**BOX, **CAMERA, "body_sphere": [0, 0, 2, 0.5], "index": 1.5,
                 "point_light": [0, 0, 1, 1]}
         expected = self.render(**keys, samples=20000 if WHOLE else 8000)
@@ -175,7 +182,7 @@ class Scenes(RenderTest):
 
 class ClosedForms(RenderTest):
     def test_camera_in_a_glass_block(self):
-        """A beam along the normal, between two faces: Fresnel's sum, and L/n^2."""
+        """A beam along the normal between two faces gives Fresnel's sum and L/n^2."""
         def seen(index):
             return self.render(stage_box=[-2, -2, -2, 2, 2, 2], block=[-1, -1, -1, 1, 1, 1, index, 0, 0, 0],
                                beam_light=[0, 0, -2, 0, 0, 1, 1.5, 1], sensor="camera",
@@ -186,12 +193,12 @@ class ClosedForms(RenderTest):
         np.testing.assert_allclose(seen(1.5) / seen(1), expected, rtol=1e-6)
 
     def test_absorption(self):
-        """A beam through a medium that absorbs."""
+        """A beam through an absorbing medium is attenuated exponentially."""
         found = self.render(**BOX, **{**AREA, "sensor_size": [2, 2]}, **BEAM, mu_a=0.3)
         self.assert_within(found["total"], found["total_error"], 2 * np.exp(-0.3 * 4))
 
     def test_absorption_in_a_density(self):
-        """Half the density on average: linear from 0 to 1 along z, in a grid of 5 nodes."""
+        """The mean density is one half: linear from 0 to 1 along z, in a grid of 5 nodes."""
         write_density(self.folder / "density.h5", np.tile(np.linspace(0, 1, 5), (5, 5, 1)))
         found = self.render(**BOX, **{**AREA, "sensor_size": [2, 2]}, **BEAM, mu_a=0.3,
                             density="density.h5", samples=20_000)
@@ -204,8 +211,8 @@ class ClosedForms(RenderTest):
 
     def test_white_furnace(self):
         """L/n^2 of the environment everywhere (C24), by every method in a straight and a curved
-        scene. By light, joins with the pinhole through the field have no finite variance: that
-        is told."""
+        scene. By light, connections with the pinhole through the field have infinite
+        variance, which is reported."""
         for field in ({}, FIBRE):
             for method in METHODS:
                 with self.subTest(field=field, method=method):
@@ -218,8 +225,8 @@ class ClosedForms(RenderTest):
                         self.assertAlmostEqual(found["mean"], 1.5, delta=0.3)
 
     def test_arrival(self):
-        """Unscattered light through a Luneburg ball: pi/2 + 1 from one tangent plane to the focus
-        (C27), in one bin."""
+        """Unscattered light through a Luneburg ball arrives in one bin at pi/2 + 1 from one tangent plane
+        to the focus (C27)."""
         found = self.scene("luneburg_pulse", body_mu_s=0, path_bins=[2.65, 2.75, 100])
         at = found["optical_path"][np.argmax(found["pulse"])]
         self.assertAlmostEqual(at, 0.1 + 1 + np.pi / 2, delta=3e-3)
@@ -233,7 +240,7 @@ class ClosedForms(RenderTest):
         self.assert_within(both["total"], np.linalg.norm(errors), beam["total"] + point["total"])
 
     def test_random_phase(self):
-        """Sound that each path meets at its own time is neither that at its height nor none."""
+        """Sound at a random phase per path gives a power between those of the phases 0 and pi."""
         sound = {"random_phase": True, "sensor_size": [0.4, 0.4], "pixels": [1, 1],
                  "samples": 20_000, "mu_s": 0}
         found = {}
@@ -245,13 +252,13 @@ class ClosedForms(RenderTest):
 
 
 class Energy(RenderTest):
-    """What becomes of the light adds up to it, and to what formulas say."""
+    """The tally of light adds up to its power and agrees with formulas."""
     BALL = {"stage_box": [-2, -2, -2, 2, 2, 2], "body_sphere": [0, 0, 0, 1], "sensor": "directional"}
     SMOKE = {"body_mu_s": 1, "body_mu_a": 0.3, "body_phase": "isotropic"}
     POINT = {"point_light": [0, 0, -1.5, 3]}
     POINT_INSIDE = {"point_light": [0, 0, 1, 3]}
 
-    def fates(self, **keys):
+    def tally(self, **keys):
         found = self.render(**keys)
         power = {name.removeprefix("energy/"): value for name, value in found.items()
                  if name.startswith("energy/")}
@@ -263,11 +270,11 @@ class Energy(RenderTest):
         return power
 
     def test_of_scenes(self):
-        """By night of each by both methods, by day of two by one."""
+        """Covers all scenes by both methods by night, two by one method by day."""
         for name in NAMES if WHOLE else ("waveguide", "glass_ball"):
             for method in ("light", "bidirectional") if WHOLE else ("light" if name == "glass_ball" else "bidirectional",):
                 with self.subTest(name, method=method):
-                    self.fates(config=SCENES / f"render_{name}.toml", method=method, samples=200)
+                    self.tally(config=SCENES / f"render_{name}.toml", method=method, samples=200)
 
     def test_of_media(self):
         write_density(self.folder / "density.h5", np.arange(80.0).reshape(4, 4, 5))
@@ -282,27 +289,27 @@ class Energy(RenderTest):
                 "grid": {**BOX, **BEAM, **AREA, "mu_s": 0.1, "mu_a": 0.02, "density": "density.h5"},
                 "even": {**BOX, **FOG, "method": "light", "sensor": "directional", "environment": 1}}.items():
             with self.subTest(name):
-                power = self.fates(**keys)
+                power = self.tally(**keys)
                 self.assertEqual("cut" in power, name == "cut")
                 self.assertEqual("specular" in power, "body_sphere" in keys)
 
-    def assert_fates(self, power, **expected):
+    def assert_tally(self, power, **expected):
         for name, value in expected.items():
             self.assert_within(power[name], power[f"{name}_error"], value)
 
     def test_absorbing_box(self):
         through = np.exp(-4 * 0.5)
         for beam in (BEAM, {"gaussian_beam": [0, 0, 0, 0, 0, 1, 0.3, 2]}):
-            power = self.fates(**BOX, **beam, **AREA, mu_a=0.5, method="light")
-            self.assert_fates(power, emitted=2, unscattered=2 * through,
+            power = self.tally(**BOX, **beam, **AREA, mu_a=0.5, method="light")
+            self.assert_tally(power, emitted=2, unscattered=2 * through,
                               absorbed_stage=2 * (1 - through), scattered=0, lost=0)
 
     def test_reflections_of_an_absorbing_ball(self):
-        """A beam through the middle: a geometric series of reflections."""
+        """A beam through the middle gives a geometric series of reflections."""
         reflected, kept = (0.5 / 2.5) ** 2, np.exp(-2 * 0.4)
-        power = self.fates(**self.BALL, index=1.5, body_mu_a=0.4, method="light", samples=40000,
+        power = self.tally(**self.BALL, index=1.5, body_mu_a=0.4, method="light", samples=40000,
                            beam_light=[0, 0, -2, 0, 0, 1, 1e-5, 1])
-        self.assert_fates(power, emitted=1, specular=reflected, scattered=0, absorbed_stage=0,
+        self.assert_tally(power, emitted=1, specular=reflected, scattered=0, absorbed_stage=0,
                           absorbed_body=(1 - reflected) * (1 - kept) / (1 - reflected * kept))
 
     def test_only_of_methods_that_end_light(self):
@@ -311,7 +318,7 @@ class Energy(RenderTest):
 
 
 class Axes(RenderTest):
-    """Unscattered light is where row and column say."""
+    """Unscattered light falls on the expected row and column."""
 
     def brightest(self, **keys):
         found = self.render(**{**BOX, "pixels": [19, 15], "samples": 2000, **keys})
@@ -326,7 +333,7 @@ class Axes(RenderTest):
         np.testing.assert_allclose(at, (column, row), atol=0.51 * self.step)
 
     def test_area(self):
-        """Columns along outward normal x up, here -x."""
+        """Columns are along outward normal x up, here -x."""
         self.check(-0.31, 0.22, sensor="area", sensor_at=[0, 0, 4], sensor_size=[1.9, 1.5],
                    beam_light=[0.31, 0.22, 0, 0, 0, 1, 0.01, 1])
 
@@ -336,7 +343,7 @@ class Axes(RenderTest):
                    beam_light=[0, 0, 0.1, 0.31, 0.12, 1, 0.01, 1])
 
     def test_camera(self):
-        """Columns along sensor_direction x sensor_up, here x."""
+        """Columns are along sensor_direction x sensor_up, here x."""
         self.check(0.5 / 2.9, 0.3 / 2.9, **{**CAMERA, "sensor_at": [0, 0, 3.9], "pixels": [19, 15]},
                    point_light=[0.5, 0.3, 1, 1])
 
@@ -345,14 +352,14 @@ class Profiles(RenderTest):
     """Unscattered light of a Gaussian beam and of fibres, through absorption."""
 
     def test_gaussian_beam(self):
-        """Irradiance: products of differences of error functions over the pixels. Many rays, so that
-        the darkest pixel has some tens."""
+        """Irradiance is a product of differences of error functions over the pixels. Many rays give the
+        darkest pixel some tens."""
         found = self.render(**BOX, sensor="area", sensor_at=[0, 0, 4], sensor_size=[1.6, 1.2],
                             pixels=[8, 6], mu_a=0.5, samples=400_000,
                             gaussian_beam=[0.1, 0, 0, 0, 0, 1, 0.3, 2])
 
         def shares(edges):
-            """Columns are along -x."""
+            """Returns the share of each column; columns are along -x."""
             return np.diff([math.erf(math.sqrt(2) * edge / 0.3) for edge in edges]) / 2
 
         columns, rows = shares(np.linspace(-0.8, 0.8, 9) + 0.1), shares(np.linspace(-0.6, 0.6, 7))
@@ -360,7 +367,7 @@ class Profiles(RenderTest):
         self.assert_within(found["image"], found["image_error"] + 1e-5, expected)
 
     def test_fibres(self):
-        """What arrives within an angle, at index 1.5: the square of the ratio of sines."""
+        """The share within an angle, at index 1.5, is the squared ratio of sines."""
         for name, share in (("fibre_light", lambda ratio: ratio**2),
                             ("gaussian_fibre", lambda ratio: -math.expm1(-2 * ratio**2))):
             found = self.render(**BOX, index=1.5, sensor="area", sensor_at=[0, 0, 4],
@@ -391,12 +398,12 @@ class Paths(RenderTest):
             np.testing.assert_allclose(found["pulse"].sum(), 0 if name else found["total"], rtol=1e-12)
 
     def test_rings_are_what_areas_are(self):
-        """Power on a disk and by angle, as fates of light say."""
+        """Power on a disk and by angle agrees with the tally of light."""
         scene = {**BOX, **FOG, "point_light": [0, 0, 3, 1], "samples": 40_000, "method": "light"}
         whole = self.render(**scene, sensor="polar", rings=5, largest_angle=math.pi)
-        fates = ("unscattered", "scattered")
-        error = whole["total_error"] + sum(whole[f"energy/{fate}_error"] for fate in fates)
-        self.assert_within(whole["total"], error, sum(whole[f"energy/{fate}"] for fate in fates))
+        ends = ("unscattered", "scattered")
+        error = whole["total_error"] + sum(whole[f"energy/{end}_error"] for end in ends)
+        self.assert_within(whole["total"], error, sum(whole[f"energy/{end}"] for end in ends))
         disk = self.render(**scene, sensor="radial", sensor_at=[0, 0, 4], sensor_radius=0.9, rings=3)
         areas = np.pi * 0.3**2 * (2 * np.arange(3) + 1)
         np.testing.assert_allclose(disk["image"] @ areas, disk["total"], rtol=1e-12)
@@ -409,7 +416,7 @@ class SameNumbers(RenderTest):
     KEYS = {**BOX, **BEAM, **FOG, **AREA, "path_bins": [3, 9, 6]}
 
     def kinds(self):
-        """Scenes, and samples of some batches; by day only one method in a field."""
+        """Yields scenes with samples for some batches; by day only one method in a field."""
         for field in ({}, FIBRE):
             for method in METHODS if WHOLE or not field else METHODS[2:]:
                 with self.subTest(field=field, method=method):
@@ -427,7 +434,7 @@ class SameNumbers(RenderTest):
             self.assert_same_work("parts.h5", "1.h5")
 
     def assert_same_work(self, first, second):
-        """Counts are of all batches, of those before a resumption too."""
+        """Checks that counts include all batches, also those before a resumption."""
         first, second = (datasets(self.folder / name, ()) for name in (first, second))
         counts = [name for name in first if name.startswith(("transport/", "trials/"))]
         self.assertGreater(first["transport/flights"], 0)

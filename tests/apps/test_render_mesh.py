@@ -1,4 +1,4 @@
-"""A body of triangles: that of a ball is the ball, by powers, maps and pictures; bad files are refused."""
+"""Bodies of triangles: the mesh of a ball gives its powers, maps and pictures; bad files are rejected."""
 
 import unittest
 
@@ -21,7 +21,7 @@ class Mesh(RenderTest):
         write_stl(self.folder / "ball.stl", self.triangles)
 
     def both(self, **keys):
-        """Results with the mesh, and with the ball of its volume."""
+        """Returns results with the mesh and with the ball of its volume."""
         keys = {**ROOM, **keys}
         mesh = self.render("mesh.h5", body_mesh="ball.stl", body_mesh_spacing=0.2, **keys)
         sphere = [0, 0, 0, (volume(self.triangles) * 3 / (4 * np.pi)) ** (1 / 3)]
@@ -39,7 +39,7 @@ class Mesh(RenderTest):
         self.assertLessEqual(found["energy/lost"], 1e-5 * found["energy/emitted"])
 
     def test_powers(self):
-        """Of light that is refracted, scattered and absorbed, or goes straight."""
+        """Compares powers of refracted, scattered, absorbed and unscattered light."""
         for index in (1.4, 1):
             for medium in (SMOKE, {}) if WHOLE else (SMOKE,) if index > 1 else ({},):
                 with self.subTest(index=index, **medium):
@@ -50,14 +50,14 @@ class Mesh(RenderTest):
                         self.assert_alike(mesh, sphere, f"energy/{name}", 0.02 * ERRORS)
 
     def test_map(self):
-        """Fluence and absorbed power inside of it."""
+        """Compares fluence and absorbed power inside."""
         mesh, sphere = self.both(index=1.4, sensor="none", map_box=[-0.5, -0.5, -0.5, 0.5, 0.5, 0.5],
                                  map_cells=[1, 1, 2], samples=40000, **SMOKE, **BEAM)
         for name in ("map/fluence", "map/absorbed"):
             self.assert_alike(mesh, sphere, name, 0.03)
 
     def test_pictures(self):
-        """From outside, joined through the smooth surface: by night by a pinhole, and on a wall."""
+        """Pictures from outside, connected through the smooth surface: by night by a pinhole and on a wall."""
         camera = {"sensor": "camera", "sensor_at": [1.999, 0, 0], "sensor_direction": [-1, 0, 0],
                   "field_of_view": 1.2, "index": 1.1, "samples": int(160000 * SAMPLES)}
         wall = {"sensor": "area", "sensor_at": [2, 0, 0], "sensor_up": [0, 1, 0], "sensor_size": [1, 1],
@@ -77,7 +77,7 @@ class Mesh(RenderTest):
         self.assert_alike(mesh, sphere, "energy/absorbed_body", 0.05)
 
     def test_text_is_read_as_bytes_are(self):
-        """Inside out as well; the spacing is the longest side by 64, and the result has volumes."""
+        """Also inside out; the spacing is the longest side / 64, and the result has volumes."""
         keys = {**ROOM, **BEAM, **DISK, **SMOKE, "method": "light", "samples": 1000}
         triangles = ball(3)
         write_stl(self.folder / "bytes.stl", triangles)
@@ -125,7 +125,7 @@ class Refused(RenderTest):
         self.refuse("body_mesh = cut.stl", body_mesh="cut.stl")
 
     def test_marks_of_text_files_and_bytes_beyond_the_triangles(self):
-        """A byte order mark, capitals and a tail are read; a wrong count is told."""
+        """A byte order mark, capitals and trailing bytes are accepted; a wrong count is reported."""
         good = ball(2) / 2 + [0, 0, 2]
         write_stl(self.folder / "text.stl", good, text=True)
         text, data = (self.folder / "text.stl").read_text(), (self.folder / self.write("good.stl", good)).read_bytes()
@@ -144,7 +144,7 @@ class Refused(RenderTest):
     def test_parts_over_one_another(self):
         good = ball(3) / 2 + [0, 0, 2]
         both = np.concatenate([good, good + [0.3, 0, 0]])
-        self.refuse("body_mesh = both.stl", "lie in or over one another", body_mesh=self.write("both.stl", both), body_mesh_spacing=0.05)
+        self.refuse("body_mesh = both.stl", "overlap or lie inside one another", body_mesh=self.write("both.stl", both), body_mesh_spacing=0.05)
 
     def test_keys(self):
         write_stl(self.folder / "ball.stl", ball(3) / 2 + [0, 0, 2])

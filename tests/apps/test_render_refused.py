@@ -1,4 +1,4 @@
-"""Keys and files of scattering media that render refuses, in one line each."""
+"""Keys and files of scattering media that render rejects, in one line each."""
 
 import unittest
 
@@ -12,7 +12,7 @@ class Refused(RenderTest):
     GOOD = {**BOX, **BEAM, **FOG, **AREA, "samples": 100}
 
     def refuse(self, *words, **keys):
-        """One line that holds the words, status 2, and nothing written."""
+        """Checks one line that contains the words, status 2, and nothing written."""
         before = self.listing()
         done = self.call("render", status=2, **{"out": "bad.h5", **self.GOOD, **keys})
         self.assertEqual(done.stdout, "")
@@ -46,18 +46,18 @@ class Refused(RenderTest):
         self.refuse("length_unit = 0", length_unit=0)
 
     def test_gradients(self):
-        curved = {**FIBRE, "gradient": True, "method": "analog"}
-        self.refuse("gradient", "method = analog", **{**curved, "method": "light"})
-        self.refuse("gradient", "method = analog", gradient=True)
-        self.refuse("gradient", "no medium", **{**curved, "mu_s": None, "mu_a": None, "phase": None, "g": None})
+        curved = {**FIBRE, "gradient": True, "method": "forward"}
+        self.refuse("gradient", "method = forward", **{**curved, "method": "light"})
+        self.refuse("gradient", "method = forward", gradient=True)
+        self.refuse("gradient", "must have a medium", **{**curved, "mu_s": None, "mu_a": None, "phase": None, "g": None})
         self.refuse("gradient", "bodies", ball=[0, 0, 2, 0.5, 1.5, 0, 0, 0], **curved)
         write_density(self.folder / "cloud.h5", np.ones((3, 3, 3)), origin=[-1, -1, 0], spacing=[1, 1, 2])
         self.refuse("gradient", "uniform", density="cloud.h5", **curved)
 
     def test_gradients_by_the_field(self):
         disk = {"sensor": "radial", "radii": [0.3], "sensor_size": None, "pixels": None}
-        curved = {**FIBRE, **disk, "gradient_by": "alpha", "method": "analog"}
-        self.refuse("gradient_by", "method = analog", **{**curved, "method": "light"})
+        curved = {**FIBRE, **disk, "gradient_by": "alpha", "method": "forward"}
+        self.refuse("gradient_by", "method = forward", **{**curved, "method": "light"})
         self.refuse("gradient_by = beta", "amplitude", **{**curved, "gradient_by": "beta"})
         self.refuse("gradient_by = mu_s", "index field", **{**curved, "gradient_by": "mu_s"})
         self.refuse("gradient_by = alpha.1", "alpha.0", **{**curved, "gradient_by": "alpha.1"})
@@ -79,7 +79,7 @@ class Refused(RenderTest):
         self.refuse("index = 0", index=0)
         self.refuse("luneburg", "rim", field="luneburg", centre=[0, 0, 2],
                     body_sphere=[0, 0, 2, 1.01], stage_box=[-2, -2, 0, 2, 2, 4])
-        self.refuse("must be inside of the stage; of luneburg", field="luneburg")
+        self.refuse("must be inside of the stage; for luneburg", field="luneburg")
         self.refuse("luneburg in a sum", field=["luneburg", "linear"], centre=[0, 0, 2],
                     slope=[0, 0, 0.01])
         self.refuse("alpha", "is a key of", alpha=1)
@@ -89,7 +89,7 @@ class Refused(RenderTest):
         with h5py.File(self.folder / "small.h5", "w") as file:
             data = file.create_dataset("excess", data=np.zeros((5, 5, 5)))
             data.attrs["origin"], data.attrs["spacing"] = np.array([-1.0, -1, 0]), np.full(3, 0.5)
-        self.refuse("grid", "ends inside of the stage", field="grid", grid="small.h5")
+        self.refuse("grid", "must cover all of the stage", field="grid", grid="small.h5")
 
     def test_media(self):
         self.refuse("mu_s = -1", "negative", mu_s=-1)
@@ -126,7 +126,7 @@ class Refused(RenderTest):
         self.refuse("density = absent.h5: no such file", density="absent.h5")
         write_density(self.folder / "far.h5", np.ones((5, 5, 5)), origin=np.array([2.0, 0, 0]))
         self.refuse("density: the grid, from 2 0 0", "outside of the stage", density="far.h5")
-        # most of the stage is beside the grid: it is all tentative collisions
+        # most of the stage is outside the grid, so that almost all collisions are tentative
         write_density(self.folder / "speck.h5", np.ones((2, 2, 2)),
                       origin=np.array([0, 0, 1.0]), spacing=np.full(3, 1e-3))
         for limit in (None, 2):
@@ -148,7 +148,7 @@ class Refused(RenderTest):
                     beam_light=[0, 0, 0, 0, 0, 1, 1.1, 1])
         self.refuse("beam_light", "into the stage", beam_light=[0, 0, 0, 0, 0, -1, 0.1, 1])
         self.refuse("beam_light, radius = 0", beam_light=[0, 0, 0, 0, 0, 1, 0, 1])
-        self.refuse("gaussian_beam, radius = 0.4: its disk of radius 1.2", "inside the stage",
+        self.refuse("gaussian_beam, radius = 0.4: the light, a disk of radius 1.2", "inside the stage",
                     gaussian_beam=[0, 0, 0, 0, 0, 1, 0.4, 1])
         self.refuse("fibre_light", "9 numbers", fibre_light=[0, 0, 0, 0, 0, 1, 0.1, 1])
         self.refuse("fibre_light, aperture = 1.1", "at most the index",
@@ -184,7 +184,7 @@ class Refused(RenderTest):
         self.refuse("field_of_view is not given", **{**camera, "field_of_view": None})
         self.refuse("field_of_view = 4", **{**camera, "field_of_view": 4})
         self.refuse("sensor_at", "inside the stage", **{**camera, "sensor_at": [0, 0, 5]})
-        self.refuse("sensor_up", "along", **camera, sensor_up=[0, 0, 1])
+        self.refuse("sensor_up", "must not be parallel", **camera, sensor_up=[0, 0, 1])
         self.refuse("focus_distance", "is a key of", **camera, focus_distance=1)
         self.refuse("focus_distance is not given", **camera, lens_radius=0.1)
         self.refuse("sensor_at", "boundary", **camera, lens_radius=0.1, focus_distance=2)
@@ -208,7 +208,7 @@ class Refused(RenderTest):
                     map_cells=[2, 3])
         none = {"sensor": "none", "sensor_at": None, "sensor_size": None, "pixels": None}
         self.refuse("sensor = none", "map_box", **none)
-        self.refuse("sensor = none", "alone", sensor=["none", "area"])
+        self.refuse("sensor = none", "only value", sensor=["none", "area"])
         self.refuse("method = path", "map", **none, **rings, map_cells=[2, 3], method="path")
         self.refuse("pixels", **{**none, "pixels": [2, 2]}, **rings, map_cells=[2, 3])
 

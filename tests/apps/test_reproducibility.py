@@ -1,4 +1,4 @@
-"""The same scene, seed and samples give the same numbers, whatever the threads."""
+"""Equal scene, seed and samples give the same numbers for any number of threads."""
 
 import unittest
 

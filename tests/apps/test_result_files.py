@@ -1,4 +1,4 @@
-"""What result files hold: shapes, types, scales, errors, provenance."""
+"""Contents of result files: shapes, types, scales, errors, provenance."""
 
 import unittest
 
@@ -25,7 +25,7 @@ LV, LS = ("light_angle", "view_angle"), ("light_angle", "sensor")
 MATRIX = (*LV, "light_angle_2", "view_angle_2")
 REAL, COMPLEX = np.float64, np.complex128
 
-# request -> its keys, and its estimates: type and axes
+# request: its keys, and its estimates with type and axes
 REQUESTS = {
     "intensity": ({**LIGHTS, **VIEWS}, {"intensity": (REAL, LV), "mean_field": (COMPLEX, LV)}),
     "near": ({**LIGHTS, **SENSORS}, {"intensity": (REAL, LS)}),
@@ -107,7 +107,7 @@ class ResultTest(ProgramTest):
         self.assertTrue(np.all(columns[3] > 0))
 
     def check_again(self, subcommand):
-        """The stored configuration gives the same data."""
+        """Checks that the stored configuration gives the same data."""
         with h5py.File(self.folder / "result.h5") as file:
             self.write("again.toml", file.attrs["config"])
         self.call(subcommand, config="again.toml", out="again.h5")
@@ -145,7 +145,7 @@ class Covariance(ResultTest):
         self.check_request("intensity", CYLINDERS, 12, method="wave")
 
     def test_slab(self):
-        """Nothing of one scatterer is known there, and no mean field is estimated."""
+        """A slab of bulk has no data of single scatterers and no mean field."""
         self.call("covariance", **SLAB, **TILTS, samples=4000, out="result.h5")
         file = self.open()
         for name in ("covariance", "field_correlation"):
@@ -167,7 +167,7 @@ class Covariance(ResultTest):
         self.assertTrue(np.all(np.abs(difference) < 4 * combined), difference / combined)
 
     def test_memory_effect_agrees_with_pairs(self):
-        """Tilt 0.04 of light 0 seen at sin v = sin 0.1 + sin 0.04."""
+        """Uses a tilt of 0.04 of light 0, viewed at sin v = sin 0.1 + sin 0.04."""
         matched = np.arcsin(np.sin(0.1) + np.sin(0.04))
         self.call("covariance", **BOX, **TILTS, samples=4000, out="tilts.h5")
         self.call("covariance", **BOX, covariance="pairs", samples=4000, out="pairs.h5",
@@ -200,7 +200,7 @@ class Covariance(ResultTest):
         for g, marked in ((0.995, True), (0.5, False)):
             with self.subTest(g=g):
                 done = self.call("covariance", **{**keys, "g": g}, out="result.h5")
-                self.assertEqual("NAME_rare marks them" in done.stderr, marked)
+                self.assertEqual("entries with NAME_rare = 1" in done.stderr, marked)
                 with self.open() as file:
                     self.assertEqual("intensity_rare" in file, marked)
 
@@ -243,7 +243,7 @@ class Validate(ResultTest):
                 self.check_again("validate")
 
     def test_a_fixed_count_and_the_forward_lobe(self):
-        """Said where it holds: sin 0.04 lies within wavelength/width = 0.05 of the light."""
+        """The note appears for views within wavelength/width = 0.05 of the light, such as sin 0.04."""
         poisson, disks = {**BOX, "count": None, "density": 0.155}, {**BOX, "scatterer": "soft"}
         for scene, view, said in ((BOX, 0.04, True), (BOX, -0.04, True), (BOX, 0.06, False),
                                   (BOX, np.pi, False), (poisson, 0.04, False),
@@ -251,7 +251,7 @@ class Validate(ResultTest):
             with self.subTest(scene=scene, view=view):
                 done = self.call("validate", **scene, view_angles=[1, view], samples=400,
                                  wave_samples=2, out="result.h5")
-                self.assertEqual("density in place of count" in done.stdout, said)
+                self.assertEqual("density instead of count" in done.stdout, said)
 
     def test_a_group_is_what_covariance_gives(self):
         scene = {**BOX, **REQUESTS["intensity"][0]}
@@ -286,7 +286,7 @@ class Sweep(ResultTest):
         self.check_again("sweep")
 
     def test_a_point_is_what_covariance_gives(self):
-        """At optical depth 2, g = -0.2, albedo 0.9."""
+        """Compares the point at optical depth 2, g = -0.2, albedo 0.9."""
         self.call("sweep", **SWEEP, out="sweep.h5")
         self.call("covariance", out="point.h5", **{**SLAB, **SWEEP, "covariance": "memory_effect",
                                                    "optical_depth": 2, "g": -0.2, "albedo": 0.9})

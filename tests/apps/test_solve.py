@@ -1,4 +1,4 @@
-"""Exact fields through the command line."""
+"""Exact fields by the command line."""
 
 import resource
 import signal
@@ -77,7 +77,7 @@ class Reference(ProgramTest):
 
 class Believed(ProgramTest):
     def test_resonance_sharper_than_double_precision(self):
-        """TM, index 2, k radius = 9.335788: order 15 resonates with Q = 4e4."""
+        """TM, index 2, k radius = 9.335788: order 15 has a resonance of Q = 4e4."""
         self.write("disk.csv", "x,z\n0,0\n")
         disk = {"placement": "disk.csv", "scatterer": "tm", "index": 2,
                 "radius": repr(9.335788 / (2 * np.pi)), "view_angles": [0, 1]}
@@ -91,7 +91,7 @@ class Believed(ProgramTest):
         self.write("pair.csv", "x,z\n0,0\n0,0.2000001\n")
         done = self.call("solve", placement="pair.csv", scatterer="te", index="0.05+2.2i",
                          radius=0.1, status=2, out="pair.h5")
-        self.assertIn("beside a TE disk of Re(index^2) < 0", done.stderr)
+        self.assertIn("next to a TE disk with Re(index^2) < 0", done.stderr)
 
     def test_notes(self):
         self.write("disk.csv", "x,z\n0,0\n")
@@ -109,13 +109,13 @@ class Few(ProgramTest):
             with self.subTest(keys=keys):
                 done = self.call("solve", **keys, light_angles=[0, 1], out="result.h5")
                 self.assertIn("0 scatterers", done.stdout)
-                self.assertIn("holds no scatterers", done.stderr)
+                self.assertIn("contains no scatterers", done.stderr)
                 field = datasets(self.folder / "result.h5")
                 field = field.get("far_field", field.get("near_field"))
                 np.testing.assert_array_equal(field, [[0], [0]])
 
     def test_one_point(self):
-        """A resonant point at the origin: the same amplitude everywhere."""
+        """A resonant point at the origin has the same amplitude everywhere."""
         self.write("one.csv", "x,z\n0,0\n")
         self.call("solve", placement="one.csv", view_angles=[0, 1, 2], out="result.h5")
         field = datasets(self.folder / "result.h5")["far_field"][0]
@@ -154,7 +154,7 @@ class Drawn(ProgramTest):
 
 
 class Solvers(ProgramTest):
-    """Weakly scattering points, so that the iterative solver ends."""
+    """Solvers agree for weakly scattering points, for which the iterative one converges."""
 
     POINTS = {"domain": "box", "width": 20, "depth": 20, "scatterer": "point", "phase_shift": 0.2,
               "count": 1200, "tolerance": 1e-9, "light_angles": [0, 0.3], "view_angles": [0.1, 3]}
@@ -173,7 +173,7 @@ class Solvers(ProgramTest):
 
 
 class FullDisk(ProgramTest):
-    """A limit on the size of files stands for a disk that is full."""
+    """Full disks, simulated by a limit on the size of files."""
 
     def call_with_little_room(self, *words, **keys):
         def little_room():

@@ -1,4 +1,4 @@
-"""T-matrices of groups of scatterers, and their copies as single objects."""
+"""T-matrices of clusters of scatterers, and their copies as single objects."""
 
 import unittest
 
@@ -20,7 +20,7 @@ def table(points):
 
 
 def copies():
-    """Of the motif about the middle of its centres."""
+    """Returns copies of the motif about the middle of its centres."""
     about = MOTIF - (MOTIF.min(axis=0) + MOTIF.max(axis=0)) / 2
     for x, z, angle in PLACES:
         c, s = np.cos(angle), np.sin(angle)
@@ -35,7 +35,7 @@ def motif(test, **keys):
 
 class Clusters(ProgramTest):
     def test_copies_are_as_all_disks(self):
-        for keys in ({}, {"t_matrix_gap": 0.1}):  # of so many orders that nothing inverts it
+        for keys in ({}, {"t_matrix_gap": 0.1}):  # the second: too many orders to be inverted
             with self.subTest(keys=keys):
                 self.check_copies(**keys)
 

@@ -1,4 +1,4 @@
-"""dimension = 3: slabs in space, known numbers and what files say."""
+"""dimension = 3: slabs in 3D, known numbers and contents of files."""
 
 import unittest
 
@@ -108,7 +108,7 @@ class Space(ProgramTest):
             self.assertEqual(file.attrs["dimension"], 3)
             albedo, g, found = file.attrs["albedo"], file.attrs["g"], file["intensity"][0, 0]
         self.assertTrue(0.8 < albedo < 1 and 0.7 < g < 1)
-        # with the same g and albedo another phase function is near but not the same
+        # another phase function with the same g and albedo gives similar but different values
         self.call("covariance", **(SPACE | {"scatterer": "hg", "g": g, "albedo": albedo}), out="x.h5")
         with h5py.File(self.folder / "x.h5") as file:
             self.assertAlmostEqual(file["intensity"][0, 0] / found, 1, delta=0.3)

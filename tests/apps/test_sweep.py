@@ -1,4 +1,4 @@
-"""What a sweep gives: the same numbers in one process, in shares and from a list."""
+"""Sweeps give the same numbers in one process, in shares and from a list."""
 
 import time
 import unittest
@@ -70,7 +70,7 @@ class Shares(SweepTest):
         self.assertEqual(self.finished(), {})
 
     def test_shares_of_several_numbers(self):
-        """Each point is some share's, and no other's."""
+        """Each point belongs to exactly one share."""
         for count in (1, 3, 8):
             names = []
             for number in range(count):
@@ -80,7 +80,7 @@ class Shares(SweepTest):
             self.assertEqual(sorted(names), sorted(names_of(SWEEP)))
 
     def test_whole_after_shares(self):
-        """Without a merge: the sweep itself finds what is there."""
+        """No merge is needed: the sweep itself uses the finished points."""
         self.whole(SWEEP)
         self.call("sweep", **SWEEP, shard="1/3", out="sweep.h5")
         self.call("sweep", "--resume", **SWEEP, out="sweep.h5")
@@ -120,7 +120,7 @@ class Lists(SweepTest):
         self.assert_points_equal("list.h5", "whole.h5")
 
     def test_goes_on_with_points_of_a_grid(self):
-        """Equal points are equal, however they were asked for."""
+        """A list uses equal points of a grid."""
         self.call("sweep", **SWEEP, shard="0/1", out="sweep.h5")
         self.write("points.csv", csv(["optical_depth", "g", "albedo"], self.ROWS))
         before = self.finished()
@@ -151,7 +151,7 @@ class Lists(SweepTest):
                                           point["field_correlation"])
 
     def test_another_table_under_the_same_name(self):
-        """A result that was made of other points is not taken for the one asked for."""
+        """A result of other points is not taken for the requested one."""
         self.write("points.csv", csv(["optical_depth", "g", "albedo"], self.ROWS))
         self.call("sweep", **self.listed(), out="sweep.h5")
         self.write("points.csv", csv(["optical_depth", "g", "albedo"], self.ROWS[:2]))
@@ -160,7 +160,7 @@ class Lists(SweepTest):
 
 class Axes(SweepTest):
     def check_axis(self, key, values, **keys):
-        """Each point of an axis is what covariance gives of that scene."""
+        """Checks that each point of an axis equals covariance of that scene."""
         self.call("sweep", **keys, **{key: values}, out="sweep.h5")
         sweep = datasets(self.folder / "sweep.h5")
         for i, value in enumerate(values):
@@ -220,7 +220,7 @@ class BothMethods(SweepTest):
         self.assert_same_data("sweep.h5", "whole.h5")
 
     def test_a_point_with_one_method_missing(self):
-        """Counts as missing, by the name of the method."""
+        """Such a point counts as missing, by the name of the method."""
         self.call("sweep", **BOTH, shard="0/1", out="sweep.h5")
         journals.drop(self.journal(), "wave_density=0.2")
         done = self.call("merge", out="sweep.h5", status=2)
@@ -254,7 +254,7 @@ class Stops(SweepTest):
             self.assertEqual(errors[-1], sweep["relative_error"].ravel()[i])
 
     def test_target_missed_in_a_share(self):
-        """Each share is done; the whole tells."""
+        """Each share is complete; the merged result reports the missed target."""
         keys = {**SWEEP, "target_error": NEVER}
         for number in (0, 1):
             self.call("sweep", **keys, shard=f"{number}/2", out="sweep.h5")
@@ -321,7 +321,7 @@ class Resume(SweepTest):
                 self.assertFalse(self.points(keys["out"]).exists())
 
     def test_missing_where_points_lie(self):
-        """Nothing is touched."""
+        """A sweep without --resume changes nothing there."""
         self.call("sweep", **SWEEP, shard="0/2", out="sweep.h5")
         before = self.shards()
         for changes in ({}, {"shard": "0/2"}, {"seed": 2}):
@@ -338,14 +338,14 @@ class Resume(SweepTest):
         self.assertEqual(self.shards(), before)
 
     def test_missing_where_a_result_lies(self):
-        """It is replaced."""
+        """The older result is replaced."""
         self.call("sweep", **SWEEP, seed=2, out="sweep.h5")
         self.call("sweep", **SWEEP, out="sweep.h5")
         self.whole(SWEEP)
         self.assert_same_data("sweep.h5", "whole.h5")
 
     def test_with_more_points(self):
-        """A larger grid takes over the points that are there."""
+        """A larger grid reuses the finished points."""
         self.call("sweep", **SWEEP, shard="0/1", out="sweep.h5")
         before = self.finished()
         keys = {**SWEEP, "g": [0, 0.3, 0.5]}
@@ -389,7 +389,7 @@ class Ranges(SweepTest):
 
 
 class Gallery(unittest.TestCase):
-    """The sweep that data/ ships."""
+    """The sweep shipped in data/."""
 
     # q L at C_I = 1/2, optical depth 10: g, albedo, value, error; of an integral equation (g = 0,
     # albedo 1 and 0.99, rounded) and of an independent Monte Carlo program.
@@ -420,7 +420,7 @@ class Gallery(unittest.TestCase):
             self.assertLess(abs(self.file["memory_effect_range"][at] - known), 4 * error, at)
 
 
-class Strangers(SweepTest):
+class OtherSweeps(SweepTest):
     def test_points_of_another_sweep_are_told_of(self):
         self.all_points(SWEEP, "one.h5")
         self.all_points({**SWEEP, "g": [0.7]}, "other.h5")

@@ -1,4 +1,4 @@
-"""Sweeps whose disk fills, closes or goes away: one clear line, status 4, nothing lost."""
+"""Sweeps whose disk becomes full, read-only or vanishes: one clear line, status 4, nothing lost."""
 
 import contextlib
 import os
@@ -18,7 +18,7 @@ STEADY = {**MANY, "samples": 15_000}
 
 
 class DiskTest(SweepTest):
-    """The program runs on a disk of its own, as large as each test says."""
+    """Base of tests with a separate disk, whose size each test sets."""
 
     def setUp(self):
         super().setUp()
@@ -27,7 +27,7 @@ class DiskTest(SweepTest):
         self.aside = pathlib.Path(folder.name)
 
     def mount(self, size, folder=None):
-        """Puts a disk of so many KiB there."""
+        """Mounts a disk of `size` KiB there."""
         folder = folder or self.folder
         if not mounts_allowed():
             self.skipTest("mounting is not allowed here")
@@ -35,7 +35,7 @@ class DiskTest(SweepTest):
         self.addCleanup(subprocess.run, ["umount", "--lazy", folder], check=True)
 
     def remount(self, option, folder=None):
-        """Tries until no file is open for writing."""
+        """Retries until no file is open for writing."""
         for _ in range(1000):
             if subprocess.run(["mount", "-o", f"remount,{option}", folder or self.folder],
                               capture_output=True).returncode == 0:
@@ -44,7 +44,7 @@ class DiskTest(SweepTest):
         self.fail(f"remount,{option}")
 
     def fill(self, left=0):
-        """Leaves so many bytes of the disk."""
+        """Fills the disk except for `left` bytes."""
         with open(self.folder / "filler", "wb", buffering=0) as file, \
                 contextlib.suppress(OSError):
             while True:
@@ -53,14 +53,14 @@ class DiskTest(SweepTest):
         os.truncate(self.folder / "filler", max(0, size - left))
 
     def check_stopped(self, process, *words):
-        """Status 4, one line, and no result."""
+        """Checks status 4, one line, and no result."""
         error = process.communicate(timeout=60)[1]
         self.assertEqual(process.returncode, 4, error)
         self.assert_one_line(error, *words)
         self.assertFalse((self.folder / "sweep.h5").exists())
 
     def check_goes_on(self, keys, kept=None):
-        """The finished points stay as they are, and the end is as if nothing had been."""
+        """Checks that finished points are unchanged and that the result equals an undisturbed one."""
         if kept is not None:
             self.assertEqual(self.finished(), kept)
             self.call("sweep", "--resume", **keys, shard="0/1", out="sweep.h5")
@@ -144,7 +144,7 @@ class ReadOnly(DiskTest):
         self.check_goes_on(SWEEP, kept)
 
     def test_the_folder_of_points_alone(self):
-        """All of them are there: `merge`, which only reads, makes the result."""
+        """All points are finished: `merge`, which only reads them, makes the result."""
         self.all_points(SWEEP)
         self.points().rename(self.folder / "points")
         self.points().mkdir()
@@ -167,7 +167,7 @@ class Vanished(DiskTest):
         return process
 
     def test_folder_of_points(self):
-        """Its journal is open: the sweep ends as if nothing had been."""
+        """The journal is open, so the sweep ends undisturbed."""
         process = self.begin()
         self.points().rename(self.aside / "points")
         self.assertEqual(process.wait(timeout=60), 0, process.stderr.read())

@@ -59,7 +59,7 @@ class BadInput(SweepTest):
         self.check("index=", "twice", **disks, index=["1.5+0.1i", "1.5+0.10i"])
 
     def test_a_point_that_makes_no_scene(self):
-        """Before any other has begun."""
+        """It is rejected before any other point begins."""
         disks = {"scatterer": "tm", "g": None, "albedo": None, "optical_depth": None}
         self.check("radius = -0.1", **disks, density=0.1, radius=[0.1, -0.1])
         self.check("index", "1.5+", **disks, density=0.1, radius=0.1, index=["1.5", "1.5+"])

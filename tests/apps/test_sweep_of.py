@@ -1,4 +1,4 @@
-"""`sweep --of`: its points are runs of the subcommand, nothing is lost, and parts make the whole."""
+"""`sweep --of`: points are runs of the subcommand, nothing is lost, and parts merge to the whole."""
 
 import random
 import shutil
@@ -56,7 +56,7 @@ class SweepOf(SweepTest):
         self.assertNotEqual(found, datasets(self.folder / "one.h5")["total"])
 
     def test_other_subcommands(self):
-        """Their points are runs of their own too, by batches, transport or at once."""
+        """Their points equal separate runs too: by batches, by transport or in one step."""
         box = {"domain": "box", "width": 10, "depth": 6, "scatterer": "hg", "optical_depth": 1, "albedo": 1}
         slab = {"domain": "slab", "depth": 50, "scatterer": "hg", "albedo": 0.9, "optical_depth": 2}
         cylinders = {"width": 8, "depth": 6, "count": 4, "scatterer": "tm", "radius": 0.16, "index": 1.3}
@@ -114,7 +114,7 @@ class SweepOf(SweepTest):
         self.assertEqual(datasets(self.folder / "all.h5")["total"][0], swept["total"][1])
 
     def test_scales_that_differ(self):
-        """Where pixels lie depends on the size of the sensor: their axes only count."""
+        """Pixel positions depend on the size of the sensor, so these axes are plain indices."""
         keys = {**GRID, "vary": ["sensor_size.0=1,2"], "amplitude": 0.001, "pixels": [2, 1]}
         self.call("sweep", **keys, out="sweep.h5")
         swept = datasets(self.folder / "sweep.h5")
@@ -127,7 +127,7 @@ class SweepOf(SweepTest):
         self.call("sweep", **keys, out="sweep.h5")
         with h5py.File(self.folder / "sweep.h5") as file:
             self.assertEqual(list(file["method_word"].asstr()), ["light", "path"])
-            self.assertIn("energy/emitted", file.attrs["left_out"])  # of light paths alone
+            self.assertIn("energy/emitted", file.attrs["left_out"])  # only of light paths
             self.assertEqual(file["total"].shape, (2,))
         self.call("sweep", **{**keys, "vary": ["method=light,path", "g=0,0.5"]}, out="part.h5", shard="0/2")
         self.call("merge", out="part.h5", partial=True, status=3)
@@ -147,7 +147,7 @@ class SweepOf(SweepTest):
         self.assertFalse(self.points().exists())
 
     def test_what_is_made_at_once_is_interrupted(self):
-        """At any moment, and so between the two batches of a point: all that was found is there."""
+        """An interrupt at any moment, also between the two batches of a point, keeps all results."""
         rays = {"of": "trace", "field": "parabolic", "index": 1.5, "connect": [0, 0, 0, 0.3, 0, 3], "max_length": 5,
                 "trials": 200, "vary": ["alpha=0.4:0.6:20"], "threads": 1}
         self.whole(rays)
@@ -165,7 +165,7 @@ class SweepOf(SweepTest):
             self.assertFalse(self.points().exists())
 
     def test_points_of_a_result_that_has_points(self):
-        """Those of the object of image, and those of a part of a sweep."""
+        """Covers points of an image's object and points in a part of a sweep."""
         image = {"of": "image", "domain": "box", "width": 100, "depth": 10, "scatterer": "hg", "g": 0.8,
                  "object_x": [0, 15, 40], "object_depth": -2000, "camera": [-0.3, 0.3], "pixels": 128,
                  "prediction_paths": 200, "paths_per_field": 200, "repeats": 1}
@@ -178,7 +178,7 @@ class SweepOf(SweepTest):
         self.assertEqual(found["optical_depth"].shape, (2,))
 
     def test_a_damaged_result_is_no_end(self):
-        """A complete sweep of which a byte is another is refused by --resume, or made again."""
+        """A complete sweep with one changed byte is rejected by --resume, or made again."""
         self.whole(GRID, "sweep.h5")
         data = bytearray((self.folder / "sweep.h5").read_bytes())
         data[len(data) // 2] ^= 1
@@ -210,7 +210,7 @@ class SweepOf(SweepTest):
             self.assertEqual(part["total"][i], whole["total"][at])
 
     def test_finished_points_are_known(self):
-        """By their names alone, whatever the points are made of."""
+        """Finished points are recognised by their names alone."""
         self.write("points.csv", "amplitude,sensor_size.0\n0.002,2\n0,1\n0.002,1\n")
         for points in ({"vary": ["amplitude=1e-4:1e-2:4:log", "method=path,light"], "method": None},
                        {"vary": ["sensor_size.0=2:1:3", "g=0.5,0:0.3:4"], "amplitude": 0.001}, {"vary": None, "points": "points.csv"}):
@@ -224,7 +224,7 @@ class SweepOf(SweepTest):
 
     @unittest.skipIf(SLOWNESS > 1, "a sanitizer keeps what was freed")
     def test_memory(self):
-        """Is the same for many points as for a few, by day of less than the chunks that are kept of each dataset."""
+        """Memory does not grow with the number of points, by day below the chunks kept per dataset."""
         few, many, more = (9000, 24000, 2 ** 20) if WHOLE else (1000, 4000, 2 ** 21)
         rays = {"of": "trace", "field": "ultrasound", "index": 1.33, "sound_wavenumber": 3.5, "light": "line",
                 "ray_count": 2, "beam_radius": 0.25, "stop_plane": [0, 0, 0.1, 0, 0, 1], "max_length": 1, "step": 0.05,
@@ -236,7 +236,7 @@ class SweepOf(SweepTest):
         np.testing.assert_allclose(amplitudes, np.linspace(1e-3, 2e-3, many), rtol=1e-15)
 
     def peak_memory(self, *words, **keys):
-        """In bytes: as the child of a small process, whose own is counted until the program begins."""
+        """Returns bytes, measured as the child of a small process, whose memory counts until the program begins."""
         tell = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, capture_output=True); "
                 "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)")
         done = subprocess.run([sys.executable, "-S", "-c", tell, PROGRAM, *words, *flags(keys)], cwd=self.folder,
@@ -261,20 +261,20 @@ class SweepOf(SweepTest):
         self.check("of = place", "render", of="place")
         self.check("vary is not given", vary=None)
         for text, *words in (
-                ["amplitude", "key=values"], ["=1,2", "key=values"], ["colour=1,2", "colour is no key"],
+                ["amplitude", "key=values"], ["=1,2", "key=values"], ["colour=1,2", "colour is not a key"],
                 ["amplitude=", "number"], ["amplitude=1,x", "number"], ["amplitude=1,,2", "number"],
-                ["method=", "a value or more"], ["method=light,fast", "method = fast"],
+                ["method=", "at least one value"], ["method=light,fast", "method = fast"],
                 ["amplitude=1:2", "first:last:count"], ["amplitude=1:2:3:lin", "first:last:count"],
-                ["amplitude=0:1:3:log", "first:last"], ["amplitude=0:1:1", "from 2"],
-                ["amplitude=0:1:1e9", "from 2"], ["amplitude=0:inf:3", "first:last"],
-                ["amplitude=0.1,0.10", "twice"], ["samples=10,20", "says how to run"],
-                ["out=1,2", "says how to run"], ["density=1,2", "file"],
-                ["sensor_size=1,2", "2 numbers"], ["sensor_size.2=1,2", "below the 2"],
+                ["amplitude=0:1:3:log", "first:last"], ["amplitude=0:1:1", "2 to 1000000"],
+                ["amplitude=0:1:1e9", "2 to 1000000"], ["amplitude=0:inf:3", "first:last"],
+                ["amplitude=0.1,0.10", "twice"], ["samples=10,20", "does not change the result"],
+                ["out=1,2", "does not change the result"], ["density=1,2", "file"],
+                ["sensor_size=1,2", "2 numbers"], ["sensor_size.2=1,2", "below 2"],
                 ["sensor_size.x=1,2", ".all"], ["mu_s=-1,1", "mu_s = -1"],
                 ["alpha=1,2", "alpha = 2", "parabolic"]):
             with self.subTest(text=text):
                 self.check(*words, vary=[text], amplitude=None if "amplitude" in text else 0.001)
-        self.check("varied already", vary=["g=0,0.5", "g=0.1,0.2"])
+        self.check("varied twice", vary=["g=0,0.5", "g=0.1,0.2"])
         self.check("at most 1000000", vary=["g=0:0.9:2000", "amplitude=0:0.1:2000"])
         self.check("alpha = 2", alpha=2)
         self.check("sensor_colour", "unknown key", sensor_colour=2)
@@ -284,7 +284,7 @@ class SweepOf(SweepTest):
             key for key in GUIDE if key not in ("g", "samples")), depth=10, optical_depth=1, tilts=[0, 0.1])
 
     def test_a_point_without_a_result_is_named(self):
-        """Rays that end within a lens, some before it."""
+        """Some rays end within a lens or before it."""
         lens = {"of": "trace", "field": "homogeneous", "lens": [0, 0, 0, 12.5, 60, 0, 5, 1.5168, 0, 0, 0], "light": "disk",
                 "ray_count": 20, "origin": [0, 0, -20], "beam_radius": 5, "stop_plane": [0, 0, 50, 0, 0, 1],
                 "image_plane": [0, 0, 100, 0, 0, 1], "vary": ["max_length=19,20.1"], "out": "lens.h5"}
@@ -293,10 +293,10 @@ class SweepOf(SweepTest):
 
     def test_refused_tables(self):
         for text, *words in (["amplitude\n", "row"], ["colour\n1\n", "colour"],
-                             ["amplitude\n0\n0.0\n", "twice"], ["method\n1\n", "no numbers"]):
+                             ["amplitude\n0\n0.0\n", "twice"], ["method\n1\n", "key with numbers"]):
             self.write("points.csv", text)
             self.check(*words, vary=None, points="points.csv")
-            self.check("give one", points="points.csv")
+            self.check("give only one", points="points.csv")
 
     def test_refuses_what_is_of_another_sweep(self):
         self.call("sweep", **GRID, out="sweep.h5", shard="0/1")

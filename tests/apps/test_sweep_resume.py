@@ -1,5 +1,5 @@
-"""Sweeps that are killed, interrupted, and whose files are damaged: nothing is lost, every number
-comes out the same."""
+"""Sweeps that are killed or interrupted or whose files are damaged: nothing is lost, and every number
+is the same."""
 
 import random
 import shutil
@@ -19,7 +19,7 @@ ONE = {**SLOW, "optical_depth": [3], "samples": 1_000_000 if WHOLE else 250_000}
 
 class Kill(SweepTest):
     def test_at_many_moments(self):
-        """Each a random time after a random number of points has been finished."""
+        """Kills a random time after a random number of finished points."""
         self.call("sweep", **LONG, out="whole.h5")
         moments = random.Random(1)
         kept, ended, midway = {}, 0, 0
@@ -45,7 +45,7 @@ class Kill(SweepTest):
         self.assertFalse(self.points().exists())
 
     def check_left_behind(self, before):
-        """A finished point stays as it is until the result is there."""
+        """Checks that finished points are unchanged until the result is there."""
         if (self.folder / "sweep.h5").exists():
             self.assert_same_data("sweep.h5", "whole.h5")
         else:
@@ -54,8 +54,8 @@ class Kill(SweepTest):
         return self.finished()
 
     def test_what_was_being_written_is_cleared_away(self):
-        """Of a kill while a file is written, before the unfinished file has gone, and before the
-        folder has gone."""
+        """Kills while a file is written, before the unfinished file is removed, and before the folder is
+        removed."""
         self.whole(SWEEP)
         self.all_points(SWEEP)
         name = next(iter(self.finished()))
@@ -76,8 +76,8 @@ class Kill(SweepTest):
 
 class Interruption(SweepTest):
     def test_in_the_midst_of_points(self):
-        """Points that stop at a number of samples, and such that stop at an error, of which many
-        are unfinished at a time."""
+        """Covers points that stop at a number of samples, and at an error, of which many are unfinished
+        at a time."""
         for stop in ({}, {"samples": None, "method": "mc", "target_error": 0.0008 if WHOLE else 0.0015}):
             with self.subTest(stop=stop):
                 keys = {**SLOW, **stop}
@@ -95,7 +95,7 @@ class Interruption(SweepTest):
                 (self.folder / "sweep.h5").unlink()
 
     def test_goes_on_from_where_it_was(self):
-        """And does not begin the point again: the time of the first part counts as well."""
+        """The point does not begin again: the time of the first part is included."""
         keys = {**SLOW, "optical_depth": [3], "samples": 3_000_000}
         costs = []
         for _ in range(2):
@@ -128,7 +128,7 @@ class Interruption(SweepTest):
         self.assert_same_data("sweep.h5", "whole.h5")
 
     def test_where_an_older_result_lies(self):
-        """Which a new sweep may replace, in one go or in several."""
+        """A new sweep may replace the older result, interrupted or not."""
         self.whole(SLOW)
         self.call("sweep", **SWEEP, out="sweep.h5")
         older = (self.folder / "sweep.h5").read_bytes()
@@ -156,27 +156,27 @@ def flipped_at(position, bit):
 
 
 class Damage(SweepTest):
-    """Points are finished, or unfinished, and then what is kept of them is damaged."""
+    """Damage to the files of finished and unfinished points."""
 
     def setUp(self):
         super().setUp()
         self.whole(SWEEP)
 
-    def check_mended(self, aside, whole="whole.h5", keys=SWEEP):
-        """What was damaged is told of, kept beside, and done again."""
+    def check_mended(self, backups, whole="whole.h5", keys=SWEEP):
+        """Checks that damaged files are reported, kept as backups, and made again."""
         done = self.call("sweep", "--resume", **keys, out="sweep.h5")
         warnings = [line for line in done.stderr.splitlines() if line.startswith("warning: ")]
-        self.assertEqual(len(warnings), len(aside), done.stderr)
-        for name in aside:
+        self.assertEqual(len(warnings), len(backups), done.stderr)
+        for name in backups:
             self.assertTrue(any(f"{name}.aside-1" in line for line in warnings), done.stderr)
         self.assert_same_data("sweep.h5", whole)
-        self.assertEqual(self.shards(), {f"{name}.aside-1": data for name, data in aside.items()})
+        self.assertEqual(self.shards(), {f"{name}.aside-1": data for name, data in backups.items()})
         shutil.rmtree(self.points(), ignore_errors=True)
         (self.folder / "sweep.h5").unlink()
         return warnings
 
     def damage(self, path, change):
-        """Returns what the file holds now, by name."""
+        """Returns the new contents of the file, by name."""
         path.write_bytes(change(path.read_bytes()))
         return {path.name: path.read_bytes()}
 
@@ -190,7 +190,7 @@ class Damage(SweepTest):
                 self.assertIn("damaged", line)
 
     def test_of_what_was_cut_off(self):
-        """As by a failure of the machine: nobody needs to be told."""
+        """Truncation, as by a failure of the machine, needs no report."""
         for change in (truncated, emptied, lambda data: data[:-1], lambda data: data[:7]):
             self.all_points(SWEEP)
             self.damage(self.journal(), change)
@@ -208,18 +208,18 @@ class Damage(SweepTest):
             self.check_mended(damaged, "slow.h5", keys)
 
     def test_of_no_file_at_all(self):
-        """A folder in the place of an unfinished point."""
+        """A folder replaces the file of an unfinished point."""
         self.call("sweep", **SWEEP, shard="1/2", out="sweep.h5")
         path = self.points() / f"{sorted(set(names_of(SWEEP)) - self.finished().keys())[0]}.part"
         path.mkdir()
         (path / "inside").write_text("kept")
         done = self.call("sweep", "--resume", **SWEEP, out="sweep.h5")
-        self.assertIn("set aside", done.stderr)
+        self.assertIn("renamed to", done.stderr)
         self.assertEqual((self.points() / f"{path.name}.aside-1" / "inside").read_text(), "kept")
         self.assert_same_data("sweep.h5", "whole.h5")
 
     def test_of_another_sweep(self):
-        """Nothing is touched."""
+        """Points of another sweep are unchanged."""
         for changes in ({"seed": 2}, {"depth": 101}, {"tilts": [0, 0.001, 0.011]},
                         {"view_angles": [0.1]}, {"samples": 4001}, {"target_error": 0.5},
                         {"reversed_paths": "no"}):
@@ -232,7 +232,7 @@ class Damage(SweepTest):
                 shutil.rmtree(self.points())
 
     def test_of_unfinished_points_of_another_sweep(self):
-        """Or of another point."""
+        """Also covers the state of another point."""
         keys = ONE
         self.whole(keys, "slow.h5")
         for changes in ({"seed": 2}, {"optical_depth": [2]}):
@@ -246,7 +246,7 @@ class Damage(SweepTest):
                 self.assertIn("another sweep", line)
 
     def test_time_and_again(self):
-        """What was kept before is kept as well."""
+        """Earlier backups are kept as well."""
         kept = {}
         for number in (1, 2, 3):
             self.all_points({**SWEEP, "resume": True})
@@ -257,15 +257,15 @@ class Damage(SweepTest):
             (self.folder / "sweep.h5").unlink()
 
     def test_of_a_sweep_of_an_earlier_version(self):
-        """Its points had files of their own."""
+        """Earlier versions stored points in separate files."""
         self.points().mkdir()
         (self.points() / "mc_optical_depth=1_g=0_albedo=1.h5").write_bytes(b"a point")
         before = self.shards()
         for words in (["sweep"], ["sweep", "--resume"]):
             done = self.call(*words, **SWEEP, out="sweep.h5", status=2)
-            self.assert_one_line(done.stderr, "sweep.h5.shards", "files of their own")
+            self.assert_one_line(done.stderr, "sweep.h5.shards", "one file per point")
         done = self.call("merge", out="sweep.h5", status=2)
-        self.assert_one_line(done.stderr, "sweep.h5.shards", "files of their own")
+        self.assert_one_line(done.stderr, "sweep.h5.shards", "one file per point")
         self.assertEqual(self.shards(), before)
 
 
@@ -302,14 +302,14 @@ class MergeOfDamage(SweepTest):
         place = whole.index(self.names[5].encode())
         self.journal().write_bytes(flipped_at(place, 5)(whole))
         done = self.check_refused("3 of 8", "--partial")
-        self.assertIn("is damaged; 5 points", done.stderr)
+        self.assertIn("is damaged; 5 of its points are used", done.stderr)
         self.check_partial(3)
         self.journal().write_bytes(whole)
         self.call("merge", out="merged.h5", shards="sweep.h5.shards")
         self.assert_same_data("merged.h5", "whole.h5")
 
     def test_of_another_sweep(self):
-        """Among those of this one, whichever comes first."""
+        """Points of both sweeps are mixed, in either order."""
         self.call("sweep", **SWEEP, seed=2, shard="1/2", out="other.h5")
         for name in ("a.points", "z.points"):
             shutil.copy(self.journal(1, 2, "other.h5"), self.points() / name)
@@ -319,7 +319,7 @@ class MergeOfDamage(SweepTest):
             (self.points() / name).unlink()
 
     def test_then_resumed(self):
-        """A partial result is no end."""
+        """A partial result can be continued."""
         journals.drop(self.journal(), self.names[0])
         self.check_partial(1)
         self.call("sweep", "--resume", **SWEEP, out="sweep.h5")

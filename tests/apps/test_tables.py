@@ -1,5 +1,5 @@
-"""Tables from spreadsheets and instruments give what the plain one gives; paths of scenes, values and outputs that are slips
-are told."""
+"""Tables from spreadsheets and instruments give the numbers of the plain one; likely mistakes in paths, values and
+outputs are reported."""
 
 import os
 import resource
@@ -19,7 +19,7 @@ LAYERED = {"domain": "slab", "scatterer": "hg", "light_angles": [0, 1]}
 
 
 def forms(plain):
-    """The same table as other programs write it."""
+    """Yields the table in the forms of other programs."""
     rows = [line.split(",") for line in plain.splitlines()]
 
     def written(between, show=str, end="\n"):
@@ -36,7 +36,7 @@ def forms(plain):
 
 class Tables(RefusingTest):
     def assert_as_plain(self, subcommand, key, plain, scene):
-        """Each form in turn gives the same numbers, bit for bit."""
+        """Checks that each form gives the same numbers, bit for bit."""
         self.write("plain.csv", plain)
         self.call(subcommand, **{**scene, key: "plain.csv"}, out="plain.h5")
         for name, text in forms(plain).items():
@@ -96,7 +96,7 @@ class Paths(RefusingTest):
             self.assertIn('layers = "scenes/layers.csv"', file.attrs["config"])
         self.write("layers.csv", LAYERS.replace("30.5", "7"))
         self.assertEqual(self.thicknesses(), [20, 30.5])
-        self.assertEqual(self.thicknesses(layers="layers.csv"), [20, 7])  # a flag's
+        self.assertEqual(self.thicknesses(layers="layers.csv"), [20, 7])  # given as a flag
         (self.folder / "scenes/layers.csv").unlink()
         self.assertEqual(self.thicknesses(), [20, 7])
 
@@ -141,13 +141,13 @@ class Slips(RefusingTest):
         self.assertNotIn("n - 1", self.note("trace", **trace))
         self.write("p.csv", "x,z,radius,index_re\n0,0,0.3,0.33\n")
         self.assertIn("n, not n - 1", self.note("solve", scatterer="tm", placement="p.csv"))
-        self.write("p.csv", "x,z,radius,index_re,index_im\n0,0,0.3,0.05,2.2\n")  # of a metal
+        self.write("p.csv", "x,z,radius,index_re,index_im\n0,0,0.3,0.05,2.2\n")  # a metal
         self.assertNotIn("n - 1", self.note("solve", scatterer="tm", placement="p.csv"))
 
     def test_long_numbers_are_refused_at_once(self):
         for figures in (401, 3000, 100_000):
             for key, text in (("depth", "1" + "0" * figures), ("view_angles", "0." + "1" * figures)):
-                self.assert_refused([f"{key} = ", "400 figures"], "covariance", **{**SLAB, key: text})
+                self.assert_refused([f"{key} = ", "400 digits"], "covariance", **{**SLAB, key: text})
         self.assert_refused(["view_angles = 60001"], "covariance", **{**SLAB, "view_angles": "1+" * 60_000 + "1"})
 
     def test_a_table_of_points_beside_the_points_of_images(self):
@@ -172,7 +172,7 @@ class Resources(RefusingTest):
     def test_a_target_of_more_paths_than_can_be(self):
         done = self.call("field", **{**BOX, "samples": None}, fields=4, method="covariance", target_error=1e-12, out="x.h5",
                          status=2)
-        self.assertIn("target_error = 1e-12: asks for", done.stderr)
+        self.assertIn("target_error = 1e-12: requires", done.stderr)
 
     def test_a_full_device(self):
         self.call("flux", **SLAB, out="r.h5")
@@ -197,7 +197,7 @@ class Resources(RefusingTest):
 
     @unittest.skipIf("FLATSPECKLE_SLOWNESS" in os.environ, "sanitizers take all addresses")
     def test_little_address_space(self):
-        """Of 100 MB and more, in which the libraries can be loaded."""
+        """Covers 100 MB and more, in which the libraries can be loaded."""
         for megabytes in (105, 120, 160):
             limit = megabytes << 20
             environment = {key: value for key, value in os.environ.items() if key != "OPENBLAS_NUM_THREADS"}

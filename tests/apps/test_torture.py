@@ -1,4 +1,4 @@
-"""torture.py finds nothing in two seconds, and its checks find programs that misbehave."""
+"""torture.py reports no failure in two seconds, and its checks detect programs that misbehave."""
 
 import pathlib
 import signal
@@ -18,7 +18,7 @@ from torture_scenes import OLDER
 
 TORTURE = pathlib.Path(__file__).with_name("torture.py")
 REFUSED = {**BOX, "width": -3}
-# (what a program does after the true one, its keys, what is said of it)
+# (what a script does after the program, its keys, the complaint)
 MISBEHAVIOURS = [
     ("status=1", REFUSED, "status 1"),
     ("kill -SEGV $$", OLDER, "status -11"),
@@ -55,7 +55,7 @@ class Checks(ProgramTest):
         cls.whole = cls.library.whole("covariance", OLDER)
 
     def complaints(self, script, keys, hindrance=Hindrance()):
-        """Of a program that is this script, with an older result in place."""
+        """Returns the complaints about this script, with an older result in place."""
         program = self.write("program", f"#!/bin/sh\n{script}\n")
         program.chmod(0o755)
         case = Case(self.library, tempfile.mkdtemp(dir=self.folder), 1, 1)

@@ -1,4 +1,4 @@
-"""Rays and curves through index fields against closed forms, what the file holds, what is refused."""
+"""Rays and curves through index fields against closed forms, contents of the file, rejected input."""
 
 import unittest
 
@@ -35,13 +35,13 @@ class TraceTest(ProgramTest):
 
 class Rays(TraceTest):
     def test_luneburg_focus(self):
-        """A collimated beam meets on the far rim, each ray after pi/2 + 1 (C27)."""
+        """A collimated beam is focused on the far rim, each ray after pi/2 + 1 (C27)."""
         found = self.scene("luneburg")
         np.testing.assert_allclose(vectors(found, "exit/"), np.tile([0, 0, 1], (15, 1)), atol=1e-8)
         np.testing.assert_allclose(found["optical_path"], np.pi / 2 + 1, rtol=1e-8)
         np.testing.assert_array_equal(found["status"], 0)
         self.assertLess(found["invariants/index_mismatch"].max(), 1e-9)
-        turn = found["start/x"]  # of a ball with rays parallel to z
+        turn = found["start/x"]  # for a ball with rays parallel to z
         inside = found["invariants/angular_momentum"]
         np.testing.assert_allclose(inside, abs(turn), atol=1e-12)
         self.assertLess(found["invariants/angular_momentum_change"].max(), 1e-8)
@@ -54,7 +54,7 @@ class Rays(TraceTest):
         np.testing.assert_allclose(found["optical_path"], np.pi, rtol=1e-8)
 
     def test_parabolic_fibre_disperses(self):
-        """Optical path in a plane z, by C27's sinusoids: with beta = n0 cos t and sigma = z/beta,
+        """The optical path to a plane z follows from C27's sinusoids: with beta = n0 cos t and sigma = z/beta,
         n0^2 sigma - n0^2 sin^2 t (sigma/2 - sin(2 alpha sigma)/(4 alpha))."""
         found = self.scene("parabolic_fibre")
         n0, alpha, z = 1.5, 0.5, 50.2654824574367
@@ -68,10 +68,10 @@ class Rays(TraceTest):
                                    atol=1e-7)
         np.testing.assert_allclose(found["invariants/axial_momentum"], beta, rtol=1e-12)
         self.assertLess(found["invariants/axial_momentum_change"].max(), 1e-8)
-        self.assertGreater(np.ptp(exact), 1e-2)  # there is dispersion to speak of
+        self.assertGreater(np.ptp(exact), 1e-2)  # the dispersion is significant
 
     def test_whole_periods(self):
-        """Over whole periods of one ray: (n0^2 + beta^2)/(2 beta) per length."""
+        """Over whole periods of a ray the optical path per length is (n0^2 + beta^2)/(2 beta)."""
         sine = np.sin(0.3)
         beta = 1.5 * np.cos(0.3)
         length = 40 * 2 * np.pi * beta / 0.5
@@ -82,7 +82,7 @@ class Rays(TraceTest):
         np.testing.assert_allclose(found["optical_path"], exact, rtol=1e-8)
 
     def test_sech_fibre_does_not(self):
-        """Meridional rays of all angles need n0 z over whole periods."""
+        """Meridional rays of all angles have optical path n0 z over whole periods."""
         found = self.scene("sech_fibre")
         np.testing.assert_allclose(found["optical_path"], 1.5 * 50.2654824574367, rtol=1e-8)
         np.testing.assert_allclose(found["exit/x"], 0, atol=1e-7)
@@ -118,7 +118,7 @@ class Rays(TraceTest):
         np.testing.assert_allclose(found["invariants/transverse_momentum"], 1, rtol=1e-12)
 
     def test_tanh_ramp(self):
-        """n = low + (high - low)/2 (1 + tanh(z/width)), straight through, as --help has it."""
+        """A straight ray integrates n = low + (high - low)/2 (1 + tanh(z/width)), as in --help."""
         found = self.trace(field="tanh", index_low=1, index_high=1.5, ramp_width=0.4, ray_count=1,
                            stop_plane=[0, 0, 1, 0, 0, 1], max_length=5)
         exact = 1 + 0.25 * (1 + 0.4 * np.log(np.cosh(2.5)))
@@ -144,7 +144,7 @@ class Rays(TraceTest):
             self.assertAlmostEqual(np.log2(ratio), order, delta=0.2, msg=integrator)
 
     def test_sum_and_grid(self):
-        """A grid of samples of a blob is the blob, and stands beside a medium."""
+        """A grid of samples of a blob equals the blob, also next to a medium."""
         self.write("blobs.csv", "x,y,z,height,width\n0.1,0,0.2,0.02,0.5\n")
         nodes = np.linspace(-2, 2, 81)
         x, y, z = np.meshgrid(nodes, nodes[30:51], nodes, indexing="ij")
@@ -174,16 +174,16 @@ class Rays(TraceTest):
         np.testing.assert_array_equal(found["surface"], [0, 1, 1, 1])
         np.testing.assert_allclose(found["arc_length"], [1.2, 1, 0.5, 1.25], rtol=1e-9)
 
-    def test_rays_leave_a_grid_where_the_index_slopes(self):
-        """In n = 1 + s.x, which the spline is exactly, n = n0 cosh(|s| sigma) + v0.s/|s| sinh(|s|
-        sigma) to the very edge, and nothing is lost there."""
+    def test_rays_leave_a_grid_with_an_index_gradient(self):
+        """In n = 1 + s.x, which the spline reproduces, n = n0 cosh(|s| sigma) + v0.s/|s| sinh(|s| sigma) up
+        to the edge, and no ray is lost there."""
         nodes = np.linspace(-1, 1, 9)
         x, y, _ = np.meshgrid(nodes, nodes, nodes, indexing="ij")
         write_grid(self.folder / "grid.h5", 0.5 * x + 0.25 * y)
-        slope = np.array([0.5, 0.25, 0])
-        steep = np.linalg.norm(slope)
+        gradient = np.array([0.5, 0.25, 0])
+        steep = np.linalg.norm(gradient)
         start = np.array([0.3, 0.3, -0.9])
-        n0 = 1 + slope @ start
+        n0 = 1 + gradient @ start
         for steps in ({"tolerance": 1e-10}, {"tolerance": 1e-12, "integrator": "yoshida4"},
                       {"step": 0.01}):
             found = self.trace(field="grid", grid="grid.h5", light="fan", half_angle=1,
@@ -192,9 +192,9 @@ class Rays(TraceTest):
             end = vectors(found, "exit/")
             np.testing.assert_allclose(abs(end).max(axis=1), 1, atol=1e-9)
             sigma = (end[:, 2] - start[2]) / (n0 * found["start/dz"])
-            along = n0 * vectors(found, "start/d") @ slope / steep
+            along = n0 * vectors(found, "start/d") @ gradient / steep
             exact = n0 * np.cosh(steep * sigma) + along * np.sinh(steep * sigma)
-            np.testing.assert_allclose(1 + end @ slope, exact, rtol=1e-8, err_msg=str(steps))
+            np.testing.assert_allclose(1 + end @ gradient, exact, rtol=1e-8, err_msg=str(steps))
 
     def test_time_is_shown_in_units(self):
         self.scene("ultrasound")
@@ -217,7 +217,7 @@ class Rays(TraceTest):
                                    np.linspace(-1, 1, 400), atol=1e-12)
 
     def test_paths_lie_on_the_rays(self):
-        """In a Luneburg ball x(sigma) = x0 cos sigma + v0 sin sigma: an ellipse."""
+        """In a Luneburg ball rays are ellipses, x(sigma) = x0 cos sigma + v0 sin sigma."""
         found = self.scene("luneburg")
         path = np.stack([found[f"path/{axis}"] for axis in "xyz"], axis=-1)
         np.testing.assert_allclose(path[:, 0], vectors(found, "start/"), atol=1e-12)
@@ -232,7 +232,7 @@ class Rays(TraceTest):
         self.assertAlmostEqual(middle, np.sqrt(2), delta=0.01)
 
     def test_far_from_the_origin(self):
-        """Ends are found to the rounding of the coordinates, which tells nothing of lost rays."""
+        """Ends are accurate to the rounding of the coordinates, and no rays are lost."""
         for far in (1e6, 1e9):
             found = self.trace(field="luneburg", centre=[far, far, far], origin=[far, far, far - 1],
                                light="line", ray_count=21, beam_radius=0.9, max_length=5,
@@ -241,8 +241,8 @@ class Rays(TraceTest):
             np.testing.assert_allclose(found["optical_path"], np.pi / 2 + 1,
                                        atol=1e-8 + 1e-14 * far)
 
-    def test_long_ways(self):
-        """Tight tolerances where the coordinates are large, and ends that no max_length blurs."""
+    def test_long_rays(self):
+        """Tolerances are tight at large coordinates, and ends do not depend on max_length."""
         found = self.trace(field="parabolic", **FIBRE, light="fan", half_angle=0.2, ray_count=3,
                            stop_plane=[0, 0, 1000, 0, 0, 1], max_length=2000, tolerance=1e-13)
         sigma = 1000 / (1.5 * np.cos(0.2))
@@ -252,7 +252,7 @@ class Rays(TraceTest):
         np.testing.assert_allclose(found["exit/z"], 2, atol=1e-8)
 
     def test_large_and_small_index(self):
-        """Nothing is jumped over where the index is large, nothing creeps where it is small."""
+        """Steps do not jump over surfaces at a large index, nor become tiny at a small one."""
         self.write("blobs.csv", "x,y,z,height,width\n0.05,0,50,10,0.1\n")
         keys = {"field": "blobs", "blobs": "blobs.csv", "index": 100, "ray_count": 1,
                 "max_length": 200, "stop_plane": [0, 0, 100, 0, 0, 1]}
@@ -266,7 +266,7 @@ class Rays(TraceTest):
                                    rtol=1e-8)
 
     def test_edge_of_the_grid(self):
-        """A ray that leaves the grid where it starts has no way to go."""
+        """A ray that leaves the grid at its start has length 0."""
         write_grid(self.folder / "grid.h5", np.zeros((9, 9, 9)))
         self.write("rays.csv", "x,y,z,dx,dy,dz\n0,0,1,0,0,1\n0,0,1,0,0,-1\n0,0,-1,0.1,0,-1\n"
                    "0.5,1,0,0,1,1\n")
@@ -294,7 +294,7 @@ class Rays(TraceTest):
 
 class Connections(TraceTest):
     def test_luneburg(self):
-        """The one curve inside the ball, by C27: with C = cos sigma, 2 C^2 - 2 (P.Q) C + P^2 + Q^2
+        """The only curve inside the ball follows from C27: with C = cos sigma, 2 C^2 - 2 (P.Q) C + P^2 + Q^2
         - 2 = 0, v0 = (Q - P C)/sin sigma."""
         p, q = np.array([0.3, 0.1, -0.6]), np.array([-0.2, 0.4, 0.5])
         found = self.trace(field="luneburg", connect=[*p, *q], trials=300, max_length=20)
@@ -312,9 +312,8 @@ class Connections(TraceTest):
         self.assertEqual(sum(ends) - found["trials/iterations"], 300)
 
     def test_fisheye(self):
-        """A circle through both points, either way round: with R = n0 a/2 = 1 the optical paths are
-        d and 2 pi - d, |J| = sin^2(d)/n_Q^2, and the long way passes
-        one point focus."""
+        """Curves are both arcs of a circle through the points: with R = n0 a/2 = 1 the optical paths are d
+        and 2 pi - d, |J| = sin^2(d)/n_Q^2, and the long arc passes one point focus."""
         p, q = np.array([0.3, 0.1, -0.6]), np.array([-0.2, 0.7, 0.9])
         found = self.trace(field="fisheye", connect=[*p, *q], trials=400, max_length=8)
         n = 2 / (1 + q @ q)
@@ -332,7 +331,7 @@ class Connections(TraceTest):
         np.testing.assert_allclose(found["path/z"], [[0, 2, 4]])
 
     def test_no_curve(self):
-        """A sphere between two points."""
+        """A sphere lies between the two points."""
         found = self.trace(field="homogeneous", connect=[0, 0, -2, 0, 0, 2], max_length=10,
                            stop_sphere=[0, 0, 0, 1], step=0.1, path_points=5)
         self.assertNotIn("found", found)
@@ -345,7 +344,7 @@ class Connections(TraceTest):
         self.assertIn("image point", self.output)
 
     def test_small_obstacles(self):
-        """Surfaces between the steps of a curve stop it too."""
+        """Surfaces between the steps of a curve also stop it."""
         ends = {"connect": [0, 0, -2, 0, 0, 2], "max_length": 100, "trials": 50}
         fibre = {"field": "parabolic", "index": 1.5, "alpha": 1e-3, "step": 0.5}
         for field in ({}, fibre):
@@ -357,7 +356,7 @@ class Connections(TraceTest):
         self.assertEqual(found["trials/left_region"], free["trials/converged"])
 
     def test_any_index(self):
-        """Of the fisheye the curves do not depend on n0; optical paths are proportional to it."""
+        """Curves in the fisheye do not depend on n0; optical paths are proportional to it."""
         ends = {"connect": [0.3, 0.1, -0.6, -0.2, 0.7, 0.9], "max_length": 8, "trials": 100}
         usual = self.trace(field="fisheye", **ends)
         for index in (1e-3, 100):
@@ -376,7 +375,7 @@ class Connections(TraceTest):
 
 class Refused(TraceTest):
     def refuse(self, *words, **keys):
-        """One line that holds the words, status 2, and nothing written."""
+        """Checks one line that contains the words, status 2, and nothing written."""
         before = self.listing()
         done = self.call("trace", status=2, out="bad.h5", **{"max_length": 5, **keys})
         self.assertEqual(done.stdout, "")
@@ -427,7 +426,7 @@ class Refused(TraceTest):
                            ("absent", "no such file")):
             self.refuse("grid", f"{name}.h5", what, field="grid", grid=f"{name}.h5")
         self.refuse("grid is not given", field="grid")
-        self.refuse("ray 0", "outside of the grid", field="grid", grid="good.h5", origin=[0, 0, 2])
+        self.refuse("ray 0", "must lie inside the grid", field="grid", grid="good.h5", origin=[0, 0, 2])
 
     def test_index_not_positive_on_the_way(self):
         self.refuse("ray 0", "index", field="linear", slope=[0, 0, -0.5], ray_count=1)

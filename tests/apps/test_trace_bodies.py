@@ -1,4 +1,4 @@
-"""Rays through bodies and lenses, and their image, against closed forms; what is refused."""
+"""Rays through bodies and lenses, and their image, against closed forms; rejected input."""
 
 import unittest
 
@@ -26,7 +26,7 @@ class BodiesTest(RefusingTest):
 
 class Bodies(BodiesTest):
     def test_ball_lens(self):
-        """Twice refracted, a ray leaves at the distance h from the centre that it came at, turned by
+        """A ray refracted twice leaves at its distance h from the centre, deflected by
         2 (asin h - asin h/n)."""
         found = self.trace(**PARALLEL, ball=[0, 0, 0, 1, *GLASS], origin=[0, 0, -3], beam_radius=0.95,
                            stop_plane=plane(2))
@@ -48,7 +48,7 @@ class Bodies(BodiesTest):
         keys = {"stage_box": [-3, -3, -3, 3, 3, 3], "field": "homogeneous", "sensor": "area", "sensor_at": [0, 0, 3],
                 "sensor_size": [4, 4], "pixels": [1, 1], "point_light": [0, 0, -2.5, 1], "method": "light",
                 "samples": 200_000 if WHOLE else 80_000, "threads": 1}
-        dim = [1.5, 0.5, 0.1, 0]  # it scatters and absorbs
+        dim = [1.5, 0.5, 0.1, 0]  # scattering and absorbing
         totals = []
         for body in ({"ball": [0, 0, 0, 1, *dim]}, {"lens": [0, 0, -1, 1, 1, -1, 2, *dim]}):
             self.call("render", **keys, **body, out="light.h5")
@@ -59,7 +59,7 @@ class Bodies(BodiesTest):
         self.assertLess(lens_error / lens, 0.03)
 
     def test_thick_lens_and_cemented_pair_on_the_axis(self):
-        """Back focal distances by paraxial refraction, n' u' = n u - y (n' - n)/R."""
+        """Back focal distances agree with paraxial refraction, n' u' = n u - y (n' - n)/R."""
         for lenses in ([[0, 0, 0, 1, 6, -4, 0.6, 1.52, 0, 0, 0]],
                        [[0, 0, 0, 1, -6, 4, 0.6, 1.52, 0, 0, 0]],
                        [[0, 0, 0, 1, 6, -4, 0.6, 1.52, 0, 0, 0], [0, 0, 0.6, 1, -4, -40, 0.3, 1.62, 0, 0, 0]]):
@@ -77,7 +77,7 @@ class Bodies(BodiesTest):
                                        rtol=1e-14)
 
     def test_plate(self):
-        """Shifted by d sin(t - t')/cos(t'), and dimmed by Fresnel's reflections and by the medium."""
+        """Rays are shifted by d sin(t - t')/cos(t') and attenuated by Fresnel reflection and the medium."""
         found = self.trace(**PARALLEL, block=[-9, -9, 0, 9, 9, 1, 1.5, 0.2, 0.1, 0], ray_count=1,
                            direction=[np.sin(0.7), 0, np.cos(0.7)], origin=[-1, 0, -1], stop_plane=plane(4))
         inside = np.arcsin(np.sin(0.7) / 1.5)
@@ -88,7 +88,7 @@ class Bodies(BodiesTest):
         np.testing.assert_allclose(found["transmittance"], left, rtol=1e-13)
 
     def test_total_reflection(self):
-        """In a plate a steep ray goes to and fro, and nothing is lost."""
+        """A steep ray is reflected to and fro in a plate without loss."""
         found = self.trace(**PARALLEL, block=[-9, -9, 0, 9, 9, 1, *GLASS], ray_count=1, direction=[1, 0, 1],
                            origin=[0, 0, 0.25], stop_plane=[7, 0, 0, 1, 0, 0])
         np.testing.assert_allclose(self.ends(found), [[7, 0, 0.75]], atol=1e-13)
@@ -96,7 +96,7 @@ class Bodies(BodiesTest):
         np.testing.assert_allclose(found["optical_path"], 1.5 * 7 * np.sqrt(2), rtol=1e-14)
 
     def test_bodies_in_bodies(self):
-        """What lies over a thing of the same index is not seen; a bubble is."""
+        """An inner body of the same index has no effect; a bubble has."""
         keys = {**PARALLEL, "origin": [0, 0.1, -3], "beam_radius": 0.8, "stop_plane": plane(2)}
         plain = self.trace(**keys, ball=[0, 0, 0, 1, *GLASS])
         same = self.trace(**keys, ball=[0, 0, 0, 1, *GLASS, 0.2, 0, 0.1, 0.3, *GLASS])
@@ -106,7 +106,7 @@ class Bodies(BodiesTest):
         self.assertGreater(np.abs(self.ends(hollow) - self.ends(plain)).max(), 0.1)
 
     def test_rod_of_parabolic_index(self):
-        """Within, x = h cos(alpha sigma), sigma = L/beta; at the plane face v_x is kept."""
+        """Inside, x = h cos(alpha sigma), sigma = L/beta; the plane face conserves v_x."""
         found = self.trace(**PARALLEL | {"field": "parabolic"}, index=1.6, alpha=0.5, body_lens=[0, 0, 0, 0.9, 0, 0, 3],
                            origin=[0, 0, -1], beam_radius=0.4, stop_plane=plane(4))
         h = found["start/x"]
@@ -116,7 +116,7 @@ class Bodies(BodiesTest):
         np.testing.assert_allclose(found["exit/x"], h * np.cos(turn) + vx / np.sqrt(1 - vx**2), atol=1e-9)
 
     def test_from_inside_of_a_rod(self):
-        """Through its far face, once."""
+        """A ray from inside crosses the far face once."""
         found = self.trace(field="parabolic", index=1.5, alpha=1e-6, body_lens=[0, 0, 0, 0.9, 0, 0, 3], light="line",
                            ray_count=3, beam_radius=0.2, origin=[0, 0, 1], stop_plane=plane(4), max_length=20)
         np.testing.assert_allclose(found["optical_path"], 2 * 1.5 + 1, rtol=1e-9)
@@ -130,7 +130,7 @@ class Bodies(BodiesTest):
         np.testing.assert_allclose(body["transmittance"], 1, atol=1e-12)
 
     def test_luneburg_in_water_keeps_the_distance_from_the_centre(self):
-        """n r sin(angle) is kept at a sphere as in the field: rays leave at the distance that they came at."""
+        """The sphere and the field conserve n r sin(angle): rays leave at their initial distance."""
         found = self.trace(**PARALLEL | {"field": "luneburg"}, body_sphere=[0, 0, 0, 1], index_around=1.33,
                            origin=[0, 0, -2], beam_radius=0.7, stop_plane=plane(2))
         along = np.stack([found["exit/d" + axis] for axis in "xyz"], axis=-1)
@@ -138,7 +138,7 @@ class Bodies(BodiesTest):
                                    abs(found["start/x"]), atol=1e-9)
 
     def test_field_around_bodies(self):
-        """What is transverse of n times the direction is kept where a ray comes from a guide into a block."""
+        """A ray from a guide into a block keeps the transverse part of n times its direction."""
         keys = {**PARALLEL | {"field": "parabolic"}, "index": 1.5, "alpha": 0.3, "ray_count": 1, "origin": [0.4, 0, 0],
                 "stop_plane": plane(1)}
         found = self.trace(**keys, block=[-1, -1, 0.5, 1, 1, 1, 1.7, 0, 0, 0])
@@ -150,7 +150,7 @@ class Contact(BodiesTest):
     AXIS = {**PARALLEL, "ray_count": 1, "origin": [0.1, 0.2, -1]}
 
     def through(self, *indices):
-        """Transmittance at normal incidence through media one after the other."""
+        """Returns the transmittance at normal incidence through a series of media."""
         return np.prod([1 - ((a - b) / (a + b))**2 for a, b in zip(indices, indices[1:])])
 
     def test_field_body_and_block_share_a_face(self):
@@ -192,7 +192,7 @@ class Contact(BodiesTest):
             np.testing.assert_allclose(found["image/spot_radius"], flat["image/spot_radius"], rtol=1e-7)
 
     def test_a_rod_with_a_round_end(self):
-        """The far half of the sphere of its end does not cut it."""
+        """The far half of the sphere at its end does not cut the rod."""
         for back in (-1, -0.6):
             found = self.trace(**PARALLEL, ray_count=1, origin=[0, 0, -1], lens=[0, 0, 0, 0.5, 0, back, 5, *GLASS],
                                stop_plane=plane(8))
@@ -201,8 +201,8 @@ class Contact(BodiesTest):
 
 class Image(BodiesTest):
     def test_aplanatic_points(self):
-        """From R/n beside a ball's centre all rays seem to come from n R: no spot, and by Fermat no
-        difference of paths."""
+        """Rays from R/n off a ball's centre appear to come from n R: no spot and, by Fermat, no path
+        differences."""
         found = self.trace(field="homogeneous", light="cone", half_angle=1.5, origin=[0, 0, -2 / 3],
                            ball=[0, 0, 0, 1, *GLASS], ray_count=100, stop_sphere=[0, 0, 0, 3], max_length=20,
                            image_plane=plane(-1.4), refocus=True)
@@ -212,18 +212,18 @@ class Image(BodiesTest):
         self.assertLess(abs(found["image/least_path_difference"]).max(), 1e-13)
         self.assertAlmostEqual(float(found["image/best_z"]), -1.5, delta=1e-12)
 
-    def test_path_differences_have_the_slopes_of_the_wave(self):
-        """Rays are normal to the wave: the derivative of the path difference by the direction cosine is
-        how far beside the mean a ray meets the plane."""
+    def test_path_differences_have_the_derivatives_of_the_wave(self):
+        """Rays are normal to the wave: the derivative of the path difference by the direction cosine
+        is the distance from the mean at which a ray meets the plane."""
         found = self.trace(**PARALLEL, lens=[0, 0, 0, 1, 5, 0, 0.5, *GLASS], origin=[0, 0, -1], beam_radius=0.8,
                            ray_count=401, stop_plane=plane(5), image_plane=plane(9))
         off = found["image/x"] - found["image/x"].mean()
         cosine = found["exit/dx"]
-        slope = np.gradient(found["image/path_difference"], cosine)
-        np.testing.assert_allclose(slope[1:-1], -off[1:-1], atol=2e-6)
+        derivative = np.gradient(found["image/path_difference"], cosine)
+        np.testing.assert_allclose(derivative[1:-1], -off[1:-1], atol=2e-6)
 
     def test_refocus(self):
-        """A wave of focus 10: the spot is least there, and elsewhere as wide as the cone."""
+        """A wave of focus 10 has its smallest spot there, and elsewhere one as wide as the cone."""
         keys = {**PARALLEL, "lens": [0, 0, 0, 1, 5, 0, 0.5, *GLASS], "origin": [0, 0, -1], "beam_radius": 0.5,
                 "light": "disk", "ray_count": 200, "stop_plane": plane(5)}
         moved = self.trace(**keys, image_plane=plane(9), refocus=True)
@@ -254,7 +254,7 @@ class Refused(BodiesTest):
     def test_bodies(self):
         for keys, message in (
                 ({"lens": [0, 0, 0, 1, 0.5, 0, 1, *GLASS]}, "radii of curvature must not be below the radius"),
-                ({"lens": [0, 0, 0, 1, 1, -1, 1, *GLASS]}, "faces not meet within it"),
+                ({"lens": [0, 0, 0, 1, 1, -1, 1, *GLASS]}, "faces must not meet within it"),
                 ({"lens": [0, 0, 0, 1, 1, -1, 0, *GLASS]}, "lens, thickness = 0: must be positive"),
                 ({"body_lens": [0, 0, 0, -1, 1, -1, 1]}, "body_lens, radius = -1: must be positive"),
                 ({"lens": [0, 0, 0, 1, 5]}, "lens"),
@@ -277,8 +277,8 @@ class Refused(BodiesTest):
                 ({"image_plane": [0, 0, 1, 0, 0, 0]}, "image_plane, normal = 0 0 0: must not be 0"),
                 ({"image_plane": [0, 0, 1]}, "image_plane"),
                 ({"refocus": True}, "refocus"),
-                ({"image_plane": plane(9), "refocus": True}, "the rays are parallel, and meet nowhere"),
-                ({"image_plane": [0, 0, 9, 1, 0, 0]}, "ray 0 runs along the plane"),
+                ({"image_plane": plane(9), "refocus": True}, "the rays are parallel and have no focus"),
+                ({"image_plane": [0, 0, 9, 1, 0, 0]}, "ray 0 is parallel to the plane"),
                 ({"image_plane": plane(9), "field": "parabolic", "index": 1.5, "alpha": 0.1},
                  "rays end at different indices")):
             self.assert_refused([message], "trace", **self.KEYS | keys)

@@ -60,7 +60,7 @@ class UnitsTest(ProgramTest):
         np.testing.assert_allclose(self.open("sweep.h5")["tilt_q"][()] * 100, np.linspace(0, 2, 5), atol=1e-12)
 
     def test_theory_of_reflection(self):
-        """Its closed form where the slab is endless (Akkermans and Montambaux 2007), and near transport in a thick slab."""
+        """It is that of a semi-infinite slab (Akkermans and Montambaux 2007), close to transport in a thick slab."""
         depth, l, z0 = 1e5, 20, 0.818 * 20
         self.call("covariance", **{**CURVE, "g": 0, "depth": depth, "optical_depth": 5000}, view_angles="pi",
                   tolerance=1e-3, q_depths=[0, 500, 5000, 10000], out="endless.h5")
@@ -73,7 +73,7 @@ class UnitsTest(ProgramTest):
         file = self.open("r.h5")
         found, theory = file["reflected_field_correlation"][()], file["reflection_theory"][()]
         self.assertLess(found[-1], 0.76)
-        np.testing.assert_allclose(theory, found, rtol=0.05)  # as docs/questions.md says
+        np.testing.assert_allclose(theory, found, rtol=0.05)  # as in docs/questions.md
         self.call("covariance", **CURVE, view_angles=0.1, q_depths="0:2:3", out="t.h5")
         self.assertNotIn("reflection_theory", self.open("t.h5"))
 
@@ -86,7 +86,7 @@ CASES = [
     ("covariance", SLAB, {"length_unit": "inch"}, ["length_unit = inch", "must be um"]),
     ("covariance", SLAB, {"length_unit": "0um"}, ["length_unit = 0", "must be positive"]),
     ("covariance", CURVE, {"q_depths": 1, "tilts": 0.1}, ["tilts, q_depths", "exactly one"]),
-    ("covariance", CURVE, {"q_depths": 5000}, ["q_depths = 5000", "past the horizon"]),
+    ("covariance", CURVE, {"q_depths": 5000}, ["q_depths = 5000", "beyond the horizon"]),
 ]
 
 

@@ -1,6 +1,5 @@
-"""Keys that a scene accepts have an effect: for each scene of format_scenes.py and each key that is accepted
-there, one of some other values changes the result. Words restrict it to scenes whose names begin
-with one of them."""
+"""Keys that a scene accepts have an effect: for each scene of format_scenes.py and each key accepted there,
+some other value changes the result. Words restrict it to scenes whose names begin with one of them."""
 
 import json
 import re
@@ -11,7 +10,7 @@ import unittest
 from format_scenes import FILES, RUNS, cost
 from program import PROGRAM, ProgramTest, bits_of, datasets, flags
 
-# A key, or a subcommand or scene and its key.
+# A key, or a subcommand or scene with its key.
 WITHOUT_EFFECT = {
     "neglect_k_shift": "permits what these scenes do not do",
     "placement": "poisson is what points have without it",
@@ -28,7 +27,7 @@ WITHOUT_EFFECT = {
     "fit_plans g": "varied",
     "image resolution": "the points lie far apart",
 }
-UNUSED = re.compile("nothing here has use for it|is a key of|leave it out")
+UNUSED = re.compile("is not used here|is a key of|leave it out")
 MOST_TRIED = 4
 
 
@@ -38,7 +37,7 @@ def texts_of(value):
 
 
 def numbers(row, now):
-    """Numbers near those that the scene has, then others."""
+    """Yields numbers near those of the scene, then others."""
     whole = row["type"] == "integer"
     near = [[number + 1 if whole else 1.3 * number + 0.01 for number in now],
             [number - 1 if whole else 0.7 * number for number in now],
@@ -49,7 +48,7 @@ def numbers(row, now):
 
 
 def candidates(row, now):
-    """Other values of a key, as texts."""
+    """Yields other values of a key, as texts."""
     if row["words"]:
         return [[word] for word in row["words"]]
     if row["type"] == "switch":
@@ -79,7 +78,7 @@ class UsedKeys(ProgramTest):
                               capture_output=True, text=True, timeout=600)
 
     def result(self, subcommand, keys):
-        """None where the run fails."""
+        """Returns the result, or None if the run fails."""
         out = self.folder / ("new.csv" if subcommand == "place" else "new.h5")
         out.unlink(missing_ok=True)
         done = self.try_call(subcommand, {**keys, "out": out})
@@ -90,7 +89,7 @@ class UsedKeys(ProgramTest):
         return {name: bits_of(values) for name, values in datasets(out).items()}
 
     def accepted(self, subcommand, scene, row):
-        """The scene with other values of the key, which the program accepts as another scene."""
+        """Yields the scene with other values of the key that the program accepts as another scene."""
         config = self.try_call(subcommand, scene, "--print-config").stdout
         default = row["default"]
         now = texts_of(scene[row["name"]]) if row["name"] in scene else default
@@ -104,7 +103,7 @@ class UsedKeys(ProgramTest):
                 return
 
     def has_effect(self, subcommand, scene, before, row):
-        """Whether it has; a refusal is one."""
+        """Returns whether the key has an effect; a rejection is one."""
         tried = 0
         for changed in self.accepted(subcommand, scene, row):
             if self.result(subcommand, changed) != before:

@@ -66,12 +66,12 @@ class Refused(RefusingTest):
                 ({**two, "map": [0, 1, 0, 1]}, ["map"]),
                 ({**two, "index_table": "none.csv"}, ["none.csv", "no such file"]),
                 ({"wavelengths": [0.9, 1.3], "index_table": "n.csv"}, ["n.csv", "1.3"]),
-                ({**two, "index_table": "falls.csv"}, ["falls.csv", "rise"]),
+                ({**two, "index_table": "falls.csv"}, ["falls.csv", "increasing"]),
                 ({**two, "index_table": "amplifies.csv"}, ["amplifies.csv", "1.2"]),
                 ({**two, "index_table": "wide.csv"}, ["wide.csv", "positive"]),
                 ({"index_table": "n.csv"}, ["index_table", "wavelengths"]),
                 ({**two, "index": 1.3, "index_table": "n.csv"}, ["index_table, index"]),
-                ({**two, "scatterer": "soft", "index_table": "n.csv"}, ["tm and te"])):
+                ({**two, "scatterer": "soft", "index_table": "n.csv"}, ["tm or te"])):
             self.assert_refused_both_ways("solve", DISKS, keys, words)
 
 

@@ -1,5 +1,5 @@
-"""Tortures the program at random and tells what must not happen: deaths, hangs, results lost,
-damaged or other than those of an undisturbed run, litter, refusals of more than one line.
+"""Stresses the program at random and reports failures: crashes, hangs, results that are lost, damaged or differ
+from those of an undisturbed run, leftover files, rejections of more than one line.
 
     torture.py [--runs N] [--seed S] [--seconds T]   exit status 1 if anything was found
     torture.py --kind interrupted [...]              runs of that kind alone
@@ -19,7 +19,7 @@ from torture_library import Library
 
 
 def torture(library, folder, seed, number, kinds):
-    """Run `number` of this seed, in that folder."""
+    """Does run `number` of this seed, in that folder."""
     case = Case(library, folder, seed, number)
     kind, = case.random.choices(list(kinds), weights=kinds.values())
     kind(case)
@@ -30,12 +30,12 @@ def torture(library, folder, seed, number, kinds):
 
 
 def shown(command):
-    """--only has all of it."""
+    """Returns the command without its middle if it is long; --only prints all of it."""
     return command if len(command) < 2000 else f"{command[:1000]} ... {command[-200:]}"
 
 
 def torture_all(library, seed, runs, seconds, kinds):
-    """Tells whether anything was found."""
+    """Returns whether there was any failure."""
     began, found, number = time.monotonic(), 0, 0
     while number < runs and time.monotonic() - began < seconds:
         with tempfile.TemporaryDirectory() as folder:

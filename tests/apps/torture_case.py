@@ -1,4 +1,4 @@
-"""A run in a folder of its own, of one process or several, and all that was found wrong."""
+"""A run of one or several processes in its own folder, with the failures found."""
 
 import concurrent.futures
 import json
@@ -17,11 +17,11 @@ from torture_run import Hindrance, run
 from torture_scenes import GOES_ON
 
 DOCUMENTED = (0, 2, 3, 4)
-SEARCHES = ("search", "state", "evaluations")  # what fit, design and optimise go on from
+SEARCHES = ("search", "state", "evaluations")  # files that fit, design and optimise resume
 
 
 def scene_file(keys, quoted):
-    """As TOML; quoted: numbers in quotes as words are."""
+    """Returns keys as TOML; quoted: numbers in quotes like words."""
     def show(value):
         if isinstance(value, bool):
             return str(value).lower()
@@ -54,12 +54,12 @@ class Case:
         shutil.copytree(library.files, self.folder, dirs_exist_ok=True)
 
     def put_older_result(self, subcommand):
-        """Where the result goes, half the time."""
+        """Puts an older result at the output path, in half of the cases."""
         if subcommand != "place" and self.random.random() < 0.5:
             shutil.copy(self.folder / "older.h5", self.folder / "x.h5")
 
     def going_on(self, subcommand, keys):
-        """With --resume, if there is anything to go on with."""
+        """Returns keys with --resume, if there is anything to resume."""
         points = self.folder / "x.h5.shards"
         out = self.folder / "x.h5"
         begun = list(points.glob("*.points")) if points.is_dir() else \
@@ -74,7 +74,7 @@ class Case:
         return [subcommand, *flags(keys), *self.own_flags(subcommand)]
 
     def in_scene_file(self, subcommand, keys):
-        """But for a second file that it writes, whose name only a flag may give."""
+        """Returns words for a scene file; only a flag may name the second output of place."""
         by_flag = {"structure": keys.get("structure")} if subcommand == "place" else {}
         quote_numbers = self.random.random() < 0.3
         in_file = {key: value for key, value in keys.items() if key not in by_flag}
@@ -85,13 +85,13 @@ class Case:
                 *self.own_flags(subcommand)]
 
     def words(self, subcommand, keys):
-        """Either way; too many words for a command line go in a file."""
+        """Returns flags or a scene file; too many words for a command line go into a file."""
         as_flags = sum(map(len, flags(keys))) < 100_000 and self.random.random() < 0.6
         return (self.as_flags if as_flags else self.in_scene_file)(subcommand, keys)
 
     def run(self, subcommand, keys, hindrance=Hindrance(), statuses=DOCUMENTED, whole=None,
             words=None):
-        """One process and what must hold after it; whole: its datasets where it ends well."""
+        """Runs one process and checks it; whole: its datasets if it succeeds."""
         words = words or self.words(subcommand, keys)
         before = snapshot(self.folder)
         ended = run(self.folder, words, hindrance)
@@ -117,13 +117,13 @@ class Case:
                 (f"{out}.shards/", ".", *(f"{out}.{kind}" for kind in SEARCHES)))))
 
     def may_replace(self, out, keys, ended):
-        """Whether what was at --out may be gone."""
+        """Returns whether the older file at --out may be replaced."""
         path = self.folder / out
         cut_after_its_end = ended.was_cut and path.exists() and is_finished(path)
         return ended.status in FINISHED or "resume" in keys or cut_after_its_end
 
     def check_result(self, subcommand, keys, ended, whole):
-        """A sweep of which no point was finished in time has none, nor has one share of it."""
+        """Checks the result; a sweep without a finished point, or one share, has none."""
         path = self.folder / out_of(subcommand)
         none_yet = subcommand == "sweep" and ended.status == 3 and not path.exists()
         if ended.status not in FINISHED or none_yet or "shard" in keys:
@@ -134,7 +134,7 @@ class Case:
         yield from complaints
 
     def run_both(self, subcommand, keys, hindrances, delays, outs=("x.h5", "x.h5")):
-        """Two processes with one --out, or two names of one file, by different seeds."""
+        """Runs two processes with one --out, or two names of one file, with different seeds."""
         words = [[subcommand, *flags({**each, **own_keys(subcommand, self.random.choice([1, 2])), "out": out})]
                  for each, out in zip(keys, outs)]
         wholes = [self.library.whole(subcommand, each) for each in keys]
@@ -154,7 +154,7 @@ class Case:
         return run(self.folder, words, hindrance)
 
     def check_after_both(self, both, wholes, before):
-        """Of those that came to their end one is there; if none did, what was there before."""
+        """Checks that the result of a process that succeeded is there, or else the older file."""
         after = snapshot(self.folder)
         was_cut = any(ended.was_cut for ended in both)
         yield from (f"left {name}" for name in after.keys() - before.keys()

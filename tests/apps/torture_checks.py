@@ -1,4 +1,4 @@
-"""What must hold after a process has ended, whatever it met. Each check yields complaints."""
+"""Checks after the end of a process, whatever happened to it. Each check yields complaints."""
 
 import re
 
@@ -8,9 +8,9 @@ import numpy as np
 import program
 from torture_run import MOST_S, OBEYS_S
 
-MOST_LETTERS = 500  # of the line that refuses
+MOST_LETTERS = 500  # of the line of a rejection
 FINISHED = (0, 3)
-# Times, and counts of this run alone, not of the one that it resumes (docs/format.md).
+# Times, and counts of this run alone, not of the resumed one (docs/format.md).
 COST = ("wall_s", "cpu_s", "trace_cpu_s", "state", "trials", "flights", "lost_flights", "joins", "lost_values")
 
 
@@ -19,13 +19,13 @@ def datasets(path):
 
 
 def snapshot(folder):
-    """{path in the folder: its bytes} of all files, those in folders within too."""
+    """Returns {path in the folder: its bytes} of all files, including subfolders."""
     return {str(path.relative_to(folder)): path.read_bytes()
             for path in sorted(folder.rglob("*")) if path.is_file() and not path.is_symlink()}
 
 
 def values_of(file):
-    """(where, numbers) of all datasets and attributes of floating point."""
+    """Yields (name, numbers) of all floating-point datasets and attributes."""
     items = {"/": file}
     file.visititems(lambda name, item: items.update({name: item}))
     for name, item in items.items():
@@ -37,7 +37,7 @@ def values_of(file):
 
 
 def check_result(path):
-    """It is there, can be read, and all numbers in it are finite."""
+    """Checks that the result exists, can be read, and contains only finite numbers."""
     if not path.exists():
         yield f"no {path.name}"
     elif path.suffix == ".csv":
@@ -55,7 +55,7 @@ def check_result(path):
 
 
 def check_same_data(path, reference):
-    """Bit for bit those of datasets(), and the same ones."""
+    """Checks that it has the same datasets, bit for bit."""
     if path.suffix == ".csv":
         return
     found = datasets(path)
@@ -67,7 +67,7 @@ def check_same_data(path, reference):
 
 
 def check_end(ended, statuses):
-    """It ended in time, with a documented status or by the signal that it was sent."""
+    """Checks that the process ended in time, with a documented status or by the signal sent."""
     allowed = {*statuses, *((75, 130, 0, 3) if ended.sent else ()),
                *(-number for number in ended.sent if ended.was_cut)}
     if ended.status is None:
@@ -80,11 +80,12 @@ def check_end(ended, statuses):
 
 
 def check_refusal(ended, heard):
-    """One short line beside notes and warnings, and beside work that is told of before memory lacks; heard: stderr was whole."""
+    """Checks that a rejection is one short line, apart from notes, warnings and output before memory runs out.
+    heard: stderr was complete."""
     if ended.status != 2 or not heard:
         return
     lines = [line for line in ended.stderr.splitlines() if not line.startswith(("note: ", "warning: "))]
-    if lines and "more memory than there is" in lines[-1]:
+    if lines and "more memory than is available" in lines[-1]:
         del lines[:-1]
     if len(lines) != 1 or not lines[0].startswith("flatspeckle: "):
         yield f"{len(lines)} lines for a refusal"
@@ -93,8 +94,8 @@ def check_refusal(ended, heard):
 
 
 def check_new_files(before, after, out, ended, outputs):
-    """Nothing beside the result but what it stood in the place of, the points of a sweep, and what
-    a search has done that was not finished."""
+    """Checks that the only new files are the result, backups of what it replaced, the points of a sweep, and
+    the state of an unfinished search."""
     for name in after.keys() - before.keys():
         own = name in outputs or re.fullmatch(re.escape(out) + r"\.aside-\d+", name)
         point = name.startswith(f"{out}.shards/") and "/." not in name
@@ -106,13 +107,13 @@ def check_new_files(before, after, out, ended, outputs):
 
 
 def is_kept(name, data, after):
-    """In its place, or set aside."""
+    """Returns whether the file is in place or in a backup."""
     return any(after[path] == data for path in after
                if path == name or re.fullmatch(re.escape(name) + r"\.aside-\d+", path))
 
 
 def check_old_files(before, after, replaced):
-    """replaced: what it may have put others in the place of."""
+    """Checks that old files are kept, except those that may be replaced."""
     for name, data in before.items():
         if not replaced(name) and not is_kept(name, data, after):
             yield f"{name} is {'changed' if name in after else 'lost'}"

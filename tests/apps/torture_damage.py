@@ -1,4 +1,4 @@
-"""How scenes are made extreme, and files damaged."""
+"""Makes scenes extreme and damages files."""
 
 import re
 
@@ -18,7 +18,7 @@ FILES = ["absent.csv", ".", "/dev/null", "older.h5", "sensors.csv", "rays.csv", 
 
 
 def extreme_value(row, random):
-    """A word or a list of words for a key."""
+    """Returns a word or a list of words for a key."""
     usual = {"number": NUMBERS, "integer": INTEGERS, "text": (row["words"] or []) + FILES}
     pool = usual.get(row["type"], WORDS)
     if row["list"]:
@@ -30,7 +30,7 @@ def extreme_value(row, random):
 
 
 def scaled(value, random):
-    """A number, or one of a list, times a power of ten; anything else as it is."""
+    """Returns a number, or one of a list, times a power of ten; anything else unchanged."""
     if isinstance(value, list) and value:
         at = random.randrange(len(value))
         return [*value[:at], scaled(value[at], random), *value[at + 1:]]
@@ -42,7 +42,7 @@ def scaled(value, random):
 
 
 def mutated(keys, rows, random):
-    """The keys with one to three of them scaled, made extreme, added or left out."""
+    """Returns the keys with one to three of them scaled, made extreme, added or left out."""
     keys = dict(keys)
     rows = [row for row in rows if row["name"] not in ("out", "threads", "seed")]
     for row in random.choices(rows, k=random.choice([1, 1, 2, 3])):
@@ -59,7 +59,7 @@ def mutated(keys, rows, random):
 
 
 def damaged(data, random):
-    """Bytes with some of them flipped, cut off, doubled or added."""
+    """Returns bytes with some of them flipped, cut off, doubled or added."""
     kind = random.choice(["flip", "flip", "cut", "empty", "double", "add", "zero"])
     at = random.randrange(len(data)) if data else 0
     if kind == "flip" and data:
@@ -73,14 +73,14 @@ def damaged(data, random):
 
 
 def other_cell(text, random):
-    """One number of a table is another one, or a word."""
+    """Returns a table with one number replaced by another or by a word."""
     cells = re.split(r"([,\n])", text)
     cells[2 * random.randrange(len(cells) // 2)] = random.choice(NUMBERS + WORDS)
     return "".join(cells)
 
 
 def change_a_number(path, random):
-    """In a dataset or attribute of an HDF5 file, which stays well formed."""
+    """Changes a dataset or attribute of an HDF5 file, which stays well formed."""
     with h5py.File(path, "r+") as file:
         items = [file]
         file.visititems(lambda _, item: items.append(item))
@@ -102,7 +102,7 @@ def damage_bytes(path, random):
 
 
 def damage(path, random):
-    """In its bytes, or in one number of it."""
+    """Damages bytes or one number of a file."""
     if random.random() < 0.5:
         damage_bytes(path, random)
     elif path.suffix == ".csv":

@@ -1,4 +1,4 @@
-"""The kinds of runs of torture.py: each does one to a Case."""
+"""The kinds of runs of torture.py, each a function of a Case."""
 
 import os
 import signal
@@ -13,7 +13,7 @@ ENDS = (signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL)
 
 
 def mutated_scene(case):
-    """Values out of all bounds; it may go on for ever, but ends when it is told to."""
+    """Runs values out of all bounds, which may take forever but must end on a signal."""
     subcommand, keys = case.random.choice(SCENES)
     case.put_older_result(subcommand)
     case.run(subcommand, mutated(keys, case.library.rows[subcommand], case.random),
@@ -21,7 +21,7 @@ def mutated_scene(case):
 
 
 def files_of(case, keys):
-    """Paths of what a scene reads."""
+    """Returns the paths of files that a scene reads."""
     found = [case.folder / value for value in keys.values() if isinstance(value, str)]
     folders = [path for path in found if path.is_dir()]
     return [path for path in found if path.is_file()] + \
@@ -29,7 +29,7 @@ def files_of(case, keys):
 
 
 def damaged_input(case):
-    """It may be another scene by then, so that the run takes long."""
+    """Damages input; it may become another scene, so that the run takes long."""
     subcommand, keys = case.random.choice([scene for scene in SCENES if files_of(case, scene[1])])
     case.put_older_result(subcommand)
     damage(case.random.choice(files_of(case, keys)), case.random)
@@ -45,7 +45,7 @@ def damaged_scene_file(case):
 
 
 def damaged_result(case):
-    """Of an older run at --out, which is to be resumed or replaced."""
+    """Damages the result of an older run at --out, which is to be resumed or replaced."""
     source, keys = case.random.choice([("older.h5", OLDER), ("stopped.h5", STOPPED)])
     (case.folder / source).rename(case.folder / "x.h5")
     damage(case.folder / "x.h5", case.random)
@@ -53,7 +53,7 @@ def damaged_result(case):
 
 
 def damaged_points(case):
-    """Of a sweep that goes on: they are made again."""
+    """Damages points of a sweep that is resumed: they are made again."""
     points = case.folder / "x.h5.shards"
     (case.folder / "points.h5.shards").rename(points)
     damage_bytes(points / "share-0-of-1.points", case.random)
@@ -62,7 +62,7 @@ def damaged_points(case):
 
 
 def interrupting_signals(case, duration):
-    """One of the ends at a random moment, or SIGTERM twice."""
+    """Returns one of the signals at a random moment, or SIGTERM twice."""
     moment = case.random.uniform(0, 1.2 * duration)
     if case.random.random() < 0.2:
         between = case.random.choice([0, case.random.uniform(0, 0.05)])
@@ -71,7 +71,7 @@ def interrupting_signals(case, duration):
 
 
 def interrupted(case):
-    """One to four times at random, then to its end: as if nothing had been."""
+    """Interrupts one to four times at random, then runs to the end: the result is undisturbed."""
     subcommand, keys = case.random.choice(LONG)
     case.put_older_result(subcommand)
     whole = case.library.whole(subcommand, keys)
@@ -90,7 +90,7 @@ THREADS = ["0", "-1", "1000", "1,2,3"] + ([] if LLVM_OPENMP else ["abc", ""])
 
 
 def limited(case):
-    """In the size of files, in open files, in memory."""
+    """Limits the size of files, open files or memory."""
     subcommand, keys = case.random.choice(SCENES)
     case.put_older_result(subcommand)
     limit = case.random.choice(
@@ -103,7 +103,7 @@ def limited(case):
 
 
 def short_of_time(case):
-    """A second of processor time, soft or hard."""
+    """Limits processor time to a second, soft or hard."""
     subcommand, keys = case.random.choice([scene for scene in LONG if "samples" in scene[1]])
     case.put_older_result(subcommand)
     case.run(subcommand, {**keys, "samples": 100 * keys["samples"]},
@@ -112,7 +112,7 @@ def short_of_time(case):
 
 
 def closed_folder(case):
-    """Nothing can be written there, but by the superuser."""
+    """Forbids writing to the folder, except by the superuser."""
     subcommand, keys = case.random.choice(SCENES)
     words = case.as_flags(subcommand, keys)
     case.folder.chmod(0o555)
@@ -121,7 +121,7 @@ def closed_folder(case):
 
 
 def bad_streams(case):
-    """Closed, full, or a pipe whose reader goes: the result is there nevertheless."""
+    """Closes streams, fills them, or uses a pipe whose reader ends: the result is there nevertheless."""
     subcommand, keys = case.random.choice(SCENES)
     case.put_older_result(subcommand)
     hindrance = Hindrance(redirections=case.random.choice(
@@ -132,7 +132,7 @@ def bad_streams(case):
     case.run(subcommand, keys, hindrance, statuses=(0,), whole=case.library.whole(subcommand, keys))
 
 
-# Of the kernel of BLAS, on which last bits depend, and of sanitizers.
+# Variables of the BLAS kernel, on which last bits depend, and of sanitizers.
 KEPT = [f"{name}={value}" for name, value in os.environ.items()
         if name.startswith(("OPENBLAS_CORETYPE", "ASAN_", "TSAN_", "UBSAN_", "LSAN_"))]
 ENVIRONMENTS = [
@@ -150,7 +150,7 @@ ENVIRONMENTS = [
 
 
 def odd_environment(case):
-    """Changes no bit."""
+    """Sets odd environment variables, which must not change a bit."""
     subcommand, keys = case.random.choice(SCENES + LONG)
     case.put_older_result(subcommand)
     case.run(subcommand, keys, Hindrance(environment=case.random.choice(ENVIRONMENTS)),
@@ -158,7 +158,7 @@ def odd_environment(case):
 
 
 def two_owners(case):
-    """Of one --out, by different seeds; the second is refused, or comes after the first."""
+    """Runs two processes with one --out and different seeds; the second is rejected or follows the first."""
     subcommand, keys = case.random.choice(
         [scene for scene in LONG if scene[0] in RESUMABLE and "of" not in scene[1]])  # some take no seed
     case.put_older_result(subcommand)
@@ -166,8 +166,8 @@ def two_owners(case):
 
 
 def linked_owners(case):
-    """The same of a result and a link to it, which may lead nowhere yet. The points of sweeps stand
-    beside the name that is given."""
+    """Runs two processes on a result and a link to it, which may be dangling. The points of sweeps are next
+    to the given name."""
     subcommand, keys = case.random.choice(
         [scene for scene in LONG if scene[0] in RESUMABLE and scene[0] != "sweep"])
     if case.random.random() < 0.5:
@@ -193,13 +193,13 @@ PRINTING = (["keys", "json"], ["keys", "markdown"], ["new", "lens"], ["explain",
 
 
 def full_output(case):
-    """What only prints fails where its output is lost."""
+    """Checks that subcommands that only print fail if their output is lost."""
     words = case.random.choice(PRINTING)
     case.run(words[0], {}, Hindrance(redirections=">/dev/full"), statuses=(1,), words=words)
 
 
 def long_number(case):
-    """A number of very many digits is read or refused at once."""
+    """Checks that a number of very many digits is read or rejected at once."""
     subcommand, keys = case.random.choice(SCENES)
     names = [name for name, value in keys.items()
              if isinstance(value, (int, float)) and not isinstance(value, bool)]
@@ -212,7 +212,7 @@ def long_number(case):
     case.run(subcommand, {**keys, case.random.choice(names): value}, Hindrance(patience_s=PATIENCE_S))
 
 
-# How often each is drawn.
+# Relative frequencies of the kinds.
 KINDS = {mutated_scene: 35, damaged_input: 10, damaged_scene_file: 5, damaged_result: 4,
          damaged_points: 2, interrupted: 12, limited: 8, short_of_time: 1, closed_folder: 1,
          bad_streams: 7, odd_environment: 8, two_owners: 7, linked_owners: 4, full_output: 1,

@@ -1,4 +1,4 @@
-"""What all runs of torture.py share: files to copy, the keys of the program, results of undisturbed
+"""Shared by all runs of torture.py: files to copy, the keys of the program, results of undisturbed
 runs."""
 
 import shutil
@@ -15,7 +15,7 @@ def out_of(subcommand):
 
 
 def own_keys(subcommand, threads=1):
-    """Those that a scene is completed by."""
+    """Returns the keys that complete a scene."""
     alone = subcommand in ("place", "merge")
     return {"out": out_of(subcommand), **({} if alone else {"threads": threads})}
 
@@ -30,7 +30,7 @@ class Library:
         self._undisturbed = {}
 
     def whole(self, subcommand, keys):
-        """The datasets of a scene, of one thread."""
+        """Returns the datasets of a scene, by one thread."""
         return self.undisturbed(subcommand, keys)[0]
 
     def duration(self, subcommand, keys):

@@ -1,4 +1,4 @@
-"""One process of the program, hindered by limits, environment, streams and signals, and how it
+"""Runs one process of the program under limits, environment, streams and signals, and returns how it
 ended."""
 
 import contextlib
@@ -14,24 +14,24 @@ from program import PROGRAM, SLOWNESS, catches
 
 MOST_S = 20 * SLOWNESS  # for scenes of hundredths of a second
 OBEYS_S = 2 * SLOWNESS
-# Keeps the machine; a program with sanitizers asks for more memory than there is.
+# Protects the machine; a program with sanitizers reserves more memory than there is.
 GUARD = ("--fsize=1000000000", "--core=0") + (("--as=8000000000",) if SLOWNESS == 1 else ())
 
 
 @dataclasses.dataclass(frozen=True)
 class Hindrance:
-    """What a process meets; nothing of it by default."""
+    """Obstacles to a process; none by default."""
     limits: tuple = ()  # options of prlimit
     environment: tuple = ()  # words of env
-    redirections: str = ""  # of the shell
-    reader_goes_s: float | None = None  # stdout and stderr are a pipe that is closed then
+    redirections: str = ""  # shell redirections
+    reader_goes_s: float | None = None  # time at which the pipe of stdout and stderr is closed
     signals: tuple = ()  # (seconds since it could catch one, or since the last one, number)
-    patience_s: float | None = None  # then it is told to end; without, it must end by itself
+    patience_s: float | None = None  # time after which it is stopped; None: it must end by itself
 
 
 @dataclasses.dataclass(frozen=True)
 class Ended:
-    status: int | None  # None: it did not, and was killed
+    status: int | None  # None: it did not end, and was killed
     stderr: str
     sent: tuple  # numbers of signals
     obeyed_s: float  # from the first signal to the end
@@ -43,7 +43,7 @@ class Ended:
 
     @property
     def was_cut(self):
-        """It had no time to tidy up."""
+        """Returns whether it had no time to clean up."""
         return self.was_killed or (len(self.sent) > 1 and self.status in (-self.sent[-1], 130))
 
 
@@ -67,7 +67,7 @@ def wait_until_it_catches(process, number):
 
 
 def send_signals(process, hindrance):
-    """[(number, time)] of those that it lived to get."""
+    """Sends signals; returns [(number, time)] of those sent before its end."""
     sent = []
     for delay, number in hindrance.signals:
         if not sent and number != signal.SIGKILL:
@@ -83,7 +83,7 @@ def send_signals(process, hindrance):
 
 
 def accompany(process, hindrance):
-    """Until its end: (status, numbers of the signals sent, seconds from the first of them)."""
+    """Follows it to its end; returns (status, numbers of the signals sent, seconds since the first)."""
     try:
         sent = send_signals(process, hindrance)
         status = process.returncode if ends_within(process, MOST_S) else None

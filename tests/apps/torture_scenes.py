@@ -127,11 +127,11 @@ OLDER = {**BOX, "samples": 4000}
 STOPPED = {**OLDER, "target_error": 1e-9}
 POINTS = {**GRID, "samples": 2000}
 RESUMABLE = ("covariance", "flux", "validate", "sweep", "render")
-GOES_ON = RESUMABLE + ("optimise", "design", "fit")  # from a file of its own beside the result
+GOES_ON = RESUMABLE + ("optimise", "design", "fit")  # resumed from a separate file next to the result
 
 
 def write_files(folder):
-    """What the scenes read: older.h5 is a finished result, stopped.h5 one that can be resumed,
+    """Writes the files that the scenes read: older.h5 is a finished result, stopped.h5 one that can be resumed,
     points.h5.shards holds the points of a sweep."""
     (folder / "sensors.csv").write_text("x,z\n0,14\n1,14\n-3,-2\n")
     (folder / "curve.csv").write_text("tilt,field_correlation,error\n0.002,0.8,0.05\n0.004,0.6,0.05\n")
@@ -160,7 +160,7 @@ def write_files(folder):
 
 
 def rows_of_keys():
-    """{subcommand: [row of a key]} as the program tells them."""
+    """Returns {subcommand: [entry of a key]} as printed by the program."""
     told = subprocess.run([PROGRAM, "keys", "json"], check=True, capture_output=True)
     subcommands = json.loads(told.stdout)["subcommands"]
     return {name: one["keys"] for name, one in subcommands.items()}

@@ -7,14 +7,15 @@
 
 namespace flatspeckle::bench::tests {
 
-/// The quick or the slow rows of the stability table; of the quick ones every other by day.
+/// Checks the quick or the slow rows of the stability table. By day only every second quick row is
+/// checked.
 inline void check_extremes(bool slow) {
   int rows = 0;
   for (const ExtremeCase& extreme : extreme_cases()) {
     if (extreme.slow != slow) continue;
     if (++rows % 2 == 0 && !flatspeckle::tests::is_night) continue;
     const Finding finding = examine(extreme);
-    CAPTURE(extreme.room);
+    CAPTURE(extreme.module_name);
     CAPTURE(extreme.name);
     CAPTURE(extreme.invariant);
     CAPTURE(finding.figure);

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::uint64_t stream = 2001;
 
-/// Means of numbers drawn by `draw`, about 0, against a reference of 1 in 16 entries.
+/// Returns a method that estimates 16 entries, each the mean of 1 + offset + draw(random). The mean
+/// of `draw` is 0, so the reference is 1.
 template <class Draw>
 ErrorMethod toy(Draw draw, double offset = 0) {
   constexpr std::size_t entries = 16;
@@ -36,7 +37,8 @@ double uniform(RandomStream& random) {
   return std::sqrt(3.0) * (2 * random.uniform() - 1);  // variance 1
 }
 
-/// Density 0.4 / |x|^1.8 beyond 1: no variance; the error of n of them grows as n^(1/0.8 - 1).
+/// Samples the density 0.4 / |x|^1.8 for |x| > 1, which has infinite variance. The error of the
+/// mean of n samples grows as n^(1/0.8 - 1).
 double heavy(RandomStream& random) {
   const double sign = random.uniform() < 0.5 ? -1 : 1;
   return sign * std::pow(random.uniform(), -1 / 0.8);
@@ -48,14 +50,14 @@ ErrorReference ones(double error = 0) {
 
 }  // namespace
 
-TEST_CASE("fit_power finds a power law, and its error from the scatter") {
+TEST_CASE("fit_power: exponent and its error agree with closed forms") {
   const std::vector<double> x{1, 2, 4, 8}, y{3, 12, 48, 192};
   const PowerFit exact = fit_power(x, y);
   CHECK(exact.exponent == doctest::Approx(2));
   CHECK(exact.exponent_error < 1e-12);
   const std::vector<double> weight{1, 2, 3, 4};
   CHECK(fit_power(x, y, weight).amplitude == doctest::Approx(3));
-  // one point off by e^d: slope and scatter by hand, x = 0, 1, 2, 3 in log 2
+  // one point is off by a factor e^d; slope and scatter are known in closed form
   const double d = 0.1;
   const std::vector<double> off{3, 12, 48, 192 * std::exp(d)};
   const PowerFit fitted = fit_power(x, off);
@@ -64,7 +66,7 @@ TEST_CASE("fit_power finds a power law, and its error from the scatter") {
         doctest::Approx(std::sqrt((0.75 - 0.45) * d * d / 2 / 5) / std::numbers::ln2));
 }
 
-TEST_CASE("measure_error finds -1/2 and the efficiency of independent numbers") {
+TEST_CASE("measure_error: independent samples have slope -1/2 and the expected efficiency") {
   const ErrorCurve curve = measure_error(toy(uniform), ones(), 0.2);
   CHECK(curve.slope_error > 0);
   CHECK(curve.slope_error < 0.03);
@@ -76,23 +78,25 @@ TEST_CASE("measure_error finds -1/2 and the efficiency of independent numbers") 
         doctest::Approx(1 / (last.error * last.error * last.cpu_s)).epsilon(0.4));
 }
 
-TEST_CASE("measure_error sees a bias and takes off what the reference is off by") {
+TEST_CASE(
+    "measure_error: a bias flattens the slope, and the error of the reference is subtracted") {
   constexpr double offset = 0.05;
   const ErrorCurve biased = measure_error(toy(uniform, offset), ones(), 0.2);
   CHECK(biased.slope > -0.45);
   CHECK(biased.points.back().error == doctest::Approx(offset).epsilon(0.3));
   const ErrorCurve mended = measure_error(toy(uniform, offset), ones(offset), 0.2);
   CHECK(mended.slope < -0.47);
-  CHECK(mended.slope_error > biased.slope_error);  // the reference's part
+  CHECK(mended.slope_error > biased.slope_error);  // includes the error of the reference
 }
 
-TEST_CASE("measure_error sees that there is no finite variance") {
+TEST_CASE("measure_error: infinite variance changes the slope or its error") {
   const ErrorCurve curve = measure_error(toy(heavy), ones(), 0.2);
-  // it depends on when the largest number of all comes: too shallow, or the runs do not agree
+  // the result depends on when the largest sample occurs: either the slope is too shallow or its
+  // error is large
   CHECK(std::max(curve.slope + 0.5, curve.slope_error) > 0.1);
 }
 
-TEST_CASE("measure_cost finds the exponent of a loop in a loop") {
+TEST_CASE("measure_cost: a nested loop has exponent 2") {
   const Scaling scaling{"loops", "n", 64, 1024, 2, [](double size) {
                           return [n = static_cast<int>(size), sum = std::make_shared<double>()] {
                             for (int i = 0; i < n; ++i)

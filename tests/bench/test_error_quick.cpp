@@ -1,4 +1,4 @@
-// Every curve of `flatspeckle bench error` in a moment: whether they have the right shape.
+// Measures every curve of `flatspeckle bench error` briefly and checks that it has the right shape.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -49,14 +49,14 @@ TEST_CASE("nightly: bench_error_quick: error curves") {
     CHECK(is_rising(samples));
     if (curve.is_monte_carlo)
       CHECK(is_rising(times));
-    else  // iterations, of which more samples may need fewer
+    else  // with more samples, fewer iterations may suffice
       CHECK(times.back() > times.front());
     CHECK(std::isfinite(curve.slope_error));
     CHECK(std::isfinite(curve.efficiency));
     CHECK(curve.efficiency > 0);
     if (curve.is_monte_carlo) {
       CHECK(std::abs(curve.slope + 0.5) < 4 * curve.slope_error);
-      CHECK(curve.slope_error < 0.5 / 4);  // a curve that does not fall is seen
+      CHECK(curve.slope_error < 0.5 / 4);  // small enough to detect a curve that does not fall
     }
   }
 }

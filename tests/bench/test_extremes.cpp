@@ -8,7 +8,7 @@ namespace flatspeckle::bench::test_extremes {
 namespace {
 
 ExtremeCase row(std::function<Finding()> run, std::string must_say = {}) {
-  return {"room", "name", "invariant", std::move(must_say), std::move(run)};
+  return {"module", "name", "invariant", std::move(must_say), std::move(run)};
 }
 bool good(const ExtremeCase& extreme) {
   return passes(extreme, examine(extreme));
@@ -19,11 +19,12 @@ Finding refused() {
 
 }  // namespace
 
-TEST_CASE("Extreme cases are right, or refused with a clear error") {
+TEST_CASE(
+    "extreme cases: results are within limits, or input is rejected with the required message") {
   tests::check_extremes(false);
 }
 
-TEST_CASE("A row fails by its figure, by NaN, by a refusal that nobody asked for or another one") {
+TEST_CASE("stability rows: a large figure, NaN, an unexpected or a different error fails") {
   CHECK(good(row([] { return Finding{1, 1}; })));
   CHECK(!good(row([] { return Finding{1.1, 1}; })));
   CHECK(!good(row([] { return Finding{std::numeric_limits<double>::quiet_NaN(), 1}; })));
@@ -33,7 +34,9 @@ TEST_CASE("A row fails by its figure, by NaN, by a refusal that nobody asked for
   CHECK(!good(row([] { return Finding{0, 1}; }, "width")));
 }
 
-TEST_CASE("nightly: Extreme cases that take long are right, or refused with a clear error") {
+TEST_CASE(
+    "nightly: slow extreme cases: results are within limits, or input is rejected with the "
+    "required message") {
   tests::check_extremes(true);
 }
 

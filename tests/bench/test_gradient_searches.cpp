@@ -9,11 +9,11 @@ namespace flatspeckle::bench::test_gradient_searches {
 
 using namespace grin::design;
 
-TEST_CASE("searches by the gradient alone: rays of a radial lens meet as least squares has them") {
+TEST_CASE("gradient searches: radial lens agrees with least squares") {
   DesignValues values;
   values.form.design = "radial";
   values.form.coefficients = 4;
-  std::get<FocusValues>(values.aim.kinds) = {.directions = 1, .rays_per_direction = 200};
+  std::get<FocusValues>(values.design_target.kinds) = {.directions = 1, .rays_per_direction = 200};
   const DesignScene scene = make_design_scene(values);
   Designer designer(scene);
   DesignState least_squares = designer.begin();
@@ -21,14 +21,14 @@ TEST_CASE("searches by the gradient alone: rays of a radial lens meet as least s
 
   const FormStart& start = scene.start;
   REQUIRE(start.levels == 1);
-  const DesignTask task = scene.aim->task(scene.walk, false);
-  const GradientObjective objective(*task.rays, *task.goal, start.form);
+  const DesignTask task = scene.design_target->task(scene.walk, false);
+  const GradientObjective objective(*task.rays, *task.objective, start.form);
   const double enough = 1.2 * least_squares.search.loss;
   CHECK(objective.loss(start.coefficients) > 100 * enough);
   const SearchLimits limits{bounds_of(start.form, start.least_index, start.most_index), enough,
                             4000};
-  for (const Searched& found : {by_lbfgs(objective, limits, start.coefficients),
-                                by_adam(objective, limits, start.coefficients, 0.03)}) {
+  for (const SearchResult& found : {by_lbfgs(objective, limits, start.coefficients),
+                                    by_adam(objective, limits, start.coefficients, 0.03)}) {
     CAPTURE(found.traces);
     CHECK(found.loss <= enough);
     CHECK(objective.loss(found.coefficients) == doctest::Approx(found.loss));

@@ -24,7 +24,7 @@ double smooth_integral(const F& f, double from, double to) {
   return boost::math::quadrature::gauss<double, 20>::integrate(f, from, to);
 }
 
-/// Looks along +z, one pixel.
+/// A camera with one pixel that looks along +z.
 Camera pinhole(const Vec3& x) {
   return {.x = x, .forward = {0, 0, 1}, .up = {0, 1, 0}, .field_of_view = 2.8, .pixels = {}};
 }
@@ -38,19 +38,21 @@ RenderScene furnace(const AnyIndexField& field, const ScatteringMedium& medium) 
           .sensors = {pinhole(Vec3::Zero())}};
 }
 
-/// In a furnace L/n^2 = 1, so all that the blur does is to lose photons beyond the wall and to
-/// mix places of another index: expectation of the camera in the centre of the unit sphere.
+/// Returns the expected value of a camera in the centre of the unit sphere. In a furnace L/n^2 = 1,
+/// so the blur has only two effects: photons beyond the wall are missing, and points with different
+/// index are mixed.
 template <class Index>
 double blurred_furnace(const Index& n, double mu, double radius) {
   const auto gathered = [&](double s) {
-    // shells of the ball about a point at distance s from the centre, and their polar angles
+    // the gather sphere around a point at distance s from the centre is integrated over shells and
+    // polar angles
     const auto shell = [&](double r) {
       const auto ring = [&](double cosine) {
         const double from_centre = std::sqrt(s * s + r * r + 2 * s * r * cosine);
         const double ratio = n(from_centre) / n(s);
         return from_centre < 1 ? ratio * ratio : 0;
       };
-      // up to the wall, so that the integrand is smooth
+      // the integration ends at the wall, so the integrand is smooth
       const double wall = std::clamp((1 - s * s - r * r) / (2 * s * r), -1.0, 1.0);
       return 2 * pi * r * r * smooth_integral(ring, -1, wall);
     };
@@ -69,7 +71,7 @@ Estimate estimated(const BatchJob& job, double samples) {
   return jackknife(state.sums, sample_mean);
 }
 
-/// One pixel.
+/// Estimate of a single pixel by the photon map.
 struct Mapped {
   Estimate pixel;
   double value() const { return pixel.value[0].real(); }
@@ -79,11 +81,13 @@ Mapped mapped(const RenderScene& scene, double radius, double samples, std::uint
   return {estimated(photon_map_job(scene, radius, seed), samples)};
 }
 
-/// Of many small maps: their pairs cost less.
+/// Compares a furnace with its expected value. Many small maps are used, because the number of
+/// pairs grows with the square of the map's size.
 void check_furnace(const RenderScene& scene, double radius, double expected) {
   constexpr int paths = 1024;
   const flatspeckle::tests::Effort effort = flatspeckle::tests::effort();
-  const Mapped mean{estimated(photon_map_job(scene, radius, 1, paths), 80 * effort.samples * paths)};
+  const Mapped mean{
+      estimated(photon_map_job(scene, radius, 1, paths), 80 * effort.samples * paths)};
   const double value = mean.value(), error = mean.error();
   CAPTURE(value);
   CAPTURE(error);
@@ -94,13 +98,13 @@ void check_furnace(const RenderScene& scene, double radius, double expected) {
 
 }  // namespace
 
-TEST_CASE("the grid finds the points within the radius, each once") {
+TEST_CASE("gather grid: each point within the radius is found once") {
   RandomStream random(3, 9, 0);
   const auto anywhere = [&](double scale) {
     return Vec3(scale * (random.uniform() - 0.5), scale * (random.uniform() - 0.5),
                 scale * (random.uniform() - 0.5));
   };
-  // few points: few buckets, which cells share
+  // with few points there are few buckets, so several cells share a bucket
   for (const auto& [scale, count] : {std::pair(0.05, 500), {1.0, 500}, {2.0, 20}, {30.0, 500}}) {
     std::vector<GatherPoint> points(count);
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -122,7 +126,7 @@ TEST_CASE("the grid finds the points within the radius, each once") {
   }
 }
 
-TEST_CASE("the photon map of a furnace is 1, but for the photons missing beyond the wall") {
+TEST_CASE("photon map: furnace agrees with the blurred closed form") {
   const double mu = 1.5, n = 1.4;
   const RenderScene scene = furnace(Homogeneous{n - 1}, {.mu_s = mu, .phase = {HgPhase{0.6}}});
   for (const double radius : {0.35, 0.15}) {
@@ -132,7 +136,7 @@ TEST_CASE("the photon map of a furnace is 1, but for the photons missing beyond 
   }
 }
 
-TEST_CASE("the photon map in curved space counts L/n^2") {
+TEST_CASE("photon map: L/n^2 in a fisheye agrees with the blurred closed form") {
   const double mu = 1.5, radius = 0.25;
   const RenderScene scene = furnace(Fisheye({.centre_excess = 1, .radius = 0.6}),
                                     {.mu_s = mu, .phase = {RayleighPhase{}}});
@@ -142,9 +146,9 @@ TEST_CASE("the photon map in curved space counts L/n^2") {
   check_furnace(scene, radius, expected);
 }
 
-TEST_CASE("photons of another part are not counted") {
-  // Fog around an absorbing ball: the camera looks past it at fog only; photons inside the ball,
-  // none of which leaves, must not show.
+TEST_CASE("photon map: photons inside another body do not contribute") {
+  // Fog around an absorbing ball: the camera sees only fog beside it; photons inside the ball, none
+  // of which leaves, must not contribute.
   const auto scene_of = [](double mu_s_of_ball) {
     RenderScene scene = furnace(Homogeneous{}, {.mu_s = 0.5});
     scene.stage.bodies = {
@@ -160,7 +164,7 @@ TEST_CASE("photons of another part are not counted") {
 
 namespace {
 
-/// A beam through fog and, in its way, a ball that bends light or none.
+/// A beam through fog, optionally with a ball in it that refracts the beam.
 RenderScene beam_in_fog(bool ball) {
   RenderScene scene{};
   scene.step = 0.1;
@@ -177,14 +181,15 @@ RenderScene beam_in_fog(bool ball) {
     scene.stage.bodies = {body};
   }
   scene.lights = {BeamLight{{0, 0, -2}, {0, 0, 1}, 0.3}};
-  // a patch of the side wall, for light that is nearly normal to it, sees the beam; what leaves the
-  // ball can only hit sensors, so there it is all that leaves to the side
+  // A patch of the side wall receives light at nearly normal incidence from the beam. Light that
+  // leaves the ball can only hit sensors, so there the sensor measures all light that leaves to the
+  // side.
   scene.sensors = {AreaDetector{{2, 0, 0.3}, {0, 1, 0}, 0.5, 0.3, {}, 0.3}};
   if (ball) scene.sensors = {DirectionalDetector{{1, 0, 0}, {0, 1, 0}, 0.8, {}}};
   return scene;
 }
 
-/// Sound that bends the beam, at a phase of its own for each path, strong enough to be seen.
+/// Sound that bends the beam noticeably, with an independent phase for each path.
 RenderScene beam_in_sound() {
   RenderScene scene = beam_in_fog(false);
   scene.field = FocusedSound(0.3, 0.15, 4, cap_directions(4, 0.9), Vec3(0, 0, 0.3));
@@ -194,7 +199,7 @@ RenderScene beam_in_sound() {
   return scene;
 }
 
-/// The beam in a stage whose boundary is a mesh; a camera in it looks across.
+/// The beam in a stage whose boundary is a mesh; a camera inside looks across.
 RenderScene beam_in_mesh() {
   RenderScene scene = beam_in_fog(false);
   scene.stage.boundary = bench::smooth(bench::cube_mesh(2), 0.2);
@@ -207,7 +212,7 @@ RenderScene beam_in_mesh() {
   return scene;
 }
 
-/// Against another method, which has no bias.
+/// Checks that the photon map converges to an unbiased method as its radius shrinks.
 void check_shrinking(const RenderScene& scene, RenderMethod method, double exact_samples,
                      double samples) {
   const Rendered exact = rendered(scene, method, exact_samples);
@@ -222,10 +227,10 @@ void check_shrinking(const RenderScene& scene, RenderMethod method, double exact
   CAPTURE(half.error());
   CAPTURE(quarter.value());
   CAPTURE(quarter.error());
-  // blurred by far at first
+  // the widest map is strongly blurred
   CHECK(std::abs(wide.value() - reference) > 4 * std::hypot(wide.error(), exact.error()));
   CHECK(std::abs(quarter.value() - reference) < 0.5 * std::abs(wide.value() - reference));
-  // without the terms in radius^2 and, less certain, radius^3
+  // extrapolation that removes the terms in radius^2 and, approximately, radius^3
   const double limit = (4 * quarter.value() - half.value()) / 3;
   const double error = std::hypot(4 * quarter.error(), half.error()) / 3;
   CAPTURE(limit);
@@ -236,7 +241,7 @@ void check_shrinking(const RenderScene& scene, RenderMethod method, double exact
 
 }  // namespace
 
-TEST_CASE("the photon map converges to bidirectional tracing as its radius shrinks") {
+TEST_CASE("photon map: converges to bidirectional tracing as its radius shrinks") {
   for (const bool ball : {false, true}) {
     if (ball && !is_night) continue;
     CAPTURE(ball);
@@ -245,7 +250,7 @@ TEST_CASE("the photon map converges to bidirectional tracing as its radius shrin
   }
 }
 
-TEST_CASE("the photon map's pulse arrives when it should as its radius shrinks") {
+TEST_CASE("photon map: pulse converges to light tracing as its radius shrinks") {
   const RenderScene scene{
       .field = Homogeneous{},
       .step = 1,
@@ -257,24 +262,25 @@ TEST_CASE("the photon map's pulse arrives when it should as its radius shrinks")
   const double samples = is_night ? 600000 : 120000;
   const RenderJob light = render_job(scene, {RenderMethod::light}, 4);
   const Estimate exact = rendered_picture(light, run_render(light, samples).sums).bins;
-  const auto pulse = [&](double radius) {  // between what comes before and after all bins
-    return part(estimated(photon_map_job(scene, radius, 4), samples), 1, exact.value.size());
-  };
+  const auto pulse =
+      [&](double radius) {  // the pulse without its first and last part, before and after the bins
+        return part(estimated(photon_map_job(scene, radius, 4), samples), 1, exact.value.size());
+      };
   const Estimate wide = pulse(0.1), narrow = pulse(0.05);
   for (std::size_t bin = 0; bin < exact.value.size(); ++bin) {
     CAPTURE(bin);
     const double expected = exact.value[bin].real();
-    // the first bins, before the offset was counted: 0.09 beyond
+    // if the offset of the optical path were ignored, the first bins would be off by 0.09
     CHECK(std::abs(wide.value[bin].real() - expected) <
           0.04 * expected + 4 * std::hypot(wide.error[bin], exact.error[bin]));
-    // without what the walls blur, proportional to the radius
+    // extrapolation that removes the blur at walls, which is proportional to the radius
     const double limit = 2 * narrow.value[bin].real() - wide.value[bin].real();
     const double error = std::hypot(2 * narrow.error[bin], wide.error[bin]);
     CHECK(std::abs(limit - expected) < 4 * std::hypot(error, exact.error[bin]));
   }
 }
 
-TEST_CASE("the photon map agrees with light tracing in focused sound") {
+TEST_CASE("photon map: focused sound agrees with light tracing") {
   const RenderScene scene = beam_in_sound();
   const Rendered exact = rendered(scene, RenderMethod::light, 30000);
   const Mapped map = mapped(scene, 0.15, 60000);
@@ -287,7 +293,7 @@ TEST_CASE("the photon map agrees with light tracing in focused sound") {
   CHECK(std::abs(map.value() - exact.value()) < 4 * error);
 }
 
-TEST_CASE("the photon map converges to bidirectional tracing within a mesh") {
+TEST_CASE("photon map: converges to bidirectional tracing within a mesh") {
   if (!is_night) return;
   check_shrinking(beam_in_mesh(), RenderMethod::bidirectional, 100000, 60000);
 }

@@ -5,7 +5,7 @@
 #include "core/result/result_file.h"
 #include "wave_solver/solutions/wave_solution.h"
 
-// One sound-soft disk under a plane wave: writes its far field, and fails unless the forward
+// Solves one sound-soft disk under a plane wave, writes its far field, and fails unless the forward
 // amplitude obeys the optical theorem (conventions, C6 and C9).
 int main() {
   using namespace flatspeckle;

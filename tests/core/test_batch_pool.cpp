@@ -24,7 +24,7 @@ void sleep_seconds(double seconds) {
   std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
 }
 
-/// Means of 1 + uniform; each batch takes so long, now and then much longer.
+/// Returns a job that averages 1 + uniform numbers. Every eleventh batch takes five times as long.
 BatchJob job_of(std::uint64_t seed, double seconds_per_batch = 0) {
   BatchJob job;
   job.size = 1 + seed % 3;
@@ -52,7 +52,7 @@ StopRule at_error(double error) {
   return stop;
 }
 
-/// Of about 300 to 1000 batches, as the error falls with 1 / sqrt(batches).
+/// Error reached after about 300 to 1000 batches; it decreases as 1 / sqrt(batches).
 constexpr double some_error = 1.2e-3;
 constexpr double never = 1e-9;
 
@@ -64,7 +64,8 @@ struct Task {
   int endings = 0;
 };
 
-/// Of many costs, with many ends: few batches, many, a target that is reached early or late, both.
+/// Returns tasks of various costs and stop rules: few batches, many, a target reached early or
+/// late.
 std::vector<Task> mixed_tasks() {
   std::vector<Task> tasks;
   for (std::uint64_t i = 0; i < 24; ++i) {
@@ -77,7 +78,7 @@ std::vector<Task> mixed_tasks() {
   return tasks;
 }
 
-/// Tasks that tell when they end.
+/// Returns a list of runs that record their end in the tasks.
 RunList list_of(std::vector<Task>& tasks) {
   return {tasks.size(),
           [&](std::size_t run) -> OpenRun {
@@ -120,7 +121,7 @@ std::vector<Task> one_by_one(std::vector<Task> tasks) {
 
 }  // namespace
 
-TEST_CASE("many runs give what each gives alone, whatever the threads") {
+TEST_CASE("batch pool: results agree with single runs for any number of threads") {
   const auto alone = one_by_one(mixed_tasks());
   for (int threads : {1, 2, 7}) {
     CAPTURE(threads);
@@ -132,7 +133,7 @@ TEST_CASE("many runs give what each gives alone, whatever the threads") {
   }
 }
 
-TEST_CASE("runs begin in the order of their numbers") {
+TEST_CASE("batch pool: runs begin in the order of their numbers") {
   auto tasks = mixed_tasks();
   RunList list = list_of(tasks);
   std::mutex mutex;
@@ -147,12 +148,12 @@ TEST_CASE("runs begin in the order of their numbers") {
   CHECK(std::is_sorted(begun.begin(), begun.end()));
 }
 
-TEST_CASE("a list of no runs has ended") {
+TEST_CASE("batch pool: an empty list ends at once") {
   std::vector<Task> none;
   CHECK(run_pool(list_of(none), with_threads(3)).reason == StopReason::samples);
 }
 
-TEST_CASE("a run that had ended before ends again, without another batch") {
+TEST_CASE("batch pool: a finished run ends again without another batch") {
   auto tasks = one_by_one(mixed_tasks());
   const auto before = tasks;
   for (Task& task : tasks) {
@@ -164,7 +165,7 @@ TEST_CASE("a run that had ended before ends again, without another batch") {
   for (const Task& task : tasks) CHECK(task.endings == 1);
 }
 
-TEST_CASE("runs that need no work are passed over") {
+TEST_CASE("batch pool: runs that need no work are skipped") {
   for (std::size_t every : {1, 2, 5}) {
     auto tasks = mixed_tasks();
     RunList list = list_of(tasks);
@@ -177,7 +178,7 @@ TEST_CASE("runs that need no work are passed over") {
   }
 }
 
-TEST_CASE("what is done when a run ends may take its state away") {
+TEST_CASE("batch pool: the end of a run may release its state") {
   auto tasks = mixed_tasks();
   std::vector<std::unique_ptr<RunState>> states(tasks.size());
   RunList list = list_of(tasks);
@@ -198,7 +199,7 @@ TEST_CASE("what is done when a run ends may take its state away") {
   }
 }
 
-TEST_CASE("an error comes out of the pool") {
+TEST_CASE("batch pool: errors are passed to the caller") {
   auto tasks = mixed_tasks();
   RunList list = list_of(tasks);
   SUBCASE("in a batch") {
@@ -233,7 +234,7 @@ TEST_CASE("an error comes out of the pool") {
   }
 }
 
-TEST_CASE("the seconds are those of all runs together") {
+TEST_CASE("batch pool: the time limit applies to all runs together") {
   std::vector<Task> tasks;
   for (std::uint64_t i = 0; i < 40; ++i) tasks.push_back({job_of(i, 2e-3), after_batches(300)});
   PoolOptions options = with_threads(2);
@@ -247,7 +248,7 @@ TEST_CASE("the seconds are those of all runs together") {
   CHECK(begun > 0);
   CHECK(begun < 40);
 
-  SUBCASE("and the runs go on later as if they had never stopped") {
+  SUBCASE("continued runs agree with uninterrupted ones") {
     for (Task& task : tasks) task.job = job_of(static_cast<std::uint64_t>(&task - tasks.data()));
     CHECK(run_pool(list_of(tasks), with_threads(3)).reason == StopReason::samples);
     std::vector<Task> whole;
@@ -256,7 +257,7 @@ TEST_CASE("the seconds are those of all runs together") {
   }
 }
 
-TEST_CASE("however short the time, a run that has begun gets two batches") {
+TEST_CASE("batch pool: a run that has begun gets two batches at any time limit") {
   std::vector<Task> tasks;
   for (std::uint64_t i = 0; i < 6; ++i) tasks.push_back({job_of(i, 2e-3), at_error(never)});
   PoolOptions options = with_threads(3);
@@ -266,14 +267,14 @@ TEST_CASE("however short the time, a run that has begun gets two batches") {
   for (const Task& task : tasks) CHECK(task.state.sums.batches() != 1);
 }
 
-TEST_CASE("time that ends with the last run is no early end") {
+TEST_CASE("batch pool: a time limit at the end of the last run is no early end") {
   std::vector<Task> tasks{{job_of(0, 1e-2), after_batches(2)}};
   PoolOptions options = with_threads(1);
-  options.seconds = 5e-3;  // over before the second batch, which the run needs in any case
+  options.seconds = 5e-3;  // over before the second batch, which is always run
   CHECK(run_pool(list_of(tasks), options).reason == StopReason::samples);
 }
 
-TEST_CASE("states are handed out now and then, and a run goes on from any of them") {
+TEST_CASE("batch pool: runs continued from checkpoints agree with uninterrupted ones") {
   std::vector<Task> tasks;
   for (std::uint64_t i = 0; i < 6; ++i)
     tasks.push_back({job_of(i, 1e-3), i % 2 == 0 ? at_error(some_error) : after_batches(500)});
@@ -301,7 +302,7 @@ TEST_CASE("states are handed out now and then, and a run goes on from any of the
   }
 }
 
-TEST_CASE("a run whose end is interrupted has not ended, and ends again") {
+TEST_CASE("batch pool: a run whose end is interrupted ends again later") {
   std::vector<Task> tasks{{job_of(0), after_batches(2)}, {job_of(1), after_batches(2)}};
   const RunList whole = list_of(tasks);
   RunList list = whole;
@@ -315,7 +316,7 @@ TEST_CASE("a run whose end is interrupted has not ended, and ends again") {
   CHECK(tasks[1].endings == 1);
 }
 
-TEST_CASE("an error while a state is saved comes out") {
+TEST_CASE("batch pool: an error during a checkpoint is passed to the caller") {
   std::vector<Task> tasks{{job_of(0, 1e-3), after_batches(1000)}};
   RunList list = list_of(tasks);
   list.checkpoint = [](std::size_t) { throw std::runtime_error("disk full"); };
@@ -324,9 +325,9 @@ TEST_CASE("an error while a state is saved comes out") {
   CHECK_THROWS_WITH(run_pool(list, options), "disk full");
 }
 
-/// Sleeps leave the processor to others, so that the time tells of the order of the work even on a
-/// busy machine.
-TEST_CASE("no thread idles while there is anything to do") {
+/// Sleeps leave the processor to other programs, so that the time depends on the order of the work
+/// even on a busy machine.
+TEST_CASE("batch pool: no thread is idle while there is work") {
   constexpr int threads = 4;
   constexpr double nap = 5e-3;
   std::vector<Task> tasks;
@@ -371,8 +372,8 @@ TEST_CASE("no thread idles while there is anything to do") {
   CHECK(end.wall_s < 1.5 * work / threads + 20 * nap);
 }
 
-// Last: the flag stays raised for the rest of this program.
-TEST_CASE("zz a signal ends all runs after the batches in hand, and they can go on") {
+// Must be last: the interrupt flag remains set for the rest of this program.
+TEST_CASE("zz batch pool: a signal ends all runs after the current batches, without gaps") {
   catch_interrupts();
   std::vector<Task> tasks;
   for (std::uint64_t i = 0; i < 10; ++i) tasks.push_back({job_of(i, 1e-4), at_error(some_error)});

@@ -17,8 +17,8 @@ using namespace oracles;
 
 using WideComplex = boost::multiprecision::cpp_complex_100;
 
-// J_n(z) (n! 2^n / z^n) = sum (-z^2/4)^k n! / (k! (n+k)!); J_{n+1}/J_n = z / (2(n+1)) times a
-// ratio.
+// Returns J_n(z) (n! 2^n / z^n) = sum (-z^2/4)^k n! / (k! (n+k)!); J_{n+1}/J_n is z / (2(n+1))
+// times a ratio of these.
 WideComplex power_series(int n, const WideComplex& z) {
   WideComplex term = 1, sum = 1;
   const WideComplex step = -z * z / 4;
@@ -32,7 +32,7 @@ WideComplex power_series(int n, const WideComplex& z) {
 
 }  // namespace
 
-TEST_CASE("Hankel functions agree with 50 digits from far below to far above the turning point") {
+TEST_CASE("Hankel functions: agree with 50 digits far below and above the turning point") {
   for (const double x : {1e-8, 1e-3, 0.1, 0.7, 1.0, 2.404825557695773, 3.831705970207512, 6.2, 12.5,
                          31.0, 77.7, 250.0, 4e3, 1e6}) {
     const auto h = hankel(60, x);
@@ -47,7 +47,7 @@ TEST_CASE("Hankel functions agree with 50 digits from far below to far above the
   }
 }
 
-TEST_CASE("Orders of several hundred stay in range at small arguments") {
+TEST_CASE("Hankel functions: order 400 agrees with 50 digits at small arguments") {
   for (const double x : {1e-3, 0.1, 6.28}) {
     const auto h = hankel(400, x);
     CAPTURE(x);
@@ -57,7 +57,7 @@ TEST_CASE("Orders of several hundred stay in range at small arguments") {
   }
 }
 
-TEST_CASE("J_n agrees with 50 digits, relative to itself away from zeros") {
+TEST_CASE("J_n: agrees with 50 digits, relative to itself away from zeros") {
   for (const double x : {1e-4, 0.5, 2.404825557695773, 5.0, 14.9, 100.0}) {
     const auto values = bessel_j(130, x);
     for (const int n : {0, 1, 2, 7, 14, 40, 99, 130}) {
@@ -70,7 +70,7 @@ TEST_CASE("J_n agrees with 50 digits, relative to itself away from zeros") {
   }
 }
 
-TEST_CASE("Neighbouring J_n have ratios of full extended precision") {
+TEST_CASE("J_n: ratios of neighbouring orders have full extended precision") {
   for (const double x : {1e-4, 0.5, 20.0}) {
     const auto values = bessel_j(30, x);
     for (const int n : {0, 3, 29}) {
@@ -82,7 +82,7 @@ TEST_CASE("Neighbouring J_n have ratios of full extended precision") {
   }
 }
 
-TEST_CASE("Ratios of complex argument agree with the power series in 100 digits") {
+TEST_CASE("Bessel ratios: complex arguments agree with the power series in 100 digits") {
   const ExtendedComplex arguments[] = {{1e-4L, 1e-5L}, {1.5L, 0.1L},  {0.1L, 5.0L},
                                        {10.0L, 0.0L},  {20.0L, 3.0L}, {30.0L, 0.01L},
                                        {10.0L, 100.0L}};
@@ -100,7 +100,7 @@ TEST_CASE("Ratios of complex argument agree with the power series in 100 digits"
   }
 }
 
-TEST_CASE("Wronskian J_{n+1} Y_n - J_n Y_{n+1} = 2 / (pi x), and the two forms of the derivative") {
+TEST_CASE("Hankel functions: Wronskian 2 / (pi x), and the two forms of the derivative") {
   for (const double x : {0.01, 1.0, 9.5, 60.0}) {
     const auto h = hankel(80, x);
     for (int n = 1; n < 80; ++n) {
@@ -114,7 +114,7 @@ TEST_CASE("Wronskian J_{n+1} Y_n - J_n Y_{n+1} = 2 / (pi x), and the two forms o
   }
 }
 
-TEST_CASE("H_n and J_n agree with Arb from 1e-8 to 1e6") {
+TEST_CASE("H_n and J_n: agree with Arb from 1e-8 to 1e6") {
   const Table table = read_csv(FLATSPECKLE_DATA "/reference/bessel_arb.csv");
   const auto order = table.column("order"), x = table.column("x"), j = table.column("j"),
              y = table.column("y");
@@ -131,7 +131,7 @@ TEST_CASE("H_n and J_n agree with Arb from 1e-8 to 1e6") {
   }
 }
 
-TEST_CASE("J_{n+1} / J_n and J_n' / J_n of complex argument agree with Arb") {
+TEST_CASE("J_{n+1} / J_n and J_n' / J_n: complex arguments agree with Arb") {
   const Table table = read_csv(FLATSPECKLE_DATA "/reference/bessel_ratio_arb.csv");
   const auto value = [&](const char* name, std::size_t row) {
     return ExtendedComplex(table.column(name + std::string("_re"))[row],
@@ -143,11 +143,11 @@ TEST_CASE("J_{n+1} / J_n and J_n' / J_n of complex argument agree with Arb") {
     CAPTURE(n);
     CAPTURE(z);
     const ExtendedComplex found = bessel_ratios(n, z)[n];
-    const ExtendedComplex slope = static_cast<long double>(n) / z - found;
+    const ExtendedComplex derivative = static_cast<long double>(n) / z - found;
     const long double error = 1.1e-19L * std::abs(z) * (1 + std::norm(found));
     constexpr long double rounding = 1.2e-16L;  // of the table
     CHECK(std::abs(found - ratio) < error + rounding * std::abs(ratio));
-    CHECK(std::abs(slope - value("slope", row)) < error + rounding * std::abs(slope));
+    CHECK(std::abs(derivative - value("slope", row)) < error + rounding * std::abs(derivative));
   }
 }
 

@@ -18,7 +18,7 @@ using Bytes = std::vector<std::byte>;
 using Access = BlockFile::Access;
 using Tail = BlockFile::Tail;
 
-/// A file that goes with its test, of blocks of 0, 1, ... count - 1 bytes.
+/// A temporary file of blocks of 0, 1, ... count - 1 bytes.
 class Blocks {
  public:
   explicit Blocks(std::size_t count) {
@@ -38,7 +38,7 @@ class Blocks {
     file.seekp(static_cast<std::streamoff>(place));
     file.put(static_cast<char>(was ^ 1));
   }
-  /// How many whole blocks there are, and what follows.
+  /// Returns the number of complete blocks and the type of the tail.
   std::pair<std::size_t, Tail> scanned() const {
     BlockFile file(path, Access::read);
     std::size_t count = 0;
@@ -55,7 +55,7 @@ class Blocks {
 
 }  // namespace
 
-TEST_CASE("blocks are read as they were written, and more can be added") {
+TEST_CASE("block file: blocks are read back, and more can be appended") {
   const Blocks blocks(9);
   CHECK(blocks.scanned() == std::pair{std::size_t{9}, Tail::none});
   {
@@ -67,7 +67,7 @@ TEST_CASE("blocks are read as they were written, and more can be added") {
   CHECK(blocks.scanned() == std::pair{std::size_t{10}, Tail::none});
 }
 
-TEST_CASE("wherever a file of blocks ends, the whole blocks before are there") {
+TEST_CASE("block file: a truncated file contains the complete blocks before its end") {
   const Blocks blocks(6);
   for (auto size = fs::file_size(blocks.path); size > 0; --size) {
     fs::resize_file(blocks.path, size - 1);
@@ -79,7 +79,7 @@ TEST_CASE("wherever a file of blocks ends, the whole blocks before are there") {
   }
 }
 
-TEST_CASE("a changed byte ends what can be read, and nothing else does") {
+TEST_CASE("block file: blocks before a changed byte are read, those after it are not") {
   constexpr std::size_t all = 6 * 16 + 15;
   for (std::size_t place = 0; place < all; ++place) {
     const Blocks blocks(6);
@@ -92,7 +92,7 @@ TEST_CASE("a changed byte ends what can be read, and nothing else does") {
   }
 }
 
-TEST_CASE("what follows the whole blocks can be cut off") {
+TEST_CASE("block file: a torn tail can be removed") {
   const Blocks blocks(4);
   std::ofstream(blocks.path, std::ios::app) << "fblk and more that is no block";
   CHECK(blocks.scanned() == std::pair{std::size_t{4}, Tail::torn});
@@ -103,13 +103,13 @@ TEST_CASE("what follows the whole blocks can be cut off") {
   CHECK(blocks.scanned() == std::pair{std::size_t{4}, Tail::none});
 }
 
-TEST_CASE("a file of blocks that is not there, or changed since") {
+TEST_CASE("block file: missing or changed files are an IoError") {
   CHECK_THROWS_AS(BlockFile("/no/such/folder/blocks", Access::append), IoError);
   CHECK_THROWS_AS(BlockFile("/no/such/file", Access::read), IoError);
   const Blocks blocks(4);
   BlockFile file(blocks.path, Access::read);
   file.scan([](std::uint64_t, std::span<const std::byte>) {});
-  blocks.change(16 + 16 + 16);  // in the head of the third
+  blocks.change(16 + 16 + 16);  // in the header of the third
   CHECK_THROWS_AS(file.read(33), IoError);
 }
 

@@ -34,7 +34,7 @@ CollectedResult some_result() {
 
 }  // namespace
 
-TEST_CASE("a result as values has what a file would have") {
+TEST_CASE("collected result: contains the datasets and attributes of a file") {
   const CollectedResult result = some_result();
   REQUIRE(result.datasets.size() == 5);
   CHECK(result.find("tilt")->is_scale);
@@ -44,7 +44,7 @@ TEST_CASE("a result as values has what a file would have") {
   CHECK(result.attributes.size() == 3);
 }
 
-TEST_CASE("results of one layout differ in their values alone, and come back from bytes") {
+TEST_CASE("collected result: is restored from the bytes of layout and values") {
   const CollectedResult one = some_result();
   CollectedResult other = some_result();
   std::get<0>(other.datasets[0].values)[1] = 0.2;
@@ -66,7 +66,7 @@ TEST_CASE("results of one layout differ in their values alone, and come back fro
     CHECK(back.attributes[i].value == other.attributes[i].value);
 }
 
-TEST_CASE("bytes of a result that are cut or too many are refused") {
+TEST_CASE("collected result: truncated and excess bytes are rejected") {
   const auto layout = layout_of(some_result()), values = values_of(some_result());
   for (std::size_t size = 0; size < layout.size(); ++size)
     CHECK_THROWS_AS(result_of(std::span(layout).first(size)), InputError);
@@ -77,7 +77,7 @@ TEST_CASE("bytes of a result that are cut or too many are refused") {
   CHECK_THROWS_AS(result_of(layout, more), InputError);
 }
 
-TEST_CASE("values are finite there too, and names stand once") {
+TEST_CASE("collected result: infinite values and repeated names are rejected") {
   CollectedResult result;
   ResultFile file(result);
   const std::vector<double> bad{std::numeric_limits<double>::quiet_NaN()};

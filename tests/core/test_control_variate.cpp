@@ -15,7 +15,7 @@ double noise(RandomStream& random) {
   return sum;
 }
 
-/// Sums of batches: one that the control tells nearly all of, one that it tells nothing of, and it.
+/// Returns sums of batches: one highly correlated with the control, one uncorrelated, the control.
 GroupedSums sums_of(std::uint64_t seed, int batches) {
   GroupedSums sums(3);
   RandomStream random(seed, 1, 0);
@@ -33,7 +33,7 @@ std::vector<Complex> first_two(double samples, std::span<const Complex> sums) {
 
 }  // namespace
 
-TEST_CASE("a control variate takes away what it tells, and its errors hold") {
+TEST_CASE("control variate: reduces the error of a correlated mean, and errors are correct") {
   double squares = 0;
   const int runs = 200;
   for (int seed = 1; seed <= runs; ++seed) {
@@ -47,7 +47,7 @@ TEST_CASE("a control variate takes away what it tells, and its errors hold") {
   CHECK(squares == doctest::Approx(1).epsilon(4 * std::sqrt(2.0 / runs)));
 }
 
-TEST_CASE("what a control variate tells nothing of stays as it is") {
+TEST_CASE("control variate: uncorrelated means and few batches are unchanged") {
   const GroupedSums sums = sums_of(1, 400);
   CHECK(controlled_jackknife(sums, first_two, 2).value[1] == jackknife(sums, first_two).value[1]);
   const GroupedSums few = sums_of(1, 20);

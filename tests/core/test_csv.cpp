@@ -15,7 +15,7 @@ namespace flatspeckle::test_csv {
 
 namespace {
 
-/// A file with this text, gone at the end of its scope.
+/// A temporary file with this text.
 class TextFile {
  public:
   explicit TextFile(const std::string& text) {
@@ -39,7 +39,7 @@ Table table_of(const std::string& text) {
   return read_csv(TextFile(text).path());
 }
 
-/// The complaint about a file with this text, without its path.
+/// Returns the error message about a file with this text, without its path.
 std::string complaint(const std::string& text) {
   const TextFile file(text);
   try {
@@ -59,7 +59,7 @@ std::vector<double> column(const Table& table, const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("columns are read by name") {
+TEST_CASE("csv: columns are read by name") {
   const Table table = table_of("x,z,radius\n1,-2.5,3e-2\n0.1,+4,1E3\n");
   CHECK(table.names() == std::vector<std::string>{"x", "z", "radius"});
   CHECK(table.rows() == 2);
@@ -72,7 +72,7 @@ TEST_CASE("columns are read by name") {
                        InputError);
 }
 
-TEST_CASE("spaces, CRLF, comments, blank lines and a missing last newline are allowed") {
+TEST_CASE("csv: spaces, CRLF, comments, blank lines and a missing last newline are allowed") {
   const Table table =
       table_of("# from a bench\r\n\r\n x ,\tz\r\n 1 , 2 \r\n# half\r\n3,4\r\n\r\n\n");
   CHECK(column(table, "x") == std::vector<double>{1, 3});
@@ -81,17 +81,17 @@ TEST_CASE("spaces, CRLF, comments, blank lines and a missing last newline are al
   CHECK(table_of("x,z\n").rows() == 0);
 }
 
-TEST_CASE("a byte order mark is no part of the first name") {
+TEST_CASE("csv: a byte order mark is not part of the first name") {
   CHECK(table_of("\xEF\xBB\xBFx,z\n1,2\n").names() == std::vector<std::string>{"x", "z"});
-  CHECK(complaint("\xEF\xBB\xBF") == ": empty, expected a line of column names");
+  CHECK(complaint("\xEF\xBB\xBF") == ": is empty; expected a line of column names");
 }
 
-TEST_CASE("numbers are read exactly") {
+TEST_CASE("csv: numbers are read exactly") {
   CHECK(column(table_of("x\n0.1\n-1.7976931348623157e308\n"), "x") ==
         std::vector{0.1, -1.7976931348623157e308});
 }
 
-TEST_CASE("tables of given columns hold nothing else, and no numbers out of bounds") {
+TEST_CASE("csv: unknown columns and numbers out of bounds are rejected") {
   const TextFile file("x,z\n1,2\n-1e51,3\n");
   CHECK_THROWS_WITH_AS(read_key_table("places", file.path(), {"x", "y"}),
                        doctest::Contains("column \"z\": must be one of x, y"), InputError);
@@ -101,9 +101,9 @@ TEST_CASE("tables of given columns hold nothing else, and no numbers out of boun
   CHECK(column(read_key_table("places", sound.path(), {"x", "y", "z"}), "x") == std::vector{-1e50});
 }
 
-TEST_CASE("what is wrong is told with file and line") {
-  CHECK(complaint("") == ": empty, expected a line of column names");
-  CHECK(complaint("# only\n\n") == ": empty, expected a line of column names");
+TEST_CASE("csv: error messages contain file and line") {
+  CHECK(complaint("") == ": is empty; expected a line of column names");
+  CHECK(complaint("# only\n\n") == ": is empty; expected a line of column names");
   CHECK(complaint("x,z\n1,2\n\n3\n") == ", line 4: expected 2 fields, found 1");
   CHECK(complaint("x,z\n1,2,3\n") == ", line 2: expected 2 fields, found 3");
   CHECK(complaint("x,z\n1,2,\n") == ", line 2: expected 2 fields, found 3");
@@ -114,7 +114,7 @@ TEST_CASE("what is wrong is told with file and line") {
           ", line 2: x = \"" + std::string(bad) + "\": must be a finite number");
 }
 
-TEST_CASE("tables of spreadsheets, instruments and other programs agree with the plain one") {
+TEST_CASE("csv: formats of spreadsheets and instruments agree with the plain table") {
   const std::string plain = "x,z,radius\n0,-0.5,0.3\n0.5,2,1000\n";
   for (const std::string& text : {
            std::string("\"x\",\"z\",\"radius\"\n0,-0.5,0.3\n0.5,2,1000\n"),
@@ -142,7 +142,7 @@ TEST_CASE("tables of spreadsheets, instruments and other programs agree with the
   }
 }
 
-TEST_CASE("tables in UTF-16 are read with and without a byte order mark") {
+TEST_CASE("csv: UTF-16 is read with and without a byte order mark") {
   const std::string plain = "x,z\r\n0.5,-2\r\n";
   for (const bool big : {false, true})
     for (const bool marked : {false, true}) {
@@ -154,7 +154,7 @@ TEST_CASE("tables in UTF-16 are read with and without a byte order mark") {
     }
 }
 
-TEST_CASE("columns of angles may be in degrees") {
+TEST_CASE("csv: columns of angles may be in degrees") {
   const double degree = std::numbers::pi / 180;
   const Table table = table_of("light_angle_deg,tilt,radius_deg\n30,0.5deg,7\n-90,pi/2,8\n");
   CHECK(table.names() == std::vector<std::string>{"light_angle", "tilt", "radius_deg"});
@@ -165,25 +165,25 @@ TEST_CASE("columns of angles may be in degrees") {
   CHECK(complaint("x\n30deg\n") == ", line 2: x = \"30deg\": must be a finite number");
 }
 
-TEST_CASE("commas that may mean one thing or another are refused") {
+TEST_CASE("csv: ambiguous commas are rejected") {
   CHECK(complaint("x\tz\n1,234\t5\n") ==
-        ", line 2: \"1,234\": the comma may stand before decimals or between thousands; must be "
-        "written with a decimal point");
+        ", line 2: \"1,234\": the comma may be a decimal or a thousands separator; must be written "
+        "with a decimal point");
   CHECK(complaint("x,z\n\"1,234\",5\n").find("thousands") != std::string::npos);
   CHECK(column(table_of("x\tz\n1,234\t0,5\n"), "x") == std::vector{1.234});
   CHECK(column(table_of("x;z\n1,234;5\n"), "x") == std::vector{1.234});
   CHECK(complaint("x;z\n0,5;1\n1.5;2\n") ==
-        ", line 2: \"0,5\" has a comma, and a number of line 3 a decimal point: must be all the "
-        "same");
+        ", line 2: \"0,5\" has a decimal comma, but line 3 has a decimal point: use only one of "
+        "the two");
   CHECK(complaint("x;z\n1.234,5;2\n") == ", line 2: x = \"1.234,5\": must be a finite number");
   CHECK(complaint("x,z\n0,5,1,5\n") ==
-        ", line 2: expected 2 fields, found 4 (beside decimal commas, fields must be separated by "
+        ", line 2: expected 2 fields, found 4 (with decimal commas, fields must be separated by "
         ";)");
 }
 
-TEST_CASE("what is no table is refused with the reason") {
+TEST_CASE("csv: files that are not tables are rejected with the reason") {
   CHECK(complaint("0,1\n2,3\n") ==
-        ", line 1: must be a line of column names, is a line of numbers");
+        ", line 1: must be a line of column names, but contains numbers");
   CHECK(complaint("# by hand\n0,1\n").find("line of column names") != std::string::npos);
   CHECK(complaint("x,z\n\"0,1\n") ==
         ", line 2: quotation marks must be around whole fields, on one line");
@@ -196,25 +196,26 @@ TEST_CASE("what is no table is refused with the reason") {
     CHECK(complaint(binary).find("is not a text file") != std::string::npos);
 }
 
-TEST_CASE("tables of keys begin their messages with the key and hold a row or more") {
+TEST_CASE("csv: messages about key tables begin with the key; empty tables are rejected") {
   const TextFile file("x,z\n");
   CHECK_THROWS_WITH_AS(read_key_table("rays", file.path()),
                        ("rays = " + file.path().string() +
-                        ": must hold at least one row, has names of columns alone")
+                        ": must have at least one row; it contains only column names")
                            .c_str(),
                        InputError);
 }
 
-TEST_CASE("rows without names have one length") {
+TEST_CASE("csv: rows without column names must have equal length") {
   CHECK(read_rows(TextFile("1,2\n3,4,\n").path()) ==
         std::vector<std::vector<double>>{{1, 2}, {3, 4}});
   CHECK(read_rows(TextFile("0,5\t2\n3\t4\n").path()) ==
         std::vector<std::vector<double>>{{0.5, 2}, {3, 4}});
   CHECK_THROWS_WITH_AS(read_rows(TextFile("1 2\n3\n").path()),
-                       doctest::Contains("line 2: has 1 numbers, the first row 2"), InputError);
+                       doctest::Contains("line 2: has 1 numbers, but the first row has 2"),
+                       InputError);
 }
 
-TEST_CASE("files that cannot be read are bad input") {
+TEST_CASE("csv: unreadable files are an InputError") {
   CHECK_THROWS_AS(read_csv("no/such/file.csv"), InputError);
   CHECK_THROWS_AS(read_csv(std::filesystem::temp_directory_path()), InputError);
 }

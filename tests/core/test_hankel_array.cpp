@@ -16,8 +16,8 @@ namespace {
 
 using namespace oracles;
 
-// Both sides of the border between the pieces and of the end of the short reduction of the phase,
-// and doubles next to zeros of J_0 and Y_0.
+// Both sides of the border between the pieces and of the limit of the short phase reduction, and
+// doubles next to zeros of J_0 and Y_0.
 const std::vector<double> special_arguments = {HankelFit::border,
                                                std::nextafter(HankelFit::border, 0),
                                                std::nextafter(HankelFit::border, 9),
@@ -33,7 +33,7 @@ const std::vector<double> special_arguments = {HankelFit::border,
                                                7.086051060301773,
                                                10.22234504349642};
 
-// Evenly in the logarithm from 1e-8 to 1e6, and the special ones, in no order.
+// Returns arguments from 1e-8 to 1e6, logarithmically spaced, and the special ones, unsorted.
 std::vector<double> arguments(int count) {
   std::vector<double> x = special_arguments;
   for (int i = 1; i <= count; ++i)
@@ -61,7 +61,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-TEST_CASE("Arrays of H_0 agree with 50 digits from 1e-8 to 1e6, at borders and at zeros") {
+TEST_CASE("hankel0: agrees with 50 digits from 1e-8 to 1e6, at borders and at zeros") {
   const auto x = arguments(3000);
   std::vector<Complex> h(x.size());
   hankel0(x, h);
@@ -72,7 +72,7 @@ TEST_CASE("Arrays of H_0 agree with 50 digits from 1e-8 to 1e6, at borders and a
   }
 }
 
-TEST_CASE("Sets of H_n agree with 50 digits relative to |H_n|, and are -inf beyond double") {
+TEST_CASE("hankel_sets: agree with 50 digits relative to |H_n|, and are -inf beyond double") {
   const Sets h(arguments(60), 60);
   for (std::size_t i = 0; i < h.x.size(); ++i)
     for (const int n : {0, 1, 2, 3, 5, 9, 17, 30, 45, 60}) {
@@ -89,7 +89,7 @@ TEST_CASE("Sets of H_n agree with 50 digits relative to |H_n|, and are -inf beyo
     }
 }
 
-TEST_CASE("Sets of H_n agree with Arb") {
+TEST_CASE("hankel_sets: agree with Arb") {
   const Table table = read_csv(FLATSPECKLE_DATA "/reference/bessel_arb.csv");
   const auto order = table.column("order"), j = table.column("j"), y = table.column("y");
   const auto x = table.column("x");
@@ -103,7 +103,7 @@ TEST_CASE("Sets of H_n agree with Arb") {
   }
 }
 
-TEST_CASE("Orders of hundreds run into -inf, never into NaN") {
+TEST_CASE("hankel_sets: orders of several hundred become -inf, never NaN") {
   const Sets h({1e-8, 1e-3, 0.3, 4.5, 50, 600}, 900);
   for (std::size_t i = 0; i < h.x.size(); ++i) {
     const auto slow = hankel(900, h.x[i]);
@@ -120,7 +120,7 @@ TEST_CASE("Orders of hundreds run into -inf, never into NaN") {
   }
 }
 
-TEST_CASE("A value depends neither on its neighbours nor on the length of the array") {
+TEST_CASE("hankel0 and hankel_sets: values do not depend on other elements or the length") {
   const auto x = arguments(40);
   std::vector<Complex> all(x.size());
   hankel0(x, all);
@@ -138,7 +138,7 @@ TEST_CASE("A value depends neither on its neighbours nor on the length of the ar
   }
 }
 
-TEST_CASE("Sets of order 0 and 1 leave out the rows above") {
+TEST_CASE("hankel_sets: orders 0 and 1 agree with the first rows of order 2") {
   for (const int order : {0, 1}) {
     const Sets some(special_arguments, order), more(special_arguments, 2);
     for (std::size_t i = 0; i < some.re.size(); ++i) {
@@ -148,7 +148,7 @@ TEST_CASE("Sets of order 0 and 1 leave out the rows above") {
   }
 }
 
-TEST_CASE("Wronskian J_{n+1} Y_n - J_n Y_{n+1} = 2 / (pi x) of sets, up to the turning point") {
+TEST_CASE("hankel_sets: Wronskian J_{n+1} Y_n - J_n Y_{n+1} = 2 / (pi x) up to the turning point") {
   const Sets h({0.7, 3.9, 4.1, 12, 60, 1e3, 1e6}, 60);
   for (std::size_t i = 0; i < h.x.size(); ++i)
     for (int n = 0; n < 60 && n < h.x[i]; ++n) {

@@ -19,7 +19,7 @@ namespace {
 using Bytes = std::vector<std::byte>;
 using Records = std::vector<std::pair<char, Bytes>>;
 
-/// A folder that goes with its test.
+/// A temporary folder.
 struct Folder {
   Folder() { fs::create_directory(path); }
   ~Folder() { fs::remove_all(path); }
@@ -55,7 +55,7 @@ Records written(const fs::path& path) {
 
 }  // namespace
 
-TEST_CASE("a journal goes on with its records, and keeps every configuration") {
+TEST_CASE("journal: reopened with its records and all configurations") {
   const Folder folder;
   CHECK(written(folder.file()).empty());
   Records found;
@@ -66,7 +66,7 @@ TEST_CASE("a journal goes on with its records, and keeps every configuration") {
   CHECK(Journal::configs_in(folder.file()) == std::vector<std::string>{"first", "second"});
 }
 
-TEST_CASE("a journal of another run is refused, whether to read or to go on") {
+TEST_CASE("journal: that of another run is rejected, for reading and for continuing") {
   const Folder folder;
   written(folder.file());
   Records found;
@@ -78,7 +78,7 @@ TEST_CASE("a journal of another run is refused, whether to read or to go on") {
   CHECK(fs::file_size(folder.file()) == size);
 }
 
-TEST_CASE("a damaged journal is kept aside, and goes on from its whole records") {
+TEST_CASE("journal: a damaged one is backed up and continued from its complete records") {
   const Folder folder;
   written(folder.file());
   change(folder.file(), fs::file_size(folder.file()) - 1);
@@ -92,7 +92,7 @@ TEST_CASE("a damaged journal is kept aside, and goes on from its whole records")
   CHECK_FALSE(mended.is_damaged());
 }
 
-TEST_CASE("a record that is kept replaces the one before, and any damage to it is noticed") {
+TEST_CASE("kept record: replaces the previous one, and any damage is detected") {
   const Folder folder;
   CHECK_FALSE(kept_record(folder.file(), "this", "run"));
   for (std::size_t count : {9, 4}) {
@@ -115,7 +115,7 @@ TEST_CASE("a record that is kept replaces the one before, and any damage to it i
   CHECK_THROWS_AS(kept_record(folder.file(), "this", "run"), InputError);
 }
 
-TEST_CASE("a run's state comes back from its bytes, bit for bit") {
+TEST_CASE("run state: restored from its bytes bit for bit") {
   RunState state{GroupedSums(2), {{1, 2}, {3, 4}, {80, 100}, {INFINITY, 0.4}}, 0.1, 0.2};
   for (int batch = 0; batch < 300; ++batch)
     state.sums.add(10, std::vector<Complex>{{1.0 / (1 + batch), 0.5}, {2, 0.1 * batch}});

@@ -28,7 +28,7 @@ void add_keys(Keys& keys, Lens& lens) {
   keys.add("coated", lens.coated, "Whether it is").no_file();
 }
 
-/// What a maker reads: a rod has no use for a radius.
+/// Reads the keys that the kind uses: a rod has no radius.
 int make(const Keys& keys, const Lens& lens) {
   keys.read(lens.count);
   keys.read(lens.centre);
@@ -50,14 +50,14 @@ std::string refusal_of(const Lens& lens) {
 
 }  // namespace
 
-TEST_CASE("what is given and not read is refused, of values as well") {
+TEST_CASE("keys: given keys that are not read are rejected") {
   CHECK(made_of(Lens{.radius = 2}, make) == 2);
   CHECK(refusal_of({.kind = "rod", .radius = 2}) == "radius = 2: is a key of ball only");
-  CHECK(refusal_of({.kind = "rod", .radius = 1}) == "");  // the default gives nothing
-  CHECK(refusal_of({.index = 1.5}) == "index = 1.5: nothing here has use for it; leave it out");
+  CHECK(refusal_of({.kind = "rod", .radius = 1}) == "");  // equal to the default
+  CHECK(refusal_of({.index = 1.5}) == "index = 1.5: is not used here; leave it out");
 }
 
-TEST_CASE("rows say what is accepted") {
+TEST_CASE("keys: values outside the schema entries are rejected") {
   CHECK(refusal_of({.kind = "cube"}) == "kind = cube: must be one of ball rod");
   CHECK(refusal_of({.radius = 0}) == "radius = 0: must be positive");
   CHECK(refusal_of({.radius = std::nan("")}) == "radius = nan: must be positive");
@@ -67,7 +67,7 @@ TEST_CASE("rows say what is accepted") {
   CHECK(refusal_of({.count = -1}) == "count = -1: must be positive");
 }
 
-TEST_CASE("texts fill members") {
+TEST_CASE("keys: texts are converted to members") {
   Lens lens;
   Keys keys;
   add_keys(keys, lens);
@@ -87,13 +87,13 @@ TEST_CASE("texts fill members") {
   refused("radius", "2x", "must be a number");
   refused("count", "1.5", "must be a whole number of at most 18 digits");
   refused("count", "99999999999999999999", "must be a whole number of at most 18 digits");
-  refused("kind", "a\"b", "must be without control characters, \" and \\");
+  refused("kind", "a\"b", "must not contain control characters, \" or \\");
   CHECK(refusal([&] {
           keys.set("radius", {"1", "2"});
         }) == "radius: must have one value, and be given once");
 }
 
-TEST_CASE("the resolved scene is what was read, and identity what of it changes results") {
+TEST_CASE("keys: config() contains all keys read, identity() those that change results") {
   Lens lens;
   Keys keys;
   add_keys(keys, lens);
@@ -105,7 +105,7 @@ TEST_CASE("the resolved scene is what was read, and identity what of it changes 
   CHECK(keys.config({"kind"}) == "radius = 1\ncount = 3\n");
 }
 
-TEST_CASE("kinds of a thing share a name") {
+TEST_CASE("keys: entries of several kinds share a name") {
   Lens ball, rod;
   Keys keys;
   keys.add("index", ball.index, "Of the ball").only_of("ball");
@@ -118,7 +118,7 @@ TEST_CASE("kinds of a thing share a name") {
   CHECK(refusal([&] { keys.refuse_unread(); }) == "");
 }
 
-TEST_CASE("complex numbers") {
+TEST_CASE("parse_complex: accepted and rejected texts") {
   for (const auto& [text, value] : {std::pair<std::string, Complex>{"1.5", 1.5},
                                     {"1.5+0.1i", {1.5, 0.1}},
                                     {" -2 - i ", {-2, -1}},

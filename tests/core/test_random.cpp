@@ -8,7 +8,7 @@
 
 namespace flatspeckle::test_random {
 
-TEST_CASE("random numbers are addressed: seed, stream, batch and draw alone fix them") {
+TEST_CASE("random stream: depends only on seed, stream, batch and draw") {
   RandomStream a(7, 1, 5), b(7, 1, 5);
   for (int i = 0; i < 100; ++i) CHECK(a.bits() == b.bits());
   const auto first = [](std::uint64_t seed, std::uint64_t stream, std::uint64_t batch) {
@@ -19,8 +19,8 @@ TEST_CASE("random numbers are addressed: seed, stream, batch and draw alone fix 
   CHECK(first(7, 1, 5) != first(7, 1, 6));
 }
 
-TEST_CASE("random bits are those of Threefry4x64-20") {
-  // Known answer of Random123 (kat_vectors): counter 0, key 0.
+TEST_CASE("random bits: agree with known answers of Threefry4x64-20") {
+  // Known answers of Random123 (kat_vectors): counter 0, key 0.
   RandomStream zero(0, 0, 0);
   CHECK(zero.bits() == 0x09218ebde6c85537ULL);
   CHECK(zero.bits() == 0x55941f5266d86105ULL);
@@ -28,12 +28,12 @@ TEST_CASE("random bits are those of Threefry4x64-20") {
   CHECK(zero.bits() == 0xee29ec846bd2e40bULL);
 }
 
-TEST_CASE("the least and the largest bits make numbers within (0, 1)") {
+TEST_CASE("uniform numbers: the extreme bit patterns are within (0, 1)") {
   CHECK(RandomStream::uniform(0) == 0x1p-54);
   CHECK(RandomStream::uniform(~std::uint64_t{0}) == 1 - 0x1p-53);
 }
 
-TEST_CASE("a number that is put back comes next, and those after it as ever") {
+TEST_CASE("random stream: a number put back is next, later ones are unchanged") {
   RandomStream fresh(7, 1, 5), drawn(7, 1, 5), plain(7, 1, 5);
   fresh.put_back(0.3);
   CHECK(fresh.uniform() == doctest::Approx(0.3).epsilon(1e-15));
@@ -46,7 +46,7 @@ TEST_CASE("a number that is put back comes next, and those after it as ever") {
   }
 }
 
-TEST_CASE("uniform numbers are uniform, within and across batches") {
+TEST_CASE("uniform numbers: uniform within and across batches (chi-squared)") {
   constexpr int bins = 64, draws = 200'000;
   std::vector<double> within(bins), across(bins);
   RandomStream stream(3, 1, 0);

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// An empty folder, gone at the end of its scope.
+/// A temporary empty folder.
 class Folder {
  public:
   Folder() {
@@ -49,7 +49,7 @@ class Folder {
   fs::path path_;
 };
 
-/// No file can grow past `bytes` while this lives: stands for a full disk.
+/// Limits the size of files to `bytes` during its lifetime, like a full disk.
 class FullDisk {
  public:
   explicit FullDisk(rlim_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -91,7 +91,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
-TEST_CASE("attributes of every type come back") {
+TEST_CASE("result file: attributes of all types are read back") {
   const Folder folder;
   const std::vector<double> doubles{1.5, -0.1};
   const std::vector<std::string> names{"one", "", "three \u00b5m"};
@@ -124,7 +124,7 @@ TEST_CASE("attributes of every type come back") {
   CHECK_FALSE(reader.has_attribute("mc/solve", "text"));
 }
 
-TEST_CASE("datasets of every type and size come back with shape, axes and units") {
+TEST_CASE("result file: datasets of all types are read back with shape, axes and units") {
   const Folder folder;
   const std::vector<double> angles{0, 0.1, -0.3}, tilts{0, 0.01};
   const std::vector<Complex> field{{1, 2}, {3, -4}, {5, 0}, {0, 6}, {-7, 8}, {9, 1e-300}};
@@ -157,7 +157,7 @@ TEST_CASE("datasets of every type and size come back with shape, axes and units"
   CHECK(reader.dataset<Complex>("nothing").empty());
 }
 
-TEST_CASE("the same results make the same bytes") {
+TEST_CASE("result file: equal results produce equal bytes") {
   const Folder folder;
   const auto bytes = [&](const std::string& name) {
     ResultFile file(folder / name);
@@ -173,7 +173,7 @@ TEST_CASE("the same results make the same bytes") {
   CHECK(first == bytes("second"));
 }
 
-TEST_CASE("what is not finite is never written") {
+TEST_CASE("result file: values that are not finite are rejected") {
   const Folder folder;
   ResultFile file(folder / "a.h5");
   for (double bad : {not_a_number, infinity, -infinity}) {
@@ -195,7 +195,7 @@ TEST_CASE("what is not finite is never written") {
   CHECK_FALSE(reader.has_attribute("/", "x"));
 }
 
-TEST_CASE("mistakes in the use of a result file are told") {
+TEST_CASE("result file: incorrect calls are a logic_error") {
   const Folder folder;
   ResultFile file(folder / "a.h5");
   const std::vector<double> two{1, 2};
@@ -212,7 +212,7 @@ TEST_CASE("mistakes in the use of a result file are told") {
   CHECK_THROWS_AS(file.commit(), std::logic_error);
 }
 
-TEST_CASE("a file appears with commit alone, and replaces the old one as a whole") {
+TEST_CASE("result file: appears only with commit() and replaces the old one as a whole") {
   const Folder folder;
   { const ResultFile unfinished(folder / "a.h5"); }
   CHECK(folder.entries() == 0);
@@ -229,7 +229,7 @@ TEST_CASE("a file appears with commit alone, and replaces the old one as a whole
   CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("two files of one path may be in the making") {
+TEST_CASE("result file: two files with the same path may be open") {
   const Folder folder;
   ResultFile first(folder / "a.h5"), second(folder / "a.h5");
   first.attribute("/", "number", 1.0);
@@ -239,7 +239,7 @@ TEST_CASE("two files of one path may be in the making") {
   CHECK(read_number(folder / "a.h5") == 1);
 }
 
-TEST_CASE("a full disk is an IoError and leaves the old file alone") {
+TEST_CASE("result file: a full disk is an IoError and keeps the old file") {
   const Folder folder;
   write_number(folder / "a.h5", 1);
   ResultFile file(folder / "a.h5");
@@ -252,7 +252,7 @@ TEST_CASE("a full disk is an IoError and leaves the old file alone") {
   CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("a dataset written in blocks comes back whole, in memory and on disk") {
+TEST_CASE("result file: a dataset written in blocks is read back, in memory and on disk") {
   const Folder folder;
   std::vector<Complex> values(2 * 5 * 7);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = {static_cast<double>(i), -1};
@@ -279,7 +279,7 @@ TEST_CASE("a dataset written in blocks comes back whole, in memory and on disk")
   }
 }
 
-TEST_CASE("blocks of all kinds, and a scale that is made as it is written") {
+TEST_CASE("result file: blocks of all types and a generated scale are read back") {
   const Folder folder;
   constexpr std::size_t count = 20'000;  // more than are written at once
   CollectedResult collected;
@@ -311,7 +311,7 @@ TEST_CASE("blocks of all kinds, and a scale that is made as it is written") {
   CHECK(std::get<3>(collected.find("word")->values)[2 * 14'000 - 1] == "7000");
 }
 
-TEST_CASE("a file on disk leaves nothing without commit or room, and the old one alone") {
+TEST_CASE("result file: without commit or disk space the old file remains alone") {
   const Folder folder;
   write_number(folder / "a.h5", 1);
   const std::vector<Complex> row(100'000, Complex(0.1, 0.2));
@@ -330,7 +330,7 @@ TEST_CASE("a file on disk leaves nothing without commit or room, and the old one
   CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("a place that cannot be written is bad input, told at once") {
+TEST_CASE("result file: an unwritable path is an InputError at once") {
   const Folder folder;
   std::ofstream(folder / "file") << "text";
   CHECK_THROWS_AS(check_writable(folder / "missing" / "a.h5"), InputError);
@@ -344,7 +344,7 @@ TEST_CASE("a place that cannot be written is bad input, told at once") {
   CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("what a killed process left beside a file is removed") {
+TEST_CASE("result file: temporary files of killed processes are removed") {
   const Folder folder;
   const char* const others[] = {".a.h5.tmp-x", ".b.h5.tmp-1", ".a.h5.tmp", "a.h5.tmp-1"};
   for (const char* name : {".a.h5.tmp-1", ".a.h5.tmp-4194304"}) std::ofstream(folder / name) << "1";
@@ -354,16 +354,16 @@ TEST_CASE("what a killed process left beside a file is removed") {
   for (const char* name : others) CHECK(fs::exists(folder / name));
 }
 
-TEST_CASE("a result on the disk is sealed as one in memory is") {
+TEST_CASE("result file: a file on disk is checksummed like one in memory") {
   const Folder folder;
   ResultFile file(folder / "a.h5", ResultFile::Storage::disk);
   file.dataset("noise", noise(200'000), {std::size_t{200'000}}, "", "");
-  file.commit_sealed(Durable::no);
-  CHECK(is_sealed(folder / "a.h5"));
+  file.commit_checksummed(Durable::no);
+  CHECK(is_checksummed(folder / "a.h5"));
   CHECK(ResultReader(folder / "a.h5").dataset<double>("noise") == noise(200'000));
 }
 
-TEST_CASE("a folder that vanishes before the end is an IoError") {
+TEST_CASE("result file: a folder removed before commit() is an IoError") {
   const Folder folder;
   fs::create_directory(folder / "sub");
   ResultFile file(folder / "sub" / "a.h5");
@@ -371,7 +371,7 @@ TEST_CASE("a folder that vanishes before the end is an IoError") {
   CHECK_THROWS_AS(file.commit(), IoError);
 }
 
-TEST_CASE("missing, foreign, truncated and damaged files are refused") {
+TEST_CASE("result reader: missing, foreign, truncated and damaged files are rejected") {
   const Folder folder;
   CHECK_THROWS_AS(ResultReader(folder / "missing.h5"), InputError);
   std::ofstream(folder / "foreign.h5") << "x,z\n1,2\n";
@@ -392,7 +392,7 @@ TEST_CASE("missing, foreign, truncated and damaged files are refused") {
   CHECK_THROWS_AS(ResultReader(folder / "a.h5").dataset<double>("noise"), InputError);
 }
 
-TEST_CASE("what a file lacks, or holds as another type, is bad input") {
+TEST_CASE("result reader: missing datasets and wrong types are an InputError") {
   const Folder folder;
   const std::vector<double> x{1.5, 2};
   ResultFile file(folder / "a.h5");
@@ -412,7 +412,7 @@ TEST_CASE("what a file lacks, or holds as another type, is bad input") {
   CHECK_THROWS_AS(reader.attribute<double>("/", "list"), InputError);
 }
 
-TEST_CASE("a run's state comes back bit for bit and goes on as if never written") {
+TEST_CASE("run state: read back bit for bit, and continued like one never written") {
   const Folder folder;
   const std::size_t size = 37;
   const std::vector<double> values = noise(2 * size * 300);
@@ -450,7 +450,7 @@ TEST_CASE("a run's state comes back bit for bit and goes on as if never written"
   CHECK_THROWS_AS(read_state(reader, "other", size), InputError);
 }
 
-TEST_CASE("a result says where it came from") {
+TEST_CASE("provenance: is read back from the result") {
   const Folder folder;
   const Provenance provenance{"flatspeckle solve --seed 18446744073709551615",
                               "seed = 1\n",

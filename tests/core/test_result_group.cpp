@@ -37,7 +37,7 @@ const std::vector<Complex> four{{1, 1}, {2, 2}, {3, 3}, {4, 4}};
 const std::vector<std::uint64_t> counts{7, 8};
 const Estimate estimate{{{1, 5}, {2, 5}}, {0.1, 0.2}};
 
-/// A file in a folder of its own, with the roles bound and both axes.
+/// A file in a temporary folder, with the roles bound and both axes.
 struct Written {
   Written() : file(path()), root(file, table), mc(file, table, "mc") {
     file.bind("VIEW", {"sensor"});
@@ -64,7 +64,7 @@ struct Written {
 
 }  // namespace
 
-TEST_CASE("rows give axes, units, names and companions") {
+TEST_CASE("result group: schema entries define axes, units, names and error datasets") {
   Written out;
   out.mc.put("covariance", four, errors);
   out.mc.put("intensity", estimate);
@@ -93,7 +93,7 @@ TEST_CASE("rows give axes, units, names and companions") {
   CHECK(file.attribute<std::uint64_t>("range", "censored") == 1);
 }
 
-TEST_CASE("what has no row, or another shape, is refused") {
+TEST_CASE("result group: unknown names and wrong shapes are rejected") {
   const Written out;
   CHECK_THROWS_WITH_AS(out.root.put("albedo", 1.0), "albedo: no row for it in test",
                        std::logic_error);
@@ -108,7 +108,7 @@ TEST_CASE("what has no row, or another shape, is refused") {
   CHECK_THROWS_AS(out.root.attribute("depth", std::uint64_t{1}), std::logic_error);
 }
 
-TEST_CASE("what is not finite is left out and noted, the rest is there") {
+TEST_CASE("result group: values that are not finite are omitted and listed") {
   Written out;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   out.root.put("intensity", two, std::vector<double>{0.1, HUGE_VAL});
@@ -129,17 +129,17 @@ TEST_CASE("what is not finite is left out and noted, the rest is there") {
   CHECK(file.has_attribute("/", "undefined"));
 }
 
-TEST_CASE("a role must be bound") {
+TEST_CASE("result group: an unbound role is rejected") {
   Written out;
   ResultFile other(out.folder / "b.h5");
   const ResultGroup root(other, table);
   other.bind("COVARIANCE", {"length"});
   root.put("tilt", tilts);
-  CHECK_THROWS_WITH_AS(root.put("intensity", estimate), "VIEW: stands for nothing here",
+  CHECK_THROWS_WITH_AS(root.put("intensity", estimate), "VIEW: this role is not bound",
                        std::logic_error);
 }
 
-TEST_CASE("invariants stand in the file beside their limits, and the worst one is remembered") {
+TEST_CASE("result group: invariants are written with their limits, the worst is reported") {
   Written out;
   const std::vector<Invariant> kept{{0.5, 1}, {0, 0}}, broken{{2, 4}, {0.2, 0.1}};
   out.root.check("invariants/power", kept);
@@ -156,7 +156,7 @@ TEST_CASE("invariants stand in the file beside their limits, and the worst one i
   CHECK(file.dataset<double>("mc/invariants/power_limit") == std::vector<double>{4, 0.1});
 }
 
-TEST_CASE("a collected result keeps its invariants or does not") {
+TEST_CASE("collected result: reports whether its invariants hold") {
   CollectedResult kept;
   ResultFile(kept).dataset("range", std::span<const double>(two).first(1), {}, "", "");
   CHECK(kept.keeps_invariants());

@@ -14,7 +14,7 @@ namespace flatspeckle::test_runner {
 
 namespace {
 
-/// Mean of 100 numbers 1 + uniform per batch; uneven run times put batches out of order.
+/// Returns a job that averages 100 numbers 1 + uniform per batch; uneven run times reorder batches.
 BatchJob uneven_job() {
   BatchJob job;
   job.size = 2;
@@ -45,7 +45,7 @@ bool same_sums(const RunState& a, const RunState& b) {
 
 }  // namespace
 
-TEST_CASE("the result depends on the number of batches, not on threads") {
+TEST_CASE("runner: the result depends on the number of batches, not on threads") {
   const auto job = uneven_job();
   StopRule stop;
   stop.samples = 50'000;
@@ -54,13 +54,13 @@ TEST_CASE("the result depends on the number of batches, not on threads") {
   for (int threads : {2, 4, 13}) CHECK(same_sums(one, run(job, stop, threads)));
 }
 
-TEST_CASE("samples are rounded up to whole batches") {
+TEST_CASE("runner: samples are rounded up to whole batches") {
   StopRule stop;
   stop.samples = 101;
   CHECK(run(uneven_job(), stop, 2).sums.total_samples() == 200);
 }
 
-TEST_CASE("a target error stops at the same batch whatever the threads") {
+TEST_CASE("runner: a target error stops at the same batch for any number of threads") {
   StopRule stop;
   stop.target_error = 6e-4;
   const auto job = uneven_job();
@@ -70,7 +70,7 @@ TEST_CASE("a target error stops at the same batch whatever the threads") {
   CHECK(same_sums(one, four));
 }
 
-TEST_CASE("a resumed run equals an uninterrupted one") {
+TEST_CASE("runner: a resumed run equals an uninterrupted one") {
   const auto job = uneven_job();
   StopRule half, whole;
   half.samples = 12'300;
@@ -78,7 +78,7 @@ TEST_CASE("a resumed run equals an uninterrupted one") {
   CHECK(same_sums(run(job, whole, 3), run(job, whole, 2, run(job, half, 3))));
 }
 
-TEST_CASE("the trace falls with slope -1/2") {
+TEST_CASE("runner: the relative error decreases with slope -1/2 in samples") {
   StopRule stop;
   stop.samples = 400'000;
   const auto trace = run(uneven_job(), stop, 2).trace;
@@ -94,8 +94,8 @@ TEST_CASE("the trace falls with slope -1/2") {
     CHECK(trace.wall_s[i] >= trace.wall_s[i - 1]);
 }
 
-TEST_CASE("a target error is not met by batches that are all the same") {
-  // Direct light in closed form, and scattered light of which no path finds any.
+TEST_CASE("runner: equal batches do not satisfy a target error unless deterministic") {
+  // Direct light in closed form, and scattered light that no path samples.
   BatchJob job;
   job.size = 2;
   job.samples_per_batch = 100;
@@ -117,7 +117,7 @@ TEST_CASE("a target error is not met by batches that are all the same") {
   CHECK(reason(dark) == StopReason::samples);
   job.deterministic = true;
   CHECK(reason(job) == StopReason::target_error);
-  // little light beside a closed form that is no part of the sums
+  // Little light added to a closed form that is not in the sums.
   job.deterministic = false;
   job.run = [](std::uint64_t number, std::span<Complex> sums) {
     sums[0] += 1e-14 * RandomStream(5, 1, number).uniform();
@@ -130,7 +130,7 @@ TEST_CASE("a target error is not met by batches that are all the same") {
   CHECK(reason(job) == StopReason::target_error);
 }
 
-TEST_CASE("a time budget ends a run that has no other end") {
+TEST_CASE("runner: a time limit ends a run without other limits") {
   StopRule stop;
   stop.seconds = 0.05;
   const auto state = run(uneven_job(), stop, 2);
@@ -138,7 +138,7 @@ TEST_CASE("a time budget ends a run that has no other end") {
   CHECK(state.wall_s < 10);
 }
 
-TEST_CASE("an error in a batch comes out of the run") {
+TEST_CASE("runner: an error in a batch is passed to the caller") {
   auto job = uneven_job();
   job.run = [](std::uint64_t number, std::span<Complex>) {
     if (number == 20) throw std::runtime_error("batch 20");
@@ -148,7 +148,7 @@ TEST_CASE("an error in a batch comes out of the run") {
   CHECK_THROWS_WITH(run(job, stop, 4), "batch 20");
 }
 
-TEST_CASE("a batch that gives up ends the run as interrupted, with the batches before it") {
+TEST_CASE("runner: an interrupted batch ends the run with the batches before it") {
   auto job = uneven_job();
   job.run = [body = job.run](std::uint64_t number, std::span<Complex> sums) {
     if (number == 20) throw Interrupted{};
@@ -162,14 +162,14 @@ TEST_CASE("a batch that gives up ends the run as interrupted, with the batches b
   CHECK_THROWS_AS(run_to_end(job, {stop, 2, "", {}}, state), Interrupted);
 }
 
-TEST_CASE("batches that share work are never under way together") {
+TEST_CASE("runner: one_by_one batches never run at the same time") {
   auto job = uneven_job();
   job.one_by_one = true;
-  std::atomic<int> under_way{0}, most{0};
+  std::atomic<int> running{0}, most{0};
   job.run = [&, body = job.run](std::uint64_t number, std::span<Complex> sums) {
-    most = std::max(most.load(), ++under_way);
+    most = std::max(most.load(), ++running);
     body(number, sums);
-    --under_way;
+    --running;
   };
   StopRule stop;
   stop.samples = 20'000;
@@ -177,8 +177,8 @@ TEST_CASE("batches that share work are never under way together") {
   CHECK(most == 1);
 }
 
-// Last: the flag stays raised for the rest of this program.
-TEST_CASE("zz a signal ends the run after the batches in hand, without a gap") {
+// Must be last: the interrupt flag remains set for the rest of this program.
+TEST_CASE("zz runner: a signal ends the run after the current batches, without a gap") {
   catch_interrupts();
   auto job = uneven_job();
   std::atomic<bool> raised{false};

@@ -7,7 +7,7 @@
 
 namespace flatspeckle::test_scaled_bessel {
 
-TEST_CASE("Where numbers are in range, scaled cylinder functions are the plain ones") {
+TEST_CASE("scaled cylinder functions: agree with the unscaled ones in their range") {
   for (const double x : {0.01, 1.0, 2.4, 30.0}) {
     const auto h = hankel(60, x);
     const auto j = bessel_j(60, x);
@@ -20,12 +20,12 @@ TEST_CASE("Where numbers are in range, scaled cylinder functions are the plain o
   }
 }
 
-TEST_CASE("Wronskian of cylinder functions far beyond the range of numbers") {
+TEST_CASE("scaled cylinder functions: Wronskian far beyond the range of long double") {
   const int order = 6000;
   for (const double x : {1e-4, 1.0, 100.0}) {
     const auto h = scaled_hankel(order, x);
     const auto j = scaled_bessel_j(order, x);
-    CHECK(log2(abs(h[order])) > 20000);  // 2^16384 ends long double
+    CHECK(log2(abs(h[order])) > 20000);  // long double ends at 2^16384
     for (int n = 0; n < order; n += 7) {
       // J_{n+1} H_n - J_n H_{n+1} = 2i / (pi x)   (DLMF 10.5.2)
       const auto wronskian = static_cast<ExtendedComplex>(j[n + 1] * h[n] - j[n] * h[n + 1]);
@@ -35,7 +35,7 @@ TEST_CASE("Wronskian of cylinder functions far beyond the range of numbers") {
   }
 }
 
-TEST_CASE("Scaled numbers add and multiply") {
+TEST_CASE("scaled numbers: sums, products and square roots") {
   const ScaledReal huge(3, 30000), small(0x1p-5000L), one = 1;
   CHECK(static_cast<long double>(huge * ScaledReal(0.5L, -30000)) == 1.5L);
   CHECK(static_cast<long double>(huge + -huge) == 0);

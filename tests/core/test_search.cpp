@@ -10,7 +10,7 @@ namespace flatspeckle::test_search {
 
 namespace {
 
-/// Of two unequal hills, the higher at (0.3, 0.6) of height 1, the other at (0.8, 0.2) of `second`.
+/// Two unequal hills: the higher at (0.3, 0.6) of height 1, the other at (0.8, 0.2) of `second`.
 double hills(const UnitPlace& at, double second = 0.9) {
   const auto hill = [&](double x, double y, double width) {
     const double dx = (at[0] - x) / width, dy = (at[1] - y) / width;
@@ -24,8 +24,8 @@ double normal(RandomStream& random) {
          std::cos(6.283185307179586 * random.uniform());
 }
 
-/// Measured with noise: a plane that is the same at all places of a draw, which differences hardly
-/// see, and some of each place's own.
+/// Measurement of the hills with noise: a plane common to all places of a draw, which nearly
+/// cancels in differences, and independent noise of each place.
 struct NoisyHills {
   double common = 0.3, own = 0.03;
   std::uint64_t seed = 1;
@@ -65,7 +65,7 @@ struct NoisyHills {
 
 }  // namespace
 
-TEST_CASE("errors of differences know what is common") {
+TEST_CASE("differences of measurements: common noise cancels in their errors") {
   const NoisyHills noisy{.common = 0.3, .own = 0};
   const SearchPlace a{{0.3, 0.6}}, b{{0.3, 0.5}};
   const Measured at_a = noisy.at(a, {}), at_b = noisy.at(b, {});
@@ -78,13 +78,13 @@ TEST_CASE("errors of differences know what is common") {
   CHECK(error(Measured{2}) == 0);
 }
 
-TEST_CASE("a ratio has the error of what differs") {
+TEST_CASE("ratio of measurements: common relative noise cancels in its error") {
   const Measured a{4, {3.9, 4.1}}, b{2, {1.95, 2.05}};
   CHECK(ratio(a, b).value == 2);
   CHECK(error(ratio(a, b)) < 1e-15);
 }
 
-TEST_CASE("sums without blocks") {
+TEST_CASE("without_blocks: jackknife sums without one block each") {
   GroupedSums sums(2);
   for (int batch = 0; batch < 600; ++batch)
     sums.add(3, std::vector<Complex>{Complex(batch), Complex(0, 1)});
@@ -93,7 +93,7 @@ TEST_CASE("sums without blocks") {
   Complex total = 0;
   for (const GroupedSums& rest : without) total += rest.total()[0];
   CHECK(std::abs(total - 31.0 * sums.total()[0]) < 1e-6);
-  // batches 0, 32, ... of group 0, 32, ..., and those that came to these groups later
+  // Block 0 has groups 0, 32, ..., whose batches are these, including those added later.
   double own = 0;
   for (int batch = 0; batch < 600; ++batch)
     if (batch % 256 % 32 == 0) own += batch;
@@ -101,7 +101,7 @@ TEST_CASE("sums without blocks") {
   CHECK(without_blocks(sums, 1000).size() == 256);
 }
 
-TEST_CASE("the higher of two hills, without noise") {
+TEST_CASE("search: finds the higher of two hills without noise") {
   NoisyHills exact{.common = 0, .own = 0};
   SearchTask task = exact.task();
   task.measure = [&](const std::vector<SearchPlace>& places, const SearchEffort&) {
@@ -120,8 +120,8 @@ TEST_CASE("the higher of two hills, without noise") {
   CHECK(winner.lead.confidence() == 1);
 }
 
-/// As the power of a guide: it rises towards a face, on which two places are high.
-TEST_CASE("a narrow hill on a face of the cube, beside a wide one") {
+/// The function resembles the power of a guide: it rises towards a face with two maxima.
+TEST_CASE("search: finds a narrow hill on a face of the cube next to a wide one") {
   const auto height = [](const UnitPlace& at) {
     const double wide = 0.75 * at[0] * std::exp(-std::pow(at[1] - 0.4, 2) / 0.1);
     return wide + std::exp(-(1 - at[0]) / 0.1 - std::pow(at[1] - 0.85, 2) / 0.02);
@@ -141,7 +141,7 @@ TEST_CASE("a narrow hill on a face of the cube, beside a wide one") {
   }
 }
 
-TEST_CASE("one key alone, and a choice") {
+TEST_CASE("search: one dimension and a choice") {
   SearchTask task{.dimensions = 1, .choices = 3, .measure = {}};
   task.measure = [](const std::vector<SearchPlace>& places, const SearchEffort&) {
     std::vector<Measured> found;
@@ -156,8 +156,8 @@ TEST_CASE("one key alone, and a choice") {
   CHECK(winner.best.place.at[0] == doctest::Approx(0.7).epsilon(3e-3));
 }
 
-/// Without measuring any twice.
-TEST_CASE("places of many choices are spread evenly over each") {
+/// No place is measured twice.
+TEST_CASE("search: places of many choices are distributed evenly over each") {
   for (const std::size_t choices : {1, 8, 21, 34, 55, 100}) {
     CAPTURE(choices);
     std::vector<std::vector<double>> tried(choices);
@@ -181,11 +181,11 @@ TEST_CASE("places of many choices are spread evenly over each") {
   }
 }
 
-/// The winner's value is fresh: its mean over searches is that of the place, where values that the
-/// search went by are too high.
-TEST_CASE("with noise") {
+/// The winner is measured again, so that its value is unbiased over many searches; values that
+/// guided the search are biased upward.
+TEST_CASE("search with noise: the winner is within the target error and unbiased") {
   constexpr int searches = 40;
-  double pull = 0, pull2 = 0, luck = 0, shortfall2 = 0;
+  double mean_deviation = 0, mean_square_deviation = 0, selection_bias = 0, shortfall2 = 0;
   int higher = 0;
   constexpr double target = 0.01;
   for (int seed = 1; seed <= searches; ++seed) {
@@ -195,24 +195,24 @@ TEST_CASE("with noise") {
     const Winner winner = chosen_winner(noisy.task(), settings, end.best);
     const double there = hills(winner.best.place.at);
     const double deviation = (winner.best.measured.value - there) / error(winner.best.measured);
-    pull += deviation / searches;
-    pull2 += deviation * deviation / searches;
+    mean_deviation += deviation / searches;
+    mean_square_deviation += deviation * deviation / searches;
     const FoundPlace& first = end.best.front();
-    luck += (first.measured.value - hills(first.place.at)) / searches;
+    selection_bias += (first.measured.value - hills(first.place.at)) / searches;
     higher += winner.best.place.at[0] < 0.55;
     shortfall2 += (1 - there) * (1 - there) / searches;
     CHECK(winner.reached);
   }
-  CHECK(std::abs(pull) < 4 / std::sqrt(searches));
-  CHECK(pull2 == doctest::Approx(1).epsilon(0.6));
-  CHECK(luck > 0);
+  CHECK(std::abs(mean_deviation) < 4 / std::sqrt(searches));
+  CHECK(mean_square_deviation == doctest::Approx(1).epsilon(0.6));
+  CHECK(selection_bias > 0);
   CHECK(higher == searches);
-  // places are told apart to the target error: so far below the summit is where a search ends
+  // Places are distinguished to the target error, which limits the distance from the maximum.
   CHECK(std::sqrt(shortfall2) < target);
 }
 
-/// How often the winner is the better one is what its confidence says.
-TEST_CASE("confidence") {
+/// The fraction of correct winners agrees with the confidence.
+TEST_CASE("search: the confidence agrees with the frequency of correct winners") {
   constexpr int searches = 60;
   double expected = 0, better = 0, variance = 0;
   for (int seed = 1; seed <= searches; ++seed) {

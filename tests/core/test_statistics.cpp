@@ -9,7 +9,7 @@
 
 namespace flatspeckle::test_statistics {
 
-TEST_CASE("the jackknife of a mean is the standard error of the mean") {
+TEST_CASE("jackknife: the error of a mean is the standard error of the mean") {
   GroupedSums sums(1);
   std::vector<Complex> values;
   RandomStream random(1, 1, 0);
@@ -26,7 +26,7 @@ TEST_CASE("the jackknife of a mean is the standard error of the mean") {
   CHECK(estimate.error[0] == doctest::Approx(std::sqrt(variance / 100)).epsilon(1e-10));
 }
 
-TEST_CASE("errors of means of entries are those of the jackknife, which leaves groups out") {
+TEST_CASE("jackknife: sums of entries agree with the general estimator") {
   constexpr std::size_t pixels = 5, stride = 4, parts = 3;
   const Estimator added = [](double samples, std::span<const Complex> sums) {
     std::vector<Complex> values(pixels);
@@ -34,7 +34,7 @@ TEST_CASE("errors of means of entries are those of the jackknife, which leaves g
       if (i % stride < parts) values[i / stride] += sums[i] / samples;
     return values;
   };
-  for (const int batches : {1, 2, 40, 700}) {  // of which some groups have one more
+  for (const int batches : {1, 2, 40, 700}) {  // with 700, groups have unequal size
     GroupedSums sums(pixels * stride);
     RandomStream random(3, 1, 0);
     for (int batch = 0; batch < batches; ++batch) {
@@ -61,7 +61,7 @@ TEST_CASE("errors of means of entries are those of the jackknife, which leaves g
   }
 }
 
-TEST_CASE("values whose squares are below all numbers have errors too") {
+TEST_CASE("jackknife: errors of values whose squares underflow") {
   for (const double tiny : {1e-120, 1e-240, 1e-290}) {
     GroupedSums sums(1), small(1);
     RandomStream random(1, 1, 0);
@@ -76,8 +76,8 @@ TEST_CASE("values whose squares are below all numbers have errors too") {
   }
 }
 
-TEST_CASE("errors that a few batches carry are marked, those of rounding are not") {
-  // normal, one batch in 100 with nearly all, equal but for rounding, exact
+TEST_CASE("jackknife: errors due to a few batches are marked as rare, rounding errors are not") {
+  // Regular, dominated by one batch in 100, equal up to rounding, and exact values.
   GroupedSums sums(4);
   RandomStream random(1, 1, 0);
   for (int i = 0; i < 400; ++i) {
@@ -92,7 +92,7 @@ TEST_CASE("errors that a few batches carry are marked, those of rounding are not
   CHECK(part(estimate, 1, 2).rare == std::vector<std::uint64_t>{1, 0});
 }
 
-TEST_CASE("few batches are not called rare for their number") {
+TEST_CASE("jackknife: small numbers of batches are not marked as rare") {
   for (const int batches : {0, 1, 2, 3, 5, 10, 20}) {
     GroupedSums sums(1);
     RandomStream random(1, 1, 0);
@@ -104,9 +104,9 @@ TEST_CASE("few batches are not called rare for their number") {
   }
 }
 
-TEST_CASE("with more batches than groups, and groups of unequal size, errors stay right") {
-  // 300 batches in 256 groups: 44 groups hold two batches. The spread of many such estimates is
-  // known: a uniform has variance 1/12.
+TEST_CASE("jackknife: errors are correct with more batches than groups of unequal size") {
+  // 300 batches in 256 groups: 44 groups contain two batches. The variance of many such estimates
+  // is known: a uniform number has variance 1/12.
   double mean_variance = 0, mean_error2 = 0;
   constexpr int repeats = 400, batches = 300;
   for (int r = 0; r < repeats; ++r) {
@@ -126,7 +126,7 @@ TEST_CASE("with more batches than groups, and groups of unequal size, errors sta
   CHECK(mean_variance == doctest::Approx(expected).epsilon(4 * std::sqrt(2.0 / repeats)));
 }
 
-TEST_CASE("the jackknife covers a ratio, for which no single batch has an error") {
+TEST_CASE("jackknife: the error of a ratio has the correct coverage") {
   // X/Y with X = y + noise: the delta method gives the error of the ratio of means.
   const auto ratio = [](double, std::span<const Complex> s) {
     return std::vector<Complex>{s[0] / s[1]};
@@ -149,7 +149,7 @@ TEST_CASE("the jackknife covers a ratio, for which no single batch has an error"
   CHECK(covered < 0.954 * repeats + 4 * 4.2);
 }
 
-TEST_CASE("one batch has no error, and nothing has none") {
+TEST_CASE("jackknife: one batch has an infinite error, zero values have error 0") {
   GroupedSums sums(1);
   const Complex one = 1;
   sums.add(1, {&one, 1});
@@ -158,7 +158,7 @@ TEST_CASE("one batch has no error, and nothing has none") {
   CHECK(relative_error({{3, Complex(0, 4)}, {0.3, 0.4}}) == doctest::Approx(0.1));
 }
 
-TEST_CASE("state goes out and in bit for bit; another shape is refused") {
+TEST_CASE("grouped sums: the state is restored bit for bit, another shape is rejected") {
   GroupedSums sums(3), other(3);
   const Complex row[] = {1.5, Complex(0, 2), -3};
   for (int i = 0; i < 5; ++i) sums.add(2, row);
@@ -170,7 +170,7 @@ TEST_CASE("state goes out and in bit for bit; another shape is refused") {
   CHECK_THROWS_AS(narrow.restore(sums.state()), InputError);
 }
 
-TEST_CASE("groups are held as they come; long rows get fewer, so that the sums fit in memory") {
+TEST_CASE("grouped sums: long rows have fewer groups, so that the sums fit in memory") {
   GroupedSums narrow(1), wide(1 << 20);
   const std::vector<Complex> row(wide.size(), 1.0);
   for (std::size_t batch = 1; batch <= 300; ++batch) {

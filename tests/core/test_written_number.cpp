@@ -23,7 +23,7 @@ std::string refusal(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("numbers as people write them") {
+TEST_CASE("written number: accepted and rejected texts") {
   const auto angle = [](const char* text) { return written_number(text, Written::angle); };
   CHECK(angle("pi") == pi);
   CHECK(angle("-pi") == -pi);
@@ -46,7 +46,7 @@ TEST_CASE("numbers as people write them") {
   CHECK(written_number("2pi", Written::number) == 2 * pi);
 }
 
-TEST_CASE("sums are added from the left, however many terms they have") {
+TEST_CASE("written number: sums of any length are added from the left") {
   CHECK(written_number("0.1+0.2 - 0.3 + pi", Written::angle) == 0.1 + 0.2 - 0.3 + pi);
   CHECK(written_number("-0.1 - 0.2", Written::number) == -0.1 - 0.2);
   std::string terms = "1";
@@ -55,13 +55,13 @@ TEST_CASE("sums are added from the left, however many terms they have") {
   CHECK_FALSE(written_number(terms + "+", Written::number).has_value());
 }
 
-TEST_CASE("figures may be divided by underscores, as in scene files") {
+TEST_CASE("written number: digits may be grouped by underscores") {
   CHECK(written_number("1_000.5", Written::number) == 1000.5);
   for (const char* text : {"_1", "1_", "1__0", "1_.5", "1_e3"})
     CHECK_FALSE(written_number(text, Written::number).has_value());
 }
 
-TEST_CASE("lists and ranges of numbers") {
+TEST_CASE("written numbers: lists and ranges") {
   const auto numbers = [](const char* text) {
     return written_numbers("tilts", text, Written::angle);
   };
@@ -77,14 +77,14 @@ TEST_CASE("lists and ranges of numbers") {
   CHECK(numbers("0:10deg:11").back() == doctest::Approx(pi / 18).epsilon(1e-15));
   CHECK(written_range("tilts", "0:1:5", Written::number)->at(3) == 0.75);
   CHECK_FALSE(written_range("tilts", "0:1:5,2", Written::number).has_value());
-  CHECK(refusal("0:0.1:1") == "tilts = 0:0.1:1: a range has from 2 to 1000000 values");
+  CHECK(refusal("0:0.1:1") == "tilts = 0:0.1:1: a range must have 2 to 1000000 values");
   for (const char* text :
        {"0:1", "0:1:2:3", "0:1:5:log", "-1:1:5:log", "a:1:5", "0:1:2.5", "0:inf:3"})
     CHECK(refusal(text).find("must be first:last:count") != std::string::npos);
   CHECK(refusal("0,,1") == "tilts = 0,,1: must be a number such as 0.1, pi/2 or 30deg");
 }
 
-TEST_CASE("a range knows the numbers of its values, and of no others") {
+TEST_CASE("written range: find() returns the index of its values and of no others") {
   for (const char* text : {"0:1:11", "-0.3:-7:1001", "1e-4:0.1:997:log", "3:1e-9:50:log"}) {
     const auto range = written_range("tilts", text, Written::number);
     for (std::size_t i = 0; i < range->count; ++i) CHECK(range->find(range->at(i)) == i);

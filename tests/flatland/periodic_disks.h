@@ -10,18 +10,18 @@
 
 namespace flatspeckle::tests {
 
-/// p / (rho k T) = 1 + 2 eta g(contact).
+/// Returns p / (rho k T) = 1 + 2 eta g(contact).
 inline double compressibility_factor(double packing) {
   return 1 + 2 * packing * HardDiskFluid(packing, 1).contact_value();
 }
 
-/// Square box in which so many disks of diameter 1 have a packing fraction.
+/// Returns the square box in which the given number of disks of diameter 1 has a packing fraction.
 inline Domain unit_disk_box(std::size_t disks, double packing) {
   const double side = std::sqrt(static_cast<double>(disks) * std::numbers::pi / (4 * packing));
   return {Domain::Kind::box, side, side};
 }
 
-/// Distance to the nearest periodic image.
+/// Returns the distance to the nearest periodic image.
 inline double periodic_distance(const Domain& box, Vec2 a, Vec2 b) {
   const Vec2 d = a - b;
   const double x = d.x - box.width * std::floor(d.x / box.width + 0.5);
@@ -29,7 +29,7 @@ inline double periodic_distance(const Domain& box, Vec2 a, Vec2 b) {
   return std::sqrt(x * x + z * z);
 }
 
-/// Pairs (j < i) by distance: counts[b] of those in [start + b width, start + (b + 1) width).
+/// Adds to counts[b] the pairs (j < i) with distances in [start + b width, start + (b + 1) width).
 inline void count_pairs(const Domain& box, std::span<const Vec2> centres, double start,
                         double width, std::span<double> counts) {
   for (std::size_t i = 0; i < centres.size(); ++i)

@@ -17,7 +17,7 @@ Scatterer cylinder(double ka, Complex index, double wavenumber = k) {
   return {.kind = Scatterer::Kind::tm, .radius = ka / wavenumber, .index = index};
 }
 
-/// Disks in contact at a packing fraction.
+/// Returns the spacing of disks without extra gap at a packing fraction.
 DiskSpacing spacing(const Scatterer& disk, double packing) {
   return {packing / (pi * disk.radius * disk.radius), 2 * disk.radius};
 }
@@ -28,7 +28,7 @@ BulkMedium correlated(const Scatterer& disk, double packing, double wavenumber =
                            hard_disk_structure(disks, 2 * wavenumber));
 }
 
-/// int f(theta) |A|^2 S over the circle with A and S from their formulas.
+/// Integrates f(theta) |A|^2 S over the circle with A and S from their formulas.
 template <typename Weight>
 double integral(const Scatterer& disk, double packing, Weight f) {
   const DiskSpacing disks = spacing(disk, packing);
@@ -44,7 +44,7 @@ double integral(const Scatterer& disk, double packing, Weight f) {
 
 }  // namespace
 
-TEST_CASE("a structure table is linear between its nodes, constant before and 1 after them") {
+TEST_CASE("structure table: linear between its nodes, constant before and 1 after them") {
   const StructureTable none, table("made up", {1, 2, 4}, {0.5, 0.7, 0.3});
   CHECK(none.independent());
   CHECK(none(3) == 1);
@@ -61,7 +61,7 @@ TEST_CASE("a structure table is linear between its nodes, constant before and 1 
     CHECK(table(q) == doctest::Approx(s).epsilon(1e-14));
 }
 
-TEST_CASE("the table of hard disks follows the fluid") {
+TEST_CASE("structure table of hard disks: agrees with the fluid") {
   const DiskSpacing disks{0.3 / (pi * 0.25), 1};
   CHECK(disks.packing() == doctest::Approx(0.3).epsilon(1e-14));
   const StructureTable table = hard_disk_structure(disks, 40);
@@ -70,7 +70,7 @@ TEST_CASE("the table of hard disks follows the fluid") {
     CHECK(std::abs(table(q) - fluid.structure_factor(q)) < 2e-4);
 }
 
-TEST_CASE("S = 1 leaves the medium as it is") {
+TEST_CASE("correlated medium: S = 1 does not change the medium") {
   for (const Complex index : {Complex(1.5), Complex(1.33, 0.05)}) {
     const BulkMedium plain = bulk_medium(cylinder(5, index), k, 0.2);
     const BulkMedium same = correlated_medium(plain, k, StructureTable("one", {0, 1}, {1, 1}));
@@ -85,7 +85,7 @@ TEST_CASE("S = 1 leaves the medium as it is") {
   }
 }
 
-TEST_CASE("mu_s, g and albedo of correlated disks by quadrature") {
+TEST_CASE("correlated medium: mu_s, g and albedo agree with quadrature") {
   for (const double ka : {0.3, 1.0, 5.0}) {
     const Scatterer disk = cylinder(ka, {1.3, 0.02});
     const double packing = 0.2;
@@ -95,7 +95,7 @@ TEST_CASE("mu_s, g and albedo of correlated disks by quadrature") {
     const double cosine = integral(disk, packing, [](double theta) { return std::cos(theta); });
     CHECK(medium.mu_s == doctest::Approx(plain.density * sigma).epsilon(1e-4));
     CHECK(medium.g == doctest::Approx(cosine / sigma).epsilon(3e-4));
-    // What absorbs does not care where the others are.
+    // Absorption does not depend on correlations of positions.
     CHECK(medium.mu_t - medium.mu_s == doctest::Approx(plain.mu_t - plain.mu_s).epsilon(1e-12));
     CHECK(medium.albedo == doctest::Approx(medium.mu_s / medium.mu_t).epsilon(1e-14));
     CHECK(medium.density == plain.density);
@@ -104,7 +104,7 @@ TEST_CASE("mu_s, g and albedo of correlated disks by quadrature") {
   }
 }
 
-TEST_CASE("small disks scatter S(0) times as much, and lossless ones stay lossless") {
+TEST_CASE("correlated medium: small disks scatter S(0) times as much, without loss") {
   const Scatterer disk = cylinder(0.01, 1.5);
   const double packing = 0.3;
   const BulkMedium medium = correlated(disk, packing);
@@ -113,7 +113,7 @@ TEST_CASE("small disks scatter S(0) times as much, and lossless ones stay lossle
   CHECK(medium.albedo == doctest::Approx(1).epsilon(1e-12));
 }
 
-TEST_CASE("the scattering amplitude carries the root of S, and the phase of A") {
+TEST_CASE("correlated medium: amplitudes have the square root of S and the phase of A") {
   const Scatterer disk = cylinder(2, 1.4);
   const BulkMedium medium = correlated(disk, 0.25);
   const HardDiskFluid fluid(0.25, 2 * disk.radius);
@@ -129,13 +129,13 @@ TEST_CASE("the scattering amplitude carries the root of S, and the phase of A") 
   }
 }
 
-/// A(theta) sqrt(S).
+/// Returns A(theta) sqrt(S).
 Complex scattering_amplitude(const BulkMedium& medium, double theta) {
   return std::sqrt(medium.structure(2 * k * std::abs(std::sin(theta / 2)))) *
          amplitude(medium.t_matrix, k, theta);
 }
 
-TEST_CASE("normalised amplitudes are those of the angles one by one") {
+TEST_CASE("normalised amplitudes: agree with single angles") {
   for (const double ka : {0.05, 1.0, 30.0}) {
     const BulkMedium medium = correlated(cylinder(ka, {1.33, 0.01}), 0.2);
     const std::size_t intervals = 1000;
@@ -153,7 +153,7 @@ TEST_CASE("normalised amplitudes are those of the angles one by one") {
   }
 }
 
-TEST_CASE("the unit of length does not matter") {
+TEST_CASE("correlated medium: independent of the unit of length") {
   const BulkMedium one = correlated(cylinder(1, 1.3), 0.2);
   const BulkMedium other = correlated(cylinder(1, 1.3, k / 7), 0.2, k / 7);
   CHECK(other.g == doctest::Approx(one.g).epsilon(1e-12));

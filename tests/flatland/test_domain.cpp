@@ -7,14 +7,14 @@
 
 namespace flatspeckle::test_domain {
 
-TEST_CASE("angles go from +z towards +x") {
+TEST_CASE("angles: measured from +z towards +x") {
   CHECK(direction(0).z == 1);
   CHECK(direction(1.5707963267948966).x == 1);
   for (double angle : {-3.0, -1.0, 0.0, 0.5, 3.1})
     CHECK(angle_of(direction(angle)) == doctest::Approx(angle));
 }
 
-TEST_CASE("distance to the edge of a box ends on the edge") {
+TEST_CASE("distance to the edge: ends on the edge of a box") {
   const Domain box{Domain::Kind::box, 20, 10};
   for (double angle = -3.1; angle < 3.2; angle += 0.17) {
     const Vec2 start{3, 7}, w = direction(angle);
@@ -29,7 +29,7 @@ TEST_CASE("distance to the edge of a box ends on the edge") {
   CHECK(box.distance_to_edge({0, 4}, {0, -1}) == 4);
 }
 
-TEST_CASE("a slab has no sides") {
+TEST_CASE("slab: has no lateral edges") {
   const Domain slab{Domain::Kind::slab, 0, 10};
   CHECK(slab.distance_to_edge({1e9, 4}, {0, 1}) == 6);
   CHECK(slab.distance_to_edge({0, 4}, {1, 0}) == std::numeric_limits<double>::infinity());

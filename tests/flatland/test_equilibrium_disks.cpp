@@ -30,7 +30,7 @@ MeasuredStructureFactor measure(const Domain& box, std::size_t disks, int realiz
   return measured;
 }
 
-/// Largest difference of two measurements, in standard errors, and its mean square.
+/// Largest difference of two measurements, in standard errors, and the mean square difference.
 struct Difference {
   double largest = 0, mean_square = 0;
   Difference(const MeasuredStructureFactor& a, const MeasuredStructureFactor& b) {
@@ -46,7 +46,8 @@ struct Difference {
 
 }  // namespace
 
-TEST_CASE("equilibrium disks keep their gap, also around the edge, up to the highest packing") {
+TEST_CASE(
+    "equilibrium disks: keep their gap, also across periodic edges, up to the highest packing") {
   for (const double packing : {0.05, 0.4, 0.69}) {
     const Domain box = unit_disk_box(60, packing);
     const std::vector<double> radii(60, 0.48);
@@ -60,7 +61,7 @@ TEST_CASE("equilibrium disks keep their gap, also around the edge, up to the hig
   }
 }
 
-TEST_CASE("mixed radii: no overlap by either rule, and the radii stay with their centres") {
+TEST_CASE("mixed radii: no overlap for either rule, and radii correspond to their centres") {
   const Domain box{Domain::Kind::box, 12, 8};
   std::vector<double> radii(40, 0.4);
   for (std::size_t i = 0; i < radii.size(); i += 4) radii[i] = 0.8;
@@ -72,7 +73,7 @@ TEST_CASE("mixed radii: no overlap by either rule, and the radii stay with their
   }
 }
 
-TEST_CASE("a few large disks find room among many small ones") {
+TEST_CASE("mixed radii: a few large disks are placed among many small ones") {
   const Domain box{Domain::Kind::box, 6, 6};
   std::vector<double> radii(800, 0.065);
   radii.resize(812, 0.4);
@@ -80,7 +81,7 @@ TEST_CASE("a few large disks find room among many small ones") {
     CHECK(draw(box, radii, 3, 0, kind).size() == radii.size());
 }
 
-TEST_CASE("the same random numbers give the same disks, others give others") {
+TEST_CASE("equilibrium disks: determined by the random numbers") {
   const Domain box = unit_disk_box(30, 0.5);
   const std::vector<double> radii(30, 0.5);
   const auto first = draw(box, radii, 7), again = draw(box, radii, 7), other = draw(box, radii, 8);
@@ -91,10 +92,10 @@ TEST_CASE("the same random numbers give the same disks, others give others") {
   }
 }
 
-TEST_CASE("the density of equilibrium disks is uniform, at the edges too") {
+TEST_CASE("equilibrium disks: the density is uniform, also at the edges (chi-squared)") {
   const Domain box{Domain::Kind::box, 6, 5};
   std::vector<double> counts_x(10), counts_z(10);
-  // One disk of each realization: the others are correlated with it.
+  // Only one disk of each realization, because the others are correlated with it.
   for (std::uint64_t r = 0; r < 2000; ++r) {
     const auto centres = draw(box, std::vector<double>(12, 0.5), r);
     const Vec2 at = centres[r % centres.size()];
@@ -105,15 +106,15 @@ TEST_CASE("the density of equilibrium disks is uniform, at the edges too") {
   check_chi_square(counts_z, std::vector<double>(10, 0.1));
 }
 
-TEST_CASE("few disks, or none, are drawn as well") {
+TEST_CASE("equilibrium disks: few disks and none") {
   const Domain box{Domain::Kind::box, 5, 5};
   CHECK(draw(box, {}, 0).empty());
   CHECK(draw(box, {0.5}, 0).size() == 1);
   CHECK(draw({Domain::Kind::box, 1e4, 1e4}, {0.5, 0.1}, 0).size() == 2);
 }
 
-// The theory's own accuracy (structure_factor.h): 1 % at 0.3, 2.5 % at 0.5.
-TEST_CASE("the structure factor of equilibrium disks agrees with theory") {
+// The accuracy of the theory (structure_factor.h) is 1 % at 0.3 and 2.5 % at 0.5.
+TEST_CASE("equilibrium disks: the structure factor agrees with theory") {
   for (const double packing : {0.3, 0.5}) {
     const double accuracy = packing < 0.4 ? 0.01 : 0.025;
     constexpr std::size_t disks = 150;
@@ -130,7 +131,7 @@ TEST_CASE("the structure factor of equilibrium disks agrees with theory") {
   }
 }
 
-TEST_CASE("random sequential addition is another ensemble than equilibrium") {
+TEST_CASE("random sequential addition: its structure factor differs from equilibrium") {
   constexpr std::size_t disks = 150;
   const Domain box = unit_disk_box(disks, 0.48);
   const Difference difference(measure(box, disks, 100, PlacementRule::Kind::equilibrium),
@@ -139,7 +140,7 @@ TEST_CASE("random sequential addition is another ensemble than equilibrium") {
   CHECK(difference.largest > 8);
 }
 
-TEST_CASE("a long run from a lattice and short runs from random starts have the same S(q)") {
+TEST_CASE("equilibrium disks: S(q) agrees with a long run from a lattice") {
   constexpr std::size_t disks = 100;
   constexpr double packing = 0.65;
   const Domain box = unit_disk_box(disks, packing);
@@ -157,7 +158,7 @@ TEST_CASE("a long run from a lattice and short runs from random starts have the 
   MeasuredStructureFactor long_run(box, 14, 0.5);
   move(10000);
   for (int r = 0; r < 300; ++r) {
-    move(1000);  // 200 contacts per disk: several times the slowest relaxation
+    move(1000);  // 200 contacts per disk: several of the slowest relaxation times
     std::vector<Vec2> centres;
     for (std::size_t i = 0; i < disks; ++i) centres.push_back(chains.centre(i));
     long_run.add(centres);
@@ -169,7 +170,7 @@ TEST_CASE("a long run from a lattice and short runs from random starts have the 
   CHECK(difference.mean_square < 2.5);
 }
 
-TEST_CASE("disks that cannot be placed are refused") {
+TEST_CASE("disks: too dense packings and too small boxes are rejected") {
   const auto refused = [](const Domain& box, const std::vector<double>& radii, double min_gap,
                           PlacementRule::Kind kind) {
     CHECK_THROWS_AS(draw(box, radii, 0, min_gap, kind), InputError);

@@ -23,7 +23,7 @@ void place_at_random(EventChains& chains, const Domain& box, RandomStream& rando
       ;
 }
 
-/// Disks of diameter 1 on the sites of a square lattice.
+/// Places disks of diameter 1 on the sites of a square lattice.
 EventChains lattice(const Domain& box, std::size_t disks) {
   EventChains chains(box, std::vector<double>(disks, 0.5));
   const auto side = static_cast<std::size_t>(std::ceil(std::sqrt(static_cast<double>(disks))));
@@ -36,7 +36,8 @@ EventChains lattice(const Domain& box, std::size_t disks) {
   return chains;
 }
 
-/// `number` chains of a length, with random first disks and directions; mean of what they return.
+/// Runs `number` chains of a length with random first disks and directions; returns the mean
+/// result.
 double run(EventChains& chains, RandomStream& random, int number, double length) {
   double sum = 0;
   for (int i = 0; i < number; ++i) {
@@ -50,39 +51,39 @@ double run(EventChains& chains, RandomStream& random, int number, double length)
 
 }  // namespace
 
-TEST_CASE("a disk is placed only where there is room, across the periodic edge too") {
+TEST_CASE("event chains: disks are placed without overlap, also across periodic edges") {
   const Domain box{Domain::Kind::box, 4, 5};
   EventChains chains(box, std::vector<double>{0.5, 0.4, 0.5});
   CHECK(chains.place(0, {-1.9, 0.1}));
   CHECK_FALSE(chains.place(1, {1.3, 0.1}));   // 0.8 away, less than 0.9
-  CHECK_FALSE(chains.place(1, {-1.9, 4.3}));  // the same in depth
-  CHECK_FALSE(chains.place(1, {1.5, 4.55}));  // past the corner
+  CHECK_FALSE(chains.place(1, {-1.9, 4.3}));  // also too close, in depth
+  CHECK_FALSE(chains.place(1, {1.5, 4.55}));  // across the corner
   CHECK(chains.place(1, {1.19, 0.1}));        // 0.91 away
   CHECK_FALSE(chains.place(2, {-1.9, 1.05}));
-  CHECK(chains.place(2, {-1.9, 1.05}, 0.8));  // shrunk
+  CHECK(chains.place(2, {-1.9, 1.05}, 0.8));  // with a reduced radius
   CHECK_FALSE(chains.grow(2));
   CHECK(chains.reach(2) == doctest::Approx(0.45));
   CHECK(chains.grow(1));
 }
 
-TEST_CASE("a chain passes its motion on at contact") {
+TEST_CASE("event chains: motion is transferred at contact") {
   const Domain box{Domain::Kind::box, 10, 10};
   EventChains chains(box, std::vector<double>{0.5, 0.7});
   REQUIRE(chains.place(0, {0, 5}));
   REQUIRE(chains.place(1, {3, 5.5}));
   const double jump = std::sqrt(1.2 * 1.2 - 0.5 * 0.5);
-  // The first goes 3 - jump, the second the rest.
+  // The first disk moves by 3 - jump, the second by the rest.
   CHECK(chains.move(0, 0, 3) == doctest::Approx(3 + jump).epsilon(1e-9));
   CHECK(chains.centre(0).x == doctest::Approx(3 - jump).epsilon(1e-9));
   CHECK(chains.centre(1).x == doctest::Approx(3 + jump).epsilon(1e-9));
   CHECK(chains.centre(0).z == 5);
   CHECK(chains.centre(1).z == 5.5);
-  // Around the periodic edge, nothing in the way.
+  // Across the periodic edge without contact.
   chains.move(1, 0, 7.25);
   CHECK(chains.centre(0).z == doctest::Approx(2.25).epsilon(1e-9));
 }
 
-TEST_CASE("after many chains no disks overlap, and together they moved the stated length") {
+TEST_CASE("event chains: no overlap after many chains, and the total displacement is exact") {
   RandomStream random(3, 1, 0);
   for (const double small : {0.5, 0.2}) {  // equal disks, then two species
     const Domain box{Domain::Kind::box, 9, 12};
@@ -111,10 +112,11 @@ TEST_CASE("after many chains no disks overlap, and together they moved the state
   }
 }
 
-// Henderson's Z is 0.03 % high at 0.3 and 0.4 % at 0.5 against Luding (2001, Phys. Rev. E 63,
-// 042201), Z = (1 + eta^2/8) / (1 - eta)^2 - eta^4 / (64 (1 - eta)^4), which simulations confirm to
-// 0.1 %; 256 disks have a pressure about 0.1 % below that of many; the noise is below 0.1 %.
-TEST_CASE("the pressure of event chains and their contact value agree with the equation of state") {
+// Henderson's Z is 0.03 % too high at 0.3 and 0.4 % at 0.5 compared with Luding (2001, Phys. Rev. E
+// 63, 042201), Z = (1 + eta^2/8) / (1 - eta)^2 - eta^4 / (64 (1 - eta)^4), which simulations
+// confirm to 0.1 %. The pressure of 256 disks is about 0.1 % below the limit of many; noise is
+// below 0.1 %.
+TEST_CASE("event chains: pressure and contact value agree with the equation of state") {
   for (const double packing : {0.3, 0.5}) {
     CAPTURE(packing);
     const HardDiskFluid theory(packing, 1);
@@ -137,7 +139,7 @@ TEST_CASE("the pressure of event chains and their contact value agree with the e
                           std::pow(packing, 4) / (64 * std::pow(1 - packing, 4));
     CHECK(std::abs(z / luding - 1) < 0.004);
     CHECK(std::abs(z / tests::compressibility_factor(packing) - 1) < 0.008);
-    // g in three shells, and its quadratic extrapolation to contact.
+    // Computes g in three shells and its quadratic extrapolation to contact.
     for (std::size_t b = 0; b < 3; ++b) {
       const double inner = 1 + static_cast<double>(b) * width;
       const double area = std::numbers::pi * width * (2 * inner + width);
@@ -146,7 +148,7 @@ TEST_CASE("the pressure of event chains and their contact value agree with the e
     const double contact = (11 * pairs[0] - 7 * pairs[1] + 2 * pairs[2]) / 6;
     MESSAGE("packing " << packing << ": Z " << z << ", Luding " << luding << ", contact " << contact
                        << ", Henderson " << theory.contact_value());
-    // The counts (8e4 pairs a shell at 0.5, 3e4 at 0.3) leave 1 % here.
+    // The counting error is 1 % (8e4 pairs per shell at 0.5, 3e4 at 0.3).
     CHECK(std::abs(contact / theory.contact_value() - 1) < 0.04);
   }
 }

@@ -19,7 +19,7 @@ Placement draw(const Scatterer& scatterer, const PlacementRule& rule, std::uint6
   return draw_placement(box, scatterer, rule, random);
 }
 
-/// A file that goes away with the test.
+/// A temporary file with this text.
 struct CsvFile {
   std::filesystem::path path;
   explicit CsvFile(const std::string& text)
@@ -42,8 +42,7 @@ Scatterer disk(double radius) {
 
 }  // namespace
 
-TEST_CASE(
-    "a Poisson placement has a Poisson number, uniform positions, and a fixed number on request") {
+TEST_CASE("Poisson placement: Poisson or fixed number of scatterers, uniform positions") {
   PlacementRule rule;
   rule.mean_count = 31;
   double sum = 0, sum2 = 0, x2 = 0, z = 0;
@@ -66,7 +65,7 @@ TEST_CASE(
   CHECK(draw({}, rule, 0).size() == 17);
 }
 
-TEST_CASE("hard disks keep their gap, fill the box evenly, and round their number") {
+TEST_CASE("hard-disk placement: gap, mean depth and rounded number of disks") {
   PlacementRule rule{PlacementRule::Kind::hard_disk, 66.6, std::nullopt, 0.2};
   double z = 0, n = 0;
   for (std::uint64_t r = 0; r < 300; ++r) {
@@ -81,7 +80,7 @@ TEST_CASE("hard disks keep their gap, fill the box evenly, and round their numbe
   CHECK(std::abs(z / n - 5) < 4 * 2.9 / std::sqrt(n));
 }
 
-TEST_CASE("the overlap check agrees with trying every pair") {
+TEST_CASE("overlap check: agrees with a test of every pair") {
   RandomStream random(9, 1, 0);
   int clashes = 0;
   for (int r = 0; r < 300; ++r) {
@@ -106,7 +105,7 @@ TEST_CASE("the overlap check agrees with trying every pair") {
   CHECK(clashes < 270);
 }
 
-TEST_CASE("placements are read by column name") {
+TEST_CASE("placement file: columns are read by name") {
   const auto placement =
       CsvFile("z,x,radius,index_re,index_im\n1,2,0.5,1.4,0.1\n4,-3,0.25,1.5,0\n").read(disk(0));
   CHECK(placement.size() == 2);
@@ -116,7 +115,7 @@ TEST_CASE("placements are read by column name") {
   CHECK(placement[1].scatterer.radius == 0.25);
 }
 
-TEST_CASE("bad placements are refused") {
+TEST_CASE("placement file: invalid columns, radii and overlaps are rejected") {
   CHECK_THROWS_AS(CsvFile("x,y\n1,2\n").read(disk(1)), InputError);
   CHECK_THROWS_AS(CsvFile("x,z\n1,2\n").read(disk(0)), InputError);
   CHECK_THROWS_AS(CsvFile("x,z,radius\n1,2,0\n").read(disk(1)), InputError);

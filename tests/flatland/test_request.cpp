@@ -12,7 +12,7 @@ namespace {
 constexpr double k = 2 * std::numbers::pi, pi = std::numbers::pi;
 }
 
-TEST_CASE("matched views keep the transverse momentum and the side of the medium") {
+TEST_CASE("memory effect: matched views keep the transverse momentum and the side of the medium") {
   const std::vector<double> views = {0.1, 0.8, -0.5, pi, -3.0, 2.5, -2.6};
   const auto request = memory_effect_request(k, 0.2, views, {0, 0.04, -0.1, 0.1});
   CHECK(request.tilt_q[0] == 0);
@@ -36,17 +36,17 @@ TEST_CASE("matched views keep the transverse momentum and the side of the medium
       CHECK(tilted.b == b);
     }
   }
-  // Tilt 0 adds no channel of its own.
+  // Tilt 0 adds no channels.
   CHECK(request.channels.size() == 4 * views.size());
 }
 
-TEST_CASE("tilts past the horizon are refused, for the light and for the view") {
+TEST_CASE("memory effect: tilts beyond the horizon are rejected for light and view") {
   CHECK_THROWS_AS(memory_effect_request(k, 1.5, {0}, {0.1}), InputError);
   CHECK_THROWS_AS(memory_effect_request(k, 0, {1.5}, {0.1}), InputError);
   CHECK_NOTHROW(memory_effect_request(k, 0, {1.4}, {-0.1}));
 }
 
-TEST_CASE("intensity, pairs and full list the entries in their stated order") {
+TEST_CASE("requests: intensity, pairs and full have entries in the documented order") {
   const auto intensity = intensity_request({0, 1}, {far_view(2), far_view(3), far_view(4)});
   CHECK(intensity.entries.size() == 6);
   CHECK(intensity.channels[4] == Channel{1, 1});
@@ -61,11 +61,11 @@ TEST_CASE("intensity, pairs and full list the entries in their stated order") {
   CHECK(pairs.entries[1].a == pairs.entries[0].b);
 }
 
-TEST_CASE("a full covariance that cannot fit is refused") {
+TEST_CASE("full covariance: rejected if it exceeds the memory") {
   CHECK_THROWS_AS(full_request(std::vector<double>(2000), std::vector<View>(1000)), InputError);
 }
 
-TEST_CASE("tilt-shift: every tilt with every shift, then matched views; each channel once") {
+TEST_CASE("tilt-shift: all pairs of tilt and shift, then matched views; each channel once") {
   const std::vector<View> views = {far_view(0.3), far_view(2.5)};
   const auto request = tilt_shift_request(k, plane_wave(0.2), views, {0, 0.05}, {0, -0.4, 0.7});
   CHECK(request.moves == 2 * 3 + 2);
@@ -93,7 +93,7 @@ TEST_CASE("tilt-shift: every tilt with every shift, then matched views; each cha
   CHECK_THROWS_AS(tilt_shift_request(k, plane_wave(0), views, {0}, {0, 5}), InputError);
 }
 
-TEST_CASE("translations move the light and near sensors, not far views") {
+TEST_CASE("translation: moves the light and near sensors, not far views") {
   const std::vector<View> views = {near_sensor({1, 5}), far_view(0.3)};
   const auto request = translation_request(gaussian_beam(0.1, {2, 3}, 4), views, {0, 1.5});
   CHECK(request.moves == 2);

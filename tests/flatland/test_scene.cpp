@@ -36,7 +36,7 @@ constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-TEST_CASE("the bulk of resonant points") {
+TEST_CASE("medium: resonant points") {
   const Scene scene = make_scene(box_points());
   const double k = 2 * std::numbers::pi;
   CHECK(scene.medium.cross_sections.scattering == doctest::Approx(4 / k));
@@ -45,7 +45,7 @@ TEST_CASE("the bulk of resonant points") {
   CHECK(scene.medium.g == doctest::Approx(0));
 }
 
-TEST_CASE("each way to state a density gives the same medium") {
+TEST_CASE("medium: all keys of the density give the same medium") {
   const Scene by_count = make_scene(box_points());
   SceneSpec spec = box_points();
   spec.count.reset();
@@ -59,7 +59,7 @@ TEST_CASE("each way to state a density gives the same medium") {
   CHECK(make_scene(spec).medium.density == doctest::Approx(31.0 / 200));
 }
 
-TEST_CASE("the optical theorem: albedo 1 without absorption, the stated albedo with it") {
+TEST_CASE("medium: albedo 1 without absorption, the given albedo of absorbing points") {
   SceneSpec spec = box_points();
   spec.albedo = 0.8;
   CHECK(make_scene(spec).medium.albedo == doctest::Approx(0.8));
@@ -70,13 +70,13 @@ TEST_CASE("the optical theorem: albedo 1 without absorption, the stated albedo w
   }
 }
 
-TEST_CASE("no scatterers is a scene") {
+TEST_CASE("scene: zero scatterers are allowed") {
   SceneSpec spec = box_points();
   spec.count = 0;
   CHECK(make_scene(spec).medium.mu_t == 0);
 }
 
-TEST_CASE("bad scenes are refused") {
+TEST_CASE("scene: invalid keys and combinations are rejected") {
   const auto points = box_points();
   refused(points, [](auto& s) { s.width = -3; });
   refused(points, [](auto& s) { s.width.reset(); });
@@ -106,7 +106,7 @@ TEST_CASE("bad scenes are refused") {
   refused(disks, [](auto& s) { s.placement = "poisson"; });
 }
 
-TEST_CASE("on a slab only matched pairs correlate, and others are refused") {
+TEST_CASE("scene: pairs without matched transverse momentum are rejected on a slab") {
   SceneSpec spec;
   spec.domain = "slab";
   spec.scatterer = "hg";
@@ -121,7 +121,7 @@ TEST_CASE("on a slab only matched pairs correlate, and others are refused") {
   CHECK_THROWS_AS(make_scene(spec), InputError);
 }
 
-TEST_CASE("disks are placed one after the other or in equilibrium, apart by default") {
+TEST_CASE("scene: placement rules of disks, with a gap by default") {
   SceneSpec spec = box_disks();
   CHECK(make_scene(spec).placement.kind == PlacementRule::Kind::hard_disk);
   CHECK(make_scene(spec).placement.min_gap == default_gap * 0.5);
@@ -139,7 +139,7 @@ TEST_CASE("disks are placed one after the other or in equilibrium, apart by defa
   CHECK(make_scene(box_points()).placement.min_gap == 0);
 }
 
-TEST_CASE("complex numbers as people write them") {
+TEST_CASE("parse_complex: accepted and rejected texts of scenes") {
   CHECK(parse_complex("index", "1.5") == Complex(1.5, 0));
   CHECK(parse_complex("index", "1.5+0.1i") == Complex(1.5, 0.1));
   CHECK(parse_complex("index", " 0.1 + 5i ") == Complex(0.1, 5));
@@ -149,7 +149,7 @@ TEST_CASE("complex numbers as people write them") {
     CHECK_THROWS_AS(parse_complex("index", bad), InputError);
 }
 
-TEST_CASE("a structure factor is one of disks of stated density") {
+TEST_CASE("scene: a structure factor requires disks of given density") {
   const auto refusal = [](SceneSpec spec, auto change) {
     change(spec);
     try {
@@ -159,7 +159,7 @@ TEST_CASE("a structure factor is one of disks of stated density") {
     }
     return std::string("accepted");
   };
-  const auto says = [](const std::string& text, const char* word) {
+  const auto check_contains = [](const std::string& text, const char* word) {
     INFO(text);
     CHECK(text.find(word) != std::string::npos);
   };
@@ -167,27 +167,31 @@ TEST_CASE("a structure factor is one of disks of stated density") {
   disks.structure = points.structure = "hard_disks";
   const Scene scene = make_scene(disks);
   CHECK_FALSE(scene.medium.structure.independent());
-  says(scene.medium.structure.origin(), "of hard disks, packing fraction 0.12");
-  says(refusal(points, [](auto&) {}), "structure = hard_disks: is a key of soft, hard, tm and te");
-  says(refusal(points,
-               [](auto& s) {
-                 s.scatterer = "hg";
-                 s.count.reset();
-                 s.optical_depth = 1;
-               }),
-       "structure = hard_disks: is a key of");
+  check_contains(scene.medium.structure.origin(), "of hard disks, packing fraction 0.12");
+  check_contains(refusal(points, [](auto&) {}),
+                 "structure = hard_disks: is a key of soft, hard, tm and te");
+  check_contains(refusal(points,
+                         [](auto& s) {
+                           s.scatterer = "hg";
+                           s.count.reset();
+                           s.optical_depth = 1;
+                         }),
+                 "structure = hard_disks: is a key of");
   const auto by = [](auto SceneSpec::*key) {
     return [key](auto& s) {
       s.count.reset();
       s.*key = 1.5;
     };
   };
-  says(refusal(disks, by(&SceneSpec::mean_free_path)), "mean_free_path = 1.5: correlations");
-  says(refusal(disks, by(&SceneSpec::optical_depth)), "optical_depth = 1.5: correlations");
-  says(refusal(disks, [](auto& s) { s.structure = "no_such_file.h5"; }), "no_such_file.h5");
-  // Wider gaps count: the same disks, farther apart, are a denser fluid.
+  check_contains(refusal(disks, by(&SceneSpec::mean_free_path)),
+                 "mean_free_path = 1.5: cannot be combined with structure");
+  check_contains(refusal(disks, by(&SceneSpec::optical_depth)),
+                 "optical_depth = 1.5: cannot be combined with structure");
+  check_contains(refusal(disks, [](auto& s) { s.structure = "no_such_file.h5"; }),
+                 "no_such_file.h5");
+  // Gaps are included: the same disks with wider gaps are a denser fluid.
   disks.min_gap = 0.2;
-  says(make_scene(disks).medium.structure.origin(), "packing fraction 0.175");
+  check_contains(make_scene(disks).medium.structure.origin(), "packing fraction 0.175");
 }
 
 }  // namespace flatspeckle::test_scene

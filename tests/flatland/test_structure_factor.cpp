@@ -24,7 +24,7 @@ std::vector<Vec2> uniform_points(const Domain& box, std::size_t number, RandomSt
   return points;
 }
 
-/// |sum exp(i q.r)|^2 / N of one wavevector.
+/// Returns |sum exp(i q.r)|^2 / N of one wavevector.
 double single(const Domain& box, const std::vector<Vec2>& points, int n, int m) {
   std::complex<double> sum;
   for (const Vec2& r : points)
@@ -34,19 +34,19 @@ double single(const Domain& box, const std::vector<Vec2>& points, int n, int m) 
 
 }  // namespace
 
-TEST_CASE("S(0) is the compressibility of the equation of state") {
+TEST_CASE("structure factor: S(0) agrees with the compressibility of the equation of state") {
   for (const double packing : {0.01, 0.2, 0.45, 0.69}) {
     const double step = 1e-5;
     const auto pressure = [](double eta) { return eta * tests::compressibility_factor(eta); };
     const double stiffness = (pressure(packing + step) - pressure(packing - step)) / (2 * step);
-    // Here the two integrals of c(r) and Baus and Colot's equation for their length must agree.
+    // This tests the two integrals of c(r) and Baus and Colot's equation for their length.
     CHECK(HardDiskFluid(packing, 2.5).structure_factor(0) ==
           doctest::Approx(1 / stiffness).epsilon(1e-5));
   }
   CHECK(tests::compressibility_factor(0.5) == doctest::Approx(4.125));
 }
 
-TEST_CASE("a thin gas of disks has S = 1 - 8 eta J_1(x) / x, and every S tends to 1") {
+TEST_CASE("structure factor: a dilute gas has S = 1 - 8 eta J_1(x) / x; S tends to 1 at large q") {
   const HardDiskFluid thin(1e-4, 2), none(0, 1);
   for (const double q : {0.3, 1.0, 2.5, 7.0})
     CHECK(thin.structure_factor(q) - 1 ==
@@ -56,7 +56,7 @@ TEST_CASE("a thin gas of disks has S = 1 - 8 eta J_1(x) / x, and every S tends t
     CHECK(std::abs(HardDiskFluid(packing, 1).structure_factor(400) - 1) < 0.01);
 }
 
-TEST_CASE("S(q) depends on q times the diameter, without a step where formulas meet") {
+TEST_CASE("structure factor: depends on q times the diameter and is continuous") {
   const HardDiskFluid one(0.5, 1), three(0.5, 3);
   for (const double q : {1e-5, 0.5, 5.6, 30.0})
     CHECK(three.structure_factor(q) == doctest::Approx(one.structure_factor(3 * q)).epsilon(1e-12));
@@ -65,7 +65,7 @@ TEST_CASE("S(q) depends on q times the diameter, without a step where formulas m
     CHECK(std::abs(one.structure_factor(q + 1e-6) - one.structure_factor(q)) < 2e-5);
 }
 
-TEST_CASE("the measured structure factor is that of its wavevectors, one by one") {
+TEST_CASE("measured structure factor: agrees with sums over single wavevectors") {
   const Domain box{Domain::Kind::box, 7, 4};
   RandomStream random(2, 1, 0);
   const auto points = uniform_points(box, 23, random);
@@ -73,7 +73,7 @@ TEST_CASE("the measured structure factor is that of its wavevectors, one by one"
   MeasuredStructureFactor measured(box, q_max, width);
   measured.add(points);
   std::vector<double> sums(6), members(6), q_sums(6);
-  for (int n = -12; n <= 12; ++n)  // the whole plane here
+  for (int n = -12; n <= 12; ++n)  // the whole plane
     for (int m = -12; m <= 12; ++m) {
       const double q = two_pi * std::hypot(n / box.width, m / box.depth);
       if (q > q_max || (n == 0 && m == 0)) continue;
@@ -90,7 +90,7 @@ TEST_CASE("the measured structure factor is that of its wavevectors, one by one"
   }
 }
 
-TEST_CASE("independent points have S = 1, with honest errors") {
+TEST_CASE("measured structure factor: independent points have S = 1, with correct errors") {
   const Domain box{Domain::Kind::box, 20, 10};
   MeasuredStructureFactor measured(box, 12, 0.125);
   RandomStream random(4, 1, 0);
@@ -102,7 +102,7 @@ TEST_CASE("independent points have S = 1, with honest errors") {
     CHECK(std::abs(deviation) < 4);
     squares += deviation * deviation;
   }
-  // Mean square 1 with a standard error of sqrt(2 / shells).
+  // The mean square is 1 with a standard error of sqrt(2 / shells).
   const auto shells = static_cast<double>(values.size());
   CHECK(shells > 80);
   CHECK(std::abs(squares / shells - 1) < 4 * std::sqrt(2 / shells));

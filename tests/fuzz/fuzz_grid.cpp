@@ -11,7 +11,7 @@
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/targets.h"
 
-// Grids of the index and of the density, of any numbers, and a few rays or flights through those
+// Grids of index and density with arbitrary numbers, and a few rays or free flights through those
 // that load.
 
 namespace flatspeckle::fuzz_grid {
@@ -34,7 +34,7 @@ void write_attribute(hid_t set, const char* name, Bytes& bytes) {
   H5Awrite(attribute.get(), H5T_NATIVE_DOUBLE, values);
 }
 
-/// Samples: so many of the input's numbers, over and over.
+/// Writes a grid whose samples repeat numbers from the input.
 void write_grid(const char* name, Bytes& bytes) {
   const Hdf5Handle file{H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), H5Fclose};
   hsize_t nodes[3];
@@ -52,7 +52,7 @@ void write_grid(const char* name, Bytes& bytes) {
   H5Dwrite(set.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
 }
 
-/// From the middle of the grid and from a corner of it.
+/// Returns rays from the middle and from a corner of the grid.
 std::vector<RayStart> starts_in(const grin::Box& box) {
   const Vec3 middle = box.low / 2 + box.high / 2;
   return {{middle, Vec3::UnitZ()}, {middle, Vec3(1, 2, -3).normalized()}, {box.low, Vec3::UnitX()}};
@@ -68,7 +68,7 @@ SceneField scene_of_grid() {
 
 void trace_grid(const std::string& integrator) {
   const SceneField scene = scene_of_grid();
-  const double length = 2 * scene.scale;  // some cells: how many steps a ray takes has a limit
+  const double length = 2 * scene.scale;  // only some cells, to limit the steps of a ray
   RayStopValues stop_spec;
   stop_spec.max_length = length;
   stop_spec.integrator = integrator;
@@ -92,7 +92,7 @@ void trace_grid(const std::string& integrator) {
   }
 }
 
-/// Flights and a join of light that scatters in the grid's box.
+/// Samples free flights and one connection in a scattering medium that fills the grid's box.
 void fly_through_index(const std::string&) {
   const SceneField scene = scene_of_grid();
   const grin::Box box = *scene.grid;
@@ -103,17 +103,18 @@ void fly_through_index(const std::string&) {
   const auto space = grin::make_space(scene.field, stage, {step, 3 * size});
   RandomStream random(1, 0, 0);
   for (const RayStart& start : starts_in(box)) {
-    if (!(space->index({start.x}) > 1e-3)) continue;  // make_stage refuses what is not above 0
+    if (!(space->index({start.x}) > 1e-3))
+      continue;  // make_stage rejects an index that is not positive
     const grin::Flight flight = space->fly({start.x}, start.direction, random);
     if (flight.end == grin::Flight::End::lost) continue;
     fuzz::require_finite(flight.point.x.sum() + flight.direction.sum());
     fuzz::require_finite(flight.arc_length + flight.optical_path + flight.optical_depth);
     grin::ConnectionStatistics statistics;
-    space->join({start.x}, flight.point, random, statistics);
+    space->connect({start.x}, flight.point, random, statistics);
   }
 }
 
-/// A picture of a few paths through the density, in a stage somewhat larger.
+/// Renders a few paths through the density, in a slightly larger stage.
 void fly_through_density(const std::string&) {
   const auto density = std::make_shared<grin::DensityGrid>(grin::read_density_grid(path));
   const grin::FieldGrid& grid = density->grid();

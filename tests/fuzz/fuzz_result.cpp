@@ -10,9 +10,9 @@
 #include "tests/fuzz/result_kinds.h"
 #include "tests/fuzz/targets.h"
 
-// Whole HDF5 files that hold what they should not: a valid file in which datasets and attributes
-// are taken away or replaced by others of any type, shape and values. (Of files that are damaged
-// below, see fuzz_result_bytes.cpp.)
+// Well-formed HDF5 files with wrong contents: datasets and attributes of a valid file are removed
+// or replaced by others of any type, shape and values. (For damaged files see
+// fuzz_result_bytes.cpp.)
 
 namespace flatspeckle::fuzz_result {
 
@@ -32,7 +32,7 @@ Hdf5Handle compound(std::initializer_list<const char*> members, hid_t of) {
 
 struct AnyType {
   Hdf5Handle type;
-  bool plain;  ///< any bytes may be written
+  bool plain;  ///< arbitrary bytes are valid values
 };
 
 AnyType any_type(Bytes& bytes) {
@@ -73,7 +73,7 @@ AnyType any_type(Bytes& bytes) {
   }
 }
 
-/// Small extents, now and then one of a power of two.
+/// Returns small extents, sometimes a power of two.
 std::vector<hsize_t> any_shape(Bytes& bytes) {
   std::vector<hsize_t> shape(bytes.below(5));
   for (hsize_t& extent : shape) {
@@ -84,7 +84,7 @@ std::vector<hsize_t> any_shape(Bytes& bytes) {
 }
 
 Hdf5Handle space_of(const std::vector<hsize_t>& shape) {
-  constexpr std::size_t none = 4;  // a dataset that is there and holds nothing
+  constexpr std::size_t none = 4;  // an empty dataset
   const hid_t space = shape.empty() ? H5Screate(H5S_SCALAR)
                       : shape.size() == none
                           ? H5Screate(H5S_NULL)
@@ -92,7 +92,7 @@ Hdf5Handle space_of(const std::vector<hsize_t>& shape) {
   return {space, H5Sclose};
 }
 
-/// So many bytes: numbers from the input, over and over.
+/// Returns `size` bytes that repeat numbers from the input.
 std::vector<std::uint8_t> numbers(Bytes& bytes, std::size_t size) {
   constexpr std::size_t most_numbers = 8;
   std::vector<double> values;

@@ -4,8 +4,8 @@
 #include "tests/fuzz/result_kinds.h"
 #include "tests/fuzz/targets.h"
 
-// Damaged HDF5 files and journals. The first byte says what the rest is read as. HDF5 sees no
-// damaged file of a kind that is sealed, and others in a child process first.
+// Damaged HDF5 files and journals. The first byte selects the kind of file. Damaged files of
+// checksummed kinds are not passed to HDF5; other kinds are first read in a child process.
 
 namespace flatspeckle::fuzz_result_bytes {
 
@@ -29,7 +29,7 @@ void use_input(const std::uint8_t* input, std::size_t size) {
   fuzz::write_file(path, {reinterpret_cast<const char*>(input) + 1, size > 0 ? size - 1 : 0});
   if (kind == kinds.size())
     fuzz::taken(path, read_journal);
-  else if (!kinds[kind].is_sealed || is_sealed(path))
+  else if (!kinds[kind].is_checksummed || is_checksummed(path))
     fuzz::taken(path, kinds[kind].read);
 }
 

@@ -18,9 +18,9 @@
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/targets.h"
 
-// Scene files. The first line says whose, and may go on with flags of the command line:
-// "# covariance --seed 2". With --print-config each subcommand checks all that it can and stops
-// before the work.
+// Scene files. The first line names the subcommand and may contain command-line flags: "#
+// covariance --seed 2". With --print-config each subcommand checks its input and stops before the
+// work.
 
 namespace flatspeckle::fuzz_scene {
 
@@ -28,7 +28,7 @@ namespace {
 
 using namespace flatspeckle::apps;
 
-/// What `covariance` and `validate` make of a scene.
+/// Prepares a scene as `covariance` and `validate` do.
 int make_medium(const Arguments& arguments) {
   SceneSpec spec;
   Subcommand command("covariance", "");
@@ -44,12 +44,12 @@ int make_medium(const Arguments& arguments) {
   return ExitStatus::done;
 }
 
-/// What `trace` makes of a scene.
+/// Prepares a scene as `trace` does.
 int trace_scene(const Arguments& arguments) {
   grin::TraceValues values;
   Subcommand command("trace", "");
   add_keys(command.keys(), values);
-  constexpr std::int64_t most_rays = 1000;  // the program asks how much memory there is
+  constexpr std::int64_t most_rays = 1000;  // the program limits rays by the available memory
   if (!command.parse(arguments) || values.starts.ray_count > most_rays) return ExitStatus::done;
   const grin::TraceScene scene = make_trace_scene(command.keys(), values);
   fuzz::require_finite(scene.stops.location);
@@ -61,7 +61,7 @@ int trace_scene(const Arguments& arguments) {
   return ExitStatus::done;
 }
 
-/// Pictures that are begun as well: of a few pixels and short paths of few steps.
+/// Whether a picture is small enough to be rendered: few pixels and short paths of few steps.
 bool is_small(const grin::RenderScene& scene, const grin::RenderRequest& request) {
   constexpr double most_values = 64, most_steps = 40;
   int count = 0;
@@ -88,7 +88,7 @@ void make_small_picture(const grin::RenderScene& scene, const grin::RenderReques
   file.commit();
 }
 
-/// What `render` makes of a scene, before its pilot of a second.
+/// Prepares a scene as `render` does before its pilot run, which takes a second.
 int render_scene(const Arguments& arguments) {
   grin::RenderValues values;
   grin::RenderRequestValues how;
@@ -105,7 +105,7 @@ int render_scene(const Arguments& arguments) {
   stop_rule(keys, run);
   fuzz::require_finite(scene.step + scene.max_length + scene.stage.medium.mu_t());
   check(scene.stage);
-  grin::sensor_ends(scene.sensors, scene.stage);
+  grin::sensor_endpoints(scene.sensors, scene.stage);
   const grin::StageLights lights(scene.lights, scene.stage, [](const auto&) { return 1.0; });
   fuzz::require_finite(lights.power());
   for (const grin::Sensor& sensor : scene.sensors) {
@@ -117,7 +117,7 @@ int render_scene(const Arguments& arguments) {
   return ExitStatus::done;
 }
 
-/// Files that scenes may name.
+/// Writes files that scenes may name.
 void write_files() {
   fuzz::write_file("sensors.csv", "x,z\n0,-1\n2.5,12\n");
   fuzz::write_file("disks.csv", "x,z,radius,index_re,index_im\n0,1,0.2,1.5,0\n1,3,0.1,1.3,0.01\n");
@@ -126,7 +126,7 @@ void write_files() {
   fuzz::write_file("points.csv", "optical_depth,g\n1,0\n2,0.5\n");
   fuzz::write_file("layers.csv", "thickness,density,flow,diffusion\n3,0.05,0,1\n7,0.2,1,0.5\n");
   fuzz::write_file("holes.csv", "x,z,radius,amplitude\n-2,4,2,-1\n5,7,1.5,2\n");
-  ResultFile structure("structure.h5");  // of 31 disks in a box of 20 by 10
+  ResultFile structure("structure.h5");  // for 31 disks in a box of 20 by 10
   structure.scale("q", std::vector{0.5, 1.0, 2.0}, "1/length", "");
   structure.dataset("structure_factor", std::vector{0.8, 0.9, 1.0}, {"q"}, "1", "");
   structure.attribute("/", "count", std::uint64_t{31});
@@ -148,7 +148,7 @@ void write_files() {
   density.commit();
 }
 
-/// The sizes of all numbers that follow a key, in flags and in the scene.
+/// Returns the magnitudes of all numbers that follow a key, in flags and in the scene.
 std::vector<double> numbers_of(const std::string& text, const std::string& key) {
   const auto is_one_of = [&](std::string_view set, std::size_t at) {
     return at < text.size() && set.find(text[at]) != set.npos;
@@ -169,8 +169,9 @@ std::vector<double> numbers_of(const std::string& text, const std::string& key) 
   return numbers;
 }
 
-/// Phase functions of large disks are tables of tens of millions of sums of thousands of terms:
-/// seconds in the program, hours under the sanitizers. Those that the program refuses are tried.
+/// Whether a scene has large disks that the program accepts. Their phase functions are tables of
+/// tens of millions of sums with thousands of terms: seconds in the program, hours under the
+/// sanitizers.
 bool has_slow_disks(const std::string& text) {
   constexpr double most = 40, most_of_program = 1e4;
   const auto largest = [&](const char* key, double usual) {
@@ -180,22 +181,23 @@ bool has_slow_disks(const std::string& text) {
   const auto wavelengths = numbers_of(text, "wavelength");
   const double wavelength = wavelengths.empty() ? 1 : std::ranges::min(wavelengths);
   const double size = 2 * std::numbers::pi * largest("radius", 0) / wavelength;
-  const double index = std::max(1.0, 2 * largest("index", 1.5));  // of both its parts
+  const double index =
+      std::max(1.0, 2 * largest("index", 1.5));  // largest of its real and imaginary parts
   return size * index > most && size <= most_of_program;
 }
 
-/// What would begin the work, or read what is no scene.
+/// Whether a flag would start the work, or read another file than the scene.
 bool is_left_out(const std::string& flag) {
   return flag.starts_with("--out") || flag.starts_with("--config");
 }
 
-/// Of disks in the plane.
+/// Whether a subcommand uses disks in the plane.
 bool is_flat(const std::string& subcommand) {
   static const std::set<std::string> in_space = {"trace", "rays", "render", "picture", "bench"};
   return !in_space.contains(subcommand);
 }
 
-/// Reads all that it can, and stops before the work.
+/// Checks all input and stops before the work.
 int only_check(Arguments arguments) {
   arguments.emplace_back("--print-config");
   for (const SubcommandEntry& entry : subcommands())

@@ -9,7 +9,7 @@
 #include "tests/fuzz/input.h"
 #include "tests/fuzz/targets.h"
 
-// Tables. The first line, a comment, says what they hold: "# disks".
+// Tables. The first line, a comment, names the kind of table: "# disks".
 
 namespace flatspeckle::fuzz_table {
 

@@ -30,7 +30,7 @@ fs::path place() {
 Folder::Folder() {
   fs::create_directory(place());
   fs::current_path(place());
-  std::cout.rdbuf(nullptr);  // the program's notes
+  std::cout.rdbuf(nullptr);  // suppresses the program's notes
   std::cerr.rdbuf(nullptr);
 }
 
@@ -51,13 +51,13 @@ bool taken(const std::string& what, void (*use)(const std::string&)) {
   } catch (const InputError&) {
   } catch (const IoError&) {
   } catch (const std::exception& error) {
-    fail(what + ": neither taken nor refused: " + error.what());
+    fail(what + ": neither accepted nor rejected: " + error.what());
   }
   return false;
 }
 
 void require_finite(double value) {
-  if (!std::isfinite(value)) fail("a number that is not finite was passed on");
+  if (!std::isfinite(value)) fail("a number that is not finite was accepted");
 }
 
 std::string first_line(std::string_view text) {

@@ -8,12 +8,12 @@
 #include <string>
 #include <string_view>
 
-// Fuzz targets share these.
+// Helpers shared by the fuzz targets.
 
 namespace flatspeckle::fuzz {
 
-/// A folder that goes with the process, made the working directory: inputs name files in it. Paths
-/// on the command line must be absolute.
+/// A temporary folder of the process, used as working directory: inputs name files in it. Paths on
+/// the command line must be absolute.
 class Folder {
  public:
   Folder();
@@ -22,14 +22,14 @@ class Folder {
 
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
-/// Bad input may be told in two ways only; whatever else is thrown ends the process. Says whether
-/// the input was taken.
+/// Whether the input was accepted. Invalid input may only throw InputError or IoError; any other
+/// exception ends the process.
 bool taken(const std::string& what, void (*use)(const std::string&));
 
-/// Ends the process where a number that the program goes on with is not finite.
+/// Ends the process if a number that the program accepted is not finite.
 void require_finite(double value);
 
-/// Numbers from an input, zeros beyond its end.
+/// Reads numbers from an input, zeros beyond its end.
 class Bytes {
  public:
   Bytes(const std::uint8_t* bytes, std::size_t size) : next_(bytes), end_(bytes + size) {}
@@ -44,15 +44,15 @@ class Bytes {
     next_ += size;
     return number;
   }
-  /// 0 to count - 1.
+  /// Returns a number from 0 to count - 1.
   unsigned below(unsigned count) { return take<std::uint8_t>() % count; }
 
  private:
   const std::uint8_t *next_, *end_;
 };
 
-/// What a first line "# word" says: which reader the text is for. Both scene files and tables take
-/// such a line as a comment.
+/// Returns the word of a first line "# word", which selects the reader. Scene files and tables
+/// treat such a line as a comment.
 std::string first_line(std::string_view text);
 
 }  // namespace flatspeckle::fuzz

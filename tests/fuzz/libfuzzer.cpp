@@ -30,7 +30,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
     for (const NamedTarget& target : targets)
       if (std::string_view((*argv)[i]) == target.flag) chosen = target.use;
   if (!chosen) {
-    std::fputs("fuzz: needs one of", stderr);
+    std::fputs("fuzz: requires one of", stderr);
     for (const NamedTarget& target : targets) std::fprintf(stderr, " %s", target.flag);
     std::fputs("\n", stderr);
     std::exit(2);

@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 
-// libFuzzer calls these.
+// Functions called by libFuzzer.
 
-/// Reads --target=NAME, which libFuzzer itself, as all flags of two dashes, does not look at.
+/// Reads --target=NAME; libFuzzer itself ignores all flags with two dashes.
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv);
-/// Gives the input to the target. Returns 0.
+/// Passes the input to the target. Returns 0.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size);

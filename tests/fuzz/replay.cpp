@@ -8,8 +8,8 @@
 
 #include "tests/fuzz/libfuzzer.h"
 
-// For builds without libFuzzer: gives every file of the folders named to the target, once. libFuzzer's
-// own flags are not looked at.
+// For builds without libFuzzer: passes every file of the given folders to the target, once.
+// libFuzzer's own flags are ignored.
 int main(int argc, char** argv) {
   LLVMFuzzerInitialize(&argc, &argv);
   std::vector<std::filesystem::path> files;

@@ -36,7 +36,7 @@ void write_run(const std::string& path) {
   file.commit();
 }
 
-/// Goes on with the run and saves it again.
+/// Continues the run and saves it again.
 void read_run(const std::string& path) {
   RunState state = read_state(ResultReader(path), "state", sums);
   const BatchJob work = job();

@@ -13,14 +13,14 @@ struct Stored {
 
 /// A kind of HDF5 file that the program reads.
 struct ResultKind {
-  std::function<void(const std::string& path)> write;  ///< a small valid one
-  std::vector<Stored> stored;                          ///< what it reads of it
-  /// Reads one and goes on with what it holds for a while.
+  std::function<void(const std::string& path)> write;  ///< writes a small valid file
+  std::vector<Stored> stored;  ///< datasets and attributes that the program reads
+  /// Reads a file and uses its contents.
   void (*read)(const std::string& path);
-  bool is_sealed = false;  ///< the program reads it only where its seal holds
+  bool is_checksummed = false;  ///< the program reads it only if its checksum is valid
 };
 
-/// Run states, structure factors, grids of the index and of the density.
+/// Returns the kinds: run states, structure factors, grids of index and density.
 const std::vector<ResultKind>& result_kinds();
 
 }  // namespace flatspeckle::fuzz

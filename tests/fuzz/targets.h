@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
-// Fuzz targets: each takes one input, and ends the process (abort, sanitizer) where the program does
-// anything but use the input or refuse it.
+// Fuzz targets: each takes one input, and ends the process (abort, sanitizer) if the program
+// neither uses the input nor rejects it.
 
 namespace flatspeckle {
 

@@ -40,7 +40,7 @@ inline void check_curve(const Connection& found, const HarmonicCurve& exact) {
   CHECK(found.orientation == (exact.caustics() % 2 ? -1 : 1));
 }
 
-/// All of them, and no others.
+/// Checks that the list contains all exact curves and no others.
 inline void check_all_found(const Listed& list, std::vector<HarmonicCurve> exact) {
   std::sort(exact.begin(), exact.end(), [](const HarmonicCurve& a, const HarmonicCurve& b) {
     return a.optical_path() < b.optical_path();

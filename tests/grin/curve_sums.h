@@ -11,8 +11,8 @@
 #include "grin/rays/connections/connection_solver.h"
 #include "tests/statistics.h"
 
-// Sums over the curves between two points of a harmonic ball: the exact ones against K-weighted
-// estimates (conventions, C26).
+// Sums of functions over the curves between two points of a harmonic ball. Estimates weighted by
+// the multiplicity K (conventions, C26) are compared with exact sums.
 namespace flatspeckle::grin::tests {
 
 using namespace oracles;
@@ -21,7 +21,7 @@ constexpr int functions = 3;
 constexpr double wavenumber = 2;
 using Values = std::array<double, functions>;
 
-/// 1, 1/|J|, and the cosine of the phase.
+/// Returns the functions that are summed: 1, 1/|J|, and the cosine of the phase.
 inline Values values(double spreading, double optical_path) {
   return {1, 1 / spreading, std::cos(wavenumber * optical_path)};
 }
@@ -81,7 +81,8 @@ inline void check_sums(const Moments& moments, int estimates,
 inline const HarmonicBall field{{}};
 inline const Vec3 from(0.3, 0.2, -0.4), to(-0.1, 0.5, 0.2);
 
-/// Four curves up to arc length 6, estimated so many times, to a relative standard error.
+/// Checks the sums over the four curves of arc length up to 6, from `estimates` estimates. The
+/// relative standard error must be at most `largest_error`.
 inline void check_four_curves(int estimates, double largest_error) {
   std::vector<HarmonicCurve> exact = harmonic_curves(from, to, 6 * std::numbers::pi);
   const double longest = 6;
@@ -91,7 +92,7 @@ inline void check_four_curves(int estimates, double largest_error) {
                               {.step = 0.15, .max_length = longest, .start = {.chord_share = 0.1}});
   const Moments moments = estimated(trial, estimates, 82);
   check_sums(moments, estimates, exact, largest_error);
-  CHECK(moments.statistics.roulette_ends == 0);
+  CHECK(moments.statistics.roulette_terminations == 0);
 }
 
 }  // namespace flatspeckle::grin::tests

@@ -8,8 +8,8 @@
 
 namespace flatspeckle::grin::tests {
 
-/// Of f along `axis` at x by central differences over h, h/2, h/4, extrapolated: error of order
-/// h^6.
+/// Returns the derivative of f along `axis` at x, extrapolated from central differences with steps
+/// h, h/2 and h/4. The error is of order h^6.
 template <class Function>
 auto derivative(const Function& f, const Vec3& x, int axis, double h) {
   const auto difference = [&](double step) {
@@ -21,8 +21,9 @@ auto derivative(const Function& f, const Vec3& x, int axis, double h) {
   return ((16 * e1 - e0) / 15).eval();
 }
 
-/// Gradient against values, Hessian against gradients; all three agree on what they share. `length`
-/// is that over which the field varies, `size` how much.
+/// Checks the gradient against values and the Hessian against gradients, and that all three agree
+/// on common quantities. `length`: distance over which the field varies; `size`: magnitude of its
+/// variation.
 template <IndexField F>
 void check_derivatives(const F& field, const Vec3& x, double length, double size,
                        double tolerance = 1e-9) {
@@ -34,12 +35,12 @@ void check_derivatives(const F& field, const Vec3& x, double length, double size
   CHECK(std::abs(second.excess - field.excess(x)) <= 4e-15 * size);
   CHECK((second.gradient - first.gradient).norm() <= 1e-13 * size / length);
   const auto value = [&](const Vec3& at) { return Eigen::Matrix<double, 1, 1>(field.excess(at)); };
-  const auto slope = [&](const Vec3& at) { return field.gradient(at).gradient; };
+  const auto gradient_at = [&](const Vec3& at) { return field.gradient(at).gradient; };
   Vec3 gradient;
   Mat3 hessian;
   for (int i = 0; i < 3; ++i) {
     gradient[i] = derivative(value, x, i, h)[0];
-    hessian.col(i) = derivative(slope, x, i, h);
+    hessian.col(i) = derivative(gradient_at, x, i, h);
   }
   CHECK((gradient - first.gradient).norm() <= tolerance * size / length);
   CHECK((hessian - second.hessian).norm() <= tolerance * size / (length * length));

@@ -3,16 +3,16 @@
 #include <numbers>
 
 #include "grin/render/sensors/sensor.h"
-#include "tests/grin/path_ends.h"
+#include "tests/grin/path_endpoints.h"
 
 namespace flatspeckle::grin {
 
-/// Sensors in test_box and test_sphere.
+// Example sensors in test_box and test_sphere.
 
 inline Camera pinhole() {
   return {Vec3(0.4, -0.6, 1.4), Vec3(1, 0.5, -0.3), Vec3(0, 0.2, 1), 1.2, {5, 3}};
 }
-/// A camera whose lens is on the upper face, tilted.
+/// Returns a tilted camera whose lens is on the upper face.
 inline Camera lens_on_box() {
   Camera camera{Vec3(0.6, -0.4, 3), Vec3(0.1, 0.05, -1), Vec3(0.3, 1, 0), 1.1, {4, 3}};
   camera.lens_radius = 0.5;

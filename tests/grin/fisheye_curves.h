@@ -11,9 +11,9 @@ namespace flatspeckle::oracles {
 
 using grin::Vec3;
 
-/// The curves of Maxwell's fisheye n = n0 / (1 + r^2/a^2) in closed form, by stereographic
-/// projection: great circles of a sphere of radius R = n0 a/2 in four dimensions, on which optical
-/// path is length and angles are angles.
+/// Rays of Maxwell's fisheye n = n0 / (1 + r^2/a^2) in closed form, by stereographic projection
+/// onto a sphere of radius R = n0 a/2 in four dimensions. The rays become great circles; lengths on
+/// the sphere are optical paths, and angles are preserved.
 class FisheyeCurves {
  public:
   using Vec4 = Eigen::Vector4d;
@@ -23,7 +23,7 @@ class FisheyeCurves {
   double index(const Vec3& x) const { return n0_ / (1 + x.squaredNorm() / (a_ * a_)); }
   double radius() const { return n0_ * a_ / 2; }
 
-  /// From P: the point at the angle alpha along a great circle.
+  /// A great circle that starts at P, parametrised by the angle alpha along it.
   struct Circle {
     Vec4 start, tangent;
     Vec4 at(double alpha) const { return start * std::cos(alpha) + tangent * std::sin(alpha); }
@@ -32,7 +32,8 @@ class FisheyeCurves {
   Circle circle(const Vec3& from, const Vec3& direction) const {
     return {lifted(from), lifted_direction(from, direction)};
   }
-  /// The short way from P to Q; `angle` is that between them.
+  /// Returns the great circle along the shorter arc from P to Q; sets `angle` to the angle between
+  /// P and Q.
   Circle circle_between(const Vec3& p, const Vec3& q, double& angle) const {
     const Vec4 u = lifted(p), w = lifted(q);
     const Vec4 across = w - u.dot(w) * u;

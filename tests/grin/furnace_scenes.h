@@ -9,7 +9,7 @@
 // Scenes of render tests.
 namespace flatspeckle::grin::tests {
 
-/// Rayleigh, with a density on a grid.
+/// Returns a Rayleigh medium with a density on a grid.
 inline ScatteringMedium grid_medium() {
   const FieldGrid grid{Vec3::Constant(-0.8), Vec3::Constant(0.4), {5, 5, 5}};
   std::vector<double> density(grid.size());
@@ -17,8 +17,8 @@ inline ScatteringMedium grid_medium() {
   return {2, 0.2, {RayleighPhase{}}, std::make_shared<DensityGrid>(grid, density)};
 }
 
-/// The fields of the white furnace, in the box, under the environment; all that scatters is
-/// `medium`.
+/// Returns the white-furnace scenes: several index fields in the box, illuminated by the
+/// environment. The scattering medium in the box and in the ball is `medium`.
 inline std::vector<NamedRender> furnaces(const ScatteringMedium& medium) {
   const Stage stage{unit_box(), medium};
   Stage with_ball = stage;
@@ -44,13 +44,13 @@ inline std::vector<NamedRender> furnaces(const ScatteringMedium& medium) {
   return all;
 }
 
-/// The same with several bodies.
+/// Returns white-furnace scenes with several bodies.
 inline std::vector<NamedRender> furnaces_of_bodies(const ScatteringMedium& medium) {
-  Stage balls{unit_box(), medium};  // one inside of another, one beside
+  Stage balls{unit_box(), medium};  // one inside another, one apart
   balls.bodies.push_back({Sphere{Vec3(0.1, 0, 0.1), 0.6}, medium});
   balls.bodies.push_back({Sphere{Vec3(0.2, 0, 0.2), 0.3}, medium, 0.1});
   balls.bodies.push_back({Sphere{Vec3(-0.6, -0.6, 0.5), 0.3}, medium, 0.8});
-  Stage layers{unit_box(), medium};  // that touch
+  Stage layers{unit_box(), medium};  // touching layers
   layers.bodies.push_back({Box{{-0.7, -0.8, -0.5}, {0.9, 0.8, 0.6}}, medium});
   layers.bodies.push_back({Box{{-0.7, -0.8, -0.5}, {0.9, 0.8, 0.3}}, medium, 0.2});
   layers.bodies.push_back({Box{{-0.7, -0.8, -0.5}, {0.9, 0.8, -0.1}}, medium, 0.6});

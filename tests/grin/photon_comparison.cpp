@@ -13,7 +13,7 @@ namespace flatspeckle::grin::tests {
 
 namespace {
 
-/// u to the right, v up, both within the half sides.
+/// Returns the pixel at u (to the right) and v (up), nullopt beyond the half sides.
 std::optional<int> pixel_of(const PixelGrid& grid, double u, double v, double half_u,
                             double half_v) {
   const double column = std::floor((u + half_u) / (2 * half_u) * grid.columns);
@@ -41,7 +41,7 @@ void check_all(const std::vector<Complex>& value, const std::vector<double>& err
                const std::vector<double>& expected, const std::vector<double>& expected_error) {
   REQUIRE(value.size() == expected.size());
   for (std::size_t i = 0; i < value.size(); ++i) {
-    // bins where nothing or next to nothing was seen have no errors to speak of
+    // bins with hardly any detected light have no meaningful errors
     if (expected[i] < 5 * expected_error[i] || value[i].real() < 5 * error[i]) continue;
     const Compared c{value[i].real(), error[i], expected[i], expected_error[i]};
     CAPTURE(i);
@@ -59,7 +59,7 @@ PhotonSensor area_sensor(const AreaDetector& detector, const Vec3& outward, doub
   const Vec3 v = upright(detector.up, outward), u = outward.cross(v);
   const double pixel_area =
       detector.width * detector.height / (detector.pixels.columns * detector.pixels.rows);
-  return [=](const Photon& p) -> std::optional<PhotonWorth> {
+  return [=](const Photon& p) -> std::optional<PhotonScore> {
     const Vec3 from = p.x - detector.centre;
     const Vec3 normal =
         sphere_radius > 0 ? ((from + sphere_radius * outward) / sphere_radius).eval() : outward;
@@ -69,30 +69,30 @@ PhotonSensor area_sensor(const AreaDetector& detector, const Vec3& outward, doub
     const auto pixel = pixel_of(detector.pixels, from.dot(u), from.dot(v), detector.width / 2,
                                 detector.height / 2);
     if (!pixel) return {};
-    return PhotonWorth{*pixel, normal.dot(outward) / pixel_area};
+    return PhotonScore{*pixel, normal.dot(outward) / pixel_area};
   };
 }
 
 PhotonSensor radial_sensor(const RadialDetector& detector, const Vec3& outward) {
-  return [=](const Photon& p) -> std::optional<PhotonWorth> {
+  return [=](const Photon& p) -> std::optional<PhotonScore> {
     const Vec3 from = p.x - detector.centre;
     if (std::abs(from.dot(outward)) > 1e-6 || from.norm() >= detector.radius) return {};
     if (p.direction.dot(outward) < std::cos(detector.acceptance)) return {};
     const double width = detector.radius / detector.rings;
     const int ring = static_cast<int>(from.norm() / width);
-    return PhotonWorth{ring, 1 / (std::numbers::pi * width * width * (2 * ring + 1))};
+    return PhotonScore{ring, 1 / (std::numbers::pi * width * width * (2 * ring + 1))};
   };
 }
 
 PhotonSensor polar_sensor(const PolarDetector& detector) {
   const Vec3 axis = detector.axis.normalized();
-  return [=](const Photon& p) -> std::optional<PhotonWorth> {
+  return [=](const Photon& p) -> std::optional<PhotonScore> {
     const double width = detector.half_angle / detector.rings;
     const int ring = static_cast<int>(std::acos(p.direction.dot(axis)) / width);
     if (ring >= detector.rings) return {};
     const double solid_angle =
         2 * std::numbers::pi * (std::cos(ring * width) - std::cos((ring + 1) * width));
-    return PhotonWorth{ring, 1 / solid_angle};
+    return PhotonScore{ring, 1 / solid_angle};
   };
 }
 
@@ -101,12 +101,12 @@ PhotonSensor directional_sensor(const DirectionalDetector& detector) {
   const Vec3 u = forward.cross(v);
   const double half = std::sin(detector.half_angle);
   const double pixel_area = 4 * half * half / (detector.pixels.columns * detector.pixels.rows);
-  return [=](const Photon& p) -> std::optional<PhotonWorth> {
+  return [=](const Photon& p) -> std::optional<PhotonScore> {
     const double cosine = p.direction.dot(forward);
     const auto pixel =
         pixel_of(detector.pixels, p.direction.dot(u), p.direction.dot(v), half, half);
     if (cosine <= 0 || !pixel) return {};
-    return PhotonWorth{*pixel, cosine / pixel_area};
+    return PhotonScore{*pixel, cosine / pixel_area};
   };
 }
 
@@ -117,14 +117,14 @@ PhotonSensor lens_sensor(const Camera& camera) {
   const double half_v = half * camera.pixels.rows / camera.pixels.columns;
   const double pixel_area = 4 * half * half_v / (camera.pixels.columns * camera.pixels.rows);
   const double lens_area = std::numbers::pi * camera.lens_radius * camera.lens_radius;
-  return [=](const Photon& p) -> std::optional<PhotonWorth> {
+  return [=](const Photon& p) -> std::optional<PhotonScore> {
     const Vec3 from = p.x - camera.x;
     const double cosine = -p.direction.dot(forward);
     if (from.norm() > camera.lens_radius || cosine <= 0) return {};
     const Vec3 focus = from / camera.focus_distance - p.direction / cosine;
     const auto pixel = pixel_of(camera.pixels, focus.dot(u), focus.dot(v), half, half_v);
     if (!pixel) return {};
-    return PhotonWorth{*pixel, 1 / (std::pow(cosine, 4) * pixel_area * lens_area)};
+    return PhotonScore{*pixel, 1 / (std::pow(cosine, 4) * pixel_area * lens_area)};
   };
 }
 
@@ -141,16 +141,16 @@ PhotonPicture photon_picture(const TwoScenes& scenes, std::uint64_t most_photons
                  const auto seen = scenes.sensor(p);
                  if (!seen) return;
                  const std::size_t pixel = seen->pixel;
-                 steady.add(pixel, seen->worth);
-                 if (bins.count == 1) return tally.add(pixel, seen->worth);
+                 steady.add(pixel, seen->score);
+                 if (bins.count == 1) return tally.add(pixel, seen->score);
                  if (p.optical_path < bins.first || p.optical_path > bins.last) return;
-                 // shared between the bins whose centres are next to it
+                 // split linearly between the two bins with the nearest centres
                  const double width = (bins.last - bins.first) / bins.count;
                  const double at =
                      std::clamp((p.optical_path - bins.first) / width - 0.5, 0.0, bins.count - 1.0);
                  const int before = std::min(static_cast<int>(at), bins.count - 2);
-                 tally.add(pixel * bins.count + before, seen->worth * (before + 1 - at));
-                 tally.add(pixel * bins.count + before + 1, seen->worth * (at - before));
+                 tally.add(pixel * bins.count + before, seen->score * (before + 1 - at));
+                 tally.add(pixel * bins.count + before + 1, seen->score * (at - before));
                });
   PhotonPicture picture;
   for (std::size_t i = 0; i < tally.size(); ++i) {

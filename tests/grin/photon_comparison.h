@@ -12,23 +12,23 @@ namespace flatspeckle::grin::tests {
 
 using namespace oracles;
 
-struct PhotonWorth {
+struct PhotonScore {
   int pixel;
-  double worth;
+  double score;
 };
-/// What a photon that leaves is worth to a sensor, nothing where it is not seen.
-using PhotonSensor = std::function<std::optional<PhotonWorth>(const Photon&)>;
+/// Returns the score of a photon that leaves the scene; nullopt if it is not detected.
+using PhotonSensor = std::function<std::optional<PhotonScore>(const Photon&)>;
 
-/// Sensors of scenes, written once more from their definitions.
+// Sensors of scenes, implemented a second time from their definitions.
 PhotonSensor area_sensor(const AreaDetector& detector, const Vec3& outward,
                          double sphere_radius = 0);
 PhotonSensor radial_sensor(const RadialDetector& detector, const Vec3& outward);
 PhotonSensor polar_sensor(const PolarDetector& detector);
 PhotonSensor directional_sensor(const DirectionalDetector& detector);
-/// With a lens, on a plane wall.
+/// Returns a camera with a lens on a plane wall.
 PhotonSensor lens_sensor(const Camera& camera);
 
-/// A scene twice: for the estimators and for the oracle.
+/// One scene in two forms, for the estimators and for the photon walk.
 struct TwoScenes {
   RenderScene scene;
   WalkScene walk;
@@ -37,15 +37,16 @@ struct TwoScenes {
   PhotonSensor sensor;
 };
 
-/// The oracle's picture, [pixel][bin] and the steady [pixel].
+/// Picture by the photon walk: values per time bin, [pixel][bin], and time-integrated values,
+/// [pixel].
 struct PhotonPicture {
   std::vector<double> value, error, steady_value, steady_error;
 };
 PhotonPicture photon_picture(const TwoScenes& scenes, std::uint64_t photons, std::uint64_t seed);
 
-/// Checks pixels, bins and totals of a method against the oracle, each within 4 combined standard
-/// errors, and that the error of the total is no more than `precision` of it. These and photons are
-/// what is taken by night: see Effort.
+/// Checks pixels, bins and totals of a method against the photon walk, each within 4 combined
+/// standard errors, and that the relative error of the total is at most `precision`. `samples` and
+/// the number of photons are given for nightly runs; by day they are reduced (see Effort).
 void check_against(const PhotonPicture& photons, const TwoScenes& scenes,
                    const RenderRequest& request, std::uint64_t samples, double precision);
 

@@ -13,7 +13,7 @@ namespace flatspeckle::grin::tests {
 
 inline constexpr double pi = std::numbers::pi;
 
-/// Rays of the Luneburg lens of radius 1 (conventions, C27).
+/// A ray of the Luneburg lens of radius 1 in closed form (conventions, C27).
 struct LuneburgRay {
   Vec3 x0, v0;
 

@@ -8,7 +8,7 @@
 
 namespace flatspeckle::grin::tests {
 
-/// Pairs of paths by which bidirectional tracing is compared with the other two.
+/// Number of path pairs for comparing bidirectional tracing with the other two methods.
 inline const double agreement_samples = is_night ? 5e4 : 8e3;
 
 inline const AreaDetector far_detector{Vec3::UnitZ(), Vec3::UnitY(), 1, 1, {2, 1}, right_angle};
@@ -41,7 +41,9 @@ inline Mean mean_of(const RenderScene& scene, RenderMethod method, double sample
                     std::uint64_t seed) {
   const RenderJob job = render_job(scene, {.method = method}, flatspeckle::tests::fresh_seed(seed));
   const Estimate mean = pixel_mean(job, run_render(job, samples));
-  const bool few = !mean.rare.empty() && mean.rare[0] > 0;  // a marked error is doubled in pictures
+  const bool few =
+      !mean.rare.empty() &&
+      mean.rare[0] > 0;  // the error of an undersampled value is doubled, as in pictures
   return {mean.value[0].real(), (few ? 2 : 1) * mean.error[0]};
 }
 
@@ -51,7 +53,7 @@ inline Mean bidirectional_mean(const RenderScene& scene, double samples = agreem
 
 inline void check_agreement(const RenderScene& scene, const Mean& both, RenderMethod method,
                             double samples) {
-  // seeds differ: from the same paths they would agree too well
+  // the seeds differ, because results from the same paths would agree too well
   const Mean one = mean_of(scene, method, samples, 12 + static_cast<int>(method));
   CAPTURE(name(method));
   CAPTURE(one.error / both.value);

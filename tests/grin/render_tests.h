@@ -18,7 +18,7 @@ inline std::string name(RenderMethod method) {
   return method_word(method);
 }
 
-/// A picture and what it cost.
+/// A picture and its cost.
 struct Rendered {
   RenderedPicture picture;
   TransportCounts counts;
@@ -62,8 +62,8 @@ inline Rendered rendered(const RenderScene& scene, RenderMethod method, double s
   return rendered(scene, RenderRequest{method}, samples, seed);
 }
 
-/// Mean over the pixels with its error, as one number to compare: pixels of a picture are made from
-/// the same light paths, so the error comes from batches too.
+/// Returns the mean over the pixels with its error. Pixels share light paths, so the error is
+/// estimated from the batches and not from the pixels.
 inline Estimate pixel_mean(const RenderJob& job, const RunState& state) {
   return jackknife(state.sums, [&](double samples, std::span<const Complex> sums) {
     const auto per_pixel = static_cast<std::size_t>(job.bins.sums());

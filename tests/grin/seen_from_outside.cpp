@@ -19,7 +19,7 @@ const Camera small_lens{.x = {2, 0, 0},
                         .pixels = {1, 1},
                         .lens_radius = 0.15,
                         .focus_distance = 2};
-/// Through which enough photons pass.
+/// Returns the small lens with an aperture so wide that enough photons pass through it.
 Camera wide_lens() {
   Camera lens = small_lens;
   lens.lens_radius = 0.4;

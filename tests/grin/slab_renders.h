@@ -10,12 +10,12 @@
 
 namespace flatspeckle::grin::tests {
 
-/// Slabs of matched index under a beam.
+// Slabs of matched index under a beam.
 
 enum class Face { reflected, transmitted };
 
-/// A box so wide that light hardly reaches its sides; the detector covers a face, so that the
-/// beam's power of 1 is shared between the faces and absorption.
+/// Returns a box so wide that hardly any light reaches its sides. The detector covers one face; the
+/// beam has power 1.
 inline RenderScene slab(const ScatteringMedium& medium, double thickness, double half_width,
                         Face face) {
   const Vec3 low(-half_width, -half_width, 0), high(half_width, half_width, thickness);
@@ -38,7 +38,7 @@ inline ScatteringMedium isotropic(double albedo) {
   return medium;
 }
 
-/// Prahl, Keijzer, Jacques and Welch 1989, table 1: lengths in cm.
+/// Returns the slab of Prahl, Keijzer, Jacques and Welch 1989, table 1; lengths in cm.
 inline RenderScene van_de_hulst(Face face) {
   ScatteringMedium medium;
   medium.mu_s = 90;
@@ -64,7 +64,8 @@ inline void check_share(const RenderScene& scene, RenderMethod method, double sa
                         double expected, double largest_error) {
   check_share(scene, method, rendered(scene, method, samples), expected, largest_error);
 }
-/// By a run that ends at that error: of a number of samples errors scatter by a twentieth.
+/// Checks the fraction of power by a run that stops at the given error. With a fixed number of
+/// samples, the error itself would scatter by about 5 %.
 inline void check_share_to(const RenderScene& scene, RenderMethod method, double expected,
                            double largest_error) {
   StopRule stop;

@@ -10,7 +10,7 @@
 #include "tests/grin/render_tests.h"
 #include "tests/grin/seen_from_outside.h"
 
-// Estimators against analog photons, on detectors that photons hit.
+// Compares the estimators with analog photon tracing, on detectors that photons hit.
 
 namespace flatspeckle::grin::tests::test_against_photons {
 
@@ -20,8 +20,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Fog that absorbs a little in a sphere of index 1.3, a point light off the centre, pulses seen by
-/// a cap of the wall.
+/// Returns weakly absorbing fog in a sphere of index 1.3 with an off-centre point light; a cap of
+/// the wall detects pulses.
 TwoScenes foggy_sphere() {
   const AreaDetector cap{.centre = {0, 0, 1},
                          .up = {0, 1, 0},
@@ -49,7 +49,7 @@ TwoScenes foggy_sphere() {
           .sensor = area_sensor(cap, {0, 0, 1}, 1)};
 }
 
-/// A glass ball that scatters in thin fog, a beam past its centre, seen by direction.
+/// Returns a scattering glass ball in thin fog under an off-centre beam, detected by direction.
 TwoScenes glass_ball() {
   const DirectionalDetector far{
       .forward = {0, 0, 1}, .up = {0, 1, 0}, .half_angle = 0.6, .pixels = {3, 3}};
@@ -73,7 +73,7 @@ TwoScenes glass_ball() {
           .sensor = directional_sensor(far)};
 }
 
-/// A Luneburg ball that scatters under a beam; power by place behind it.
+/// Returns a scattering Luneburg ball under a beam, detected by position behind it.
 TwoScenes luneburg_ball() {
   const AreaDetector wall{.centre = {0, 0, 1.5},
                           .up = {0, 1, 0},
@@ -101,7 +101,8 @@ TwoScenes luneburg_ball() {
           .sensor = area_sensor(wall, {0, 0, 1})};
 }
 
-/// A guide n^2 = n0^2 - alpha^2 rho^2 whose fog grows denser along it; pulses from a lit end.
+/// Returns a guide n^2 = n0^2 - alpha^2 rho^2 whose fog grows denser along the axis; a beam enters
+/// at one end, pulses are detected at the other.
 TwoScenes foggy_guide() {
   constexpr double n0 = 1.5, alpha = 0.5;
   const AreaDetector end{.centre = {0, 0, 4},
@@ -110,7 +111,7 @@ TwoScenes foggy_guide() {
                          .height = 2,
                          .pixels = {2, 1},
                          .acceptance = pi / 2};
-  // linear between the nodes, as the walk's formula
+  // linear between the nodes, like the density of the photon walk
   const FieldGrid nodes{.origin = {-1, -1, 0}, .spacing = {2, 2, 4}, .nodes = {2, 2, 2}};
   const auto density = std::make_shared<DensityGrid>(
       nodes, std::vector<double>{0.5, 1.5, 0.5, 1.5, 0.5, 1.5, 0.5, 1.5});
@@ -138,7 +139,7 @@ TwoScenes foggy_guide() {
           .sensor = area_sensor(end, {0, 0, 1})};
 }
 
-/// A thick slab of tissue under a narrow beam; diffuse reflectance by radius or by angle.
+/// Returns a thick slab of tissue under a narrow beam, for diffuse reflectance by radius or angle.
 TwoScenes tissue(const Sensor& sensor, const PhotonSensor& seen) {
   return {.scene = {.field = Homogeneous{},
                     .step = 1,
@@ -157,7 +158,7 @@ TwoScenes tissue(const Sensor& sensor, const PhotonSensor& seen) {
           .sensor = seen};
 }
 
-/// The beam's place taken by a disk that shines on the wall at z.
+/// Replaces the beam by a luminous disk on the wall at z, in a medium of this index.
 TwoScenes with_face_light(TwoScenes scenes, double z, double index) {
   const double radius = 0.9;
   scenes.scene.lights = {FaceLight{.centre = {0, 0, z}, .radius = radius, .radiance = 2}};
@@ -179,39 +180,42 @@ void check_methods(const TwoScenes& scenes, std::span<const RenderMethod> method
 
 }  // namespace
 
-// Next to a point light in fog, and under a beam, whose first scatterings path tracing joins by
-// 1/r^2 alone, its variance is infinite.
+// Path tracing is left out near a point light in fog and under a beam: it connects their first
+// collisions by 1/r^2 alone, so that its variance is infinite.
 
-TEST_CASE("fog in a sphere around a point light: as photons see it") {
+TEST_CASE("point light in a foggy sphere: pulses agree with analog photon tracing") {
   check_methods(foggy_sphere(), two_methods, 400000, 0.01, 250000);
 }
 
-TEST_CASE("a glass ball in fog under a beam: as photons see it") {
+TEST_CASE("glass ball in fog under a beam: pictures agree with analog photon tracing") {
   check_methods(glass_ball(), two_methods, 400000, 0.02, 200000);
 }
 
-TEST_CASE("a glass ball in fog before a lit wall: as photons see it") {
+TEST_CASE("glass ball in fog before a luminous wall: pictures agree with analog photon tracing") {
   check_methods(with_face_light(glass_ball(), -2, 1), three_methods, 400000, 0.02, 200000);
 }
 
-TEST_CASE("a Luneburg ball in fog under a beam: as photons see it") {
+TEST_CASE("Luneburg ball in fog under a beam: pictures agree with analog photon tracing") {
   check_methods(luneburg_ball(), two_methods, 100000, 0.03, 30000);
 }
 
-TEST_CASE("a Luneburg ball in fog before a lit wall: as photons see it") {
+TEST_CASE(
+    "Luneburg ball in fog before a luminous wall: pictures agree with analog photon tracing") {
   check_methods(with_face_light(luneburg_ball(), -1.5, 1), three_methods, 100000, 0.03, 30000);
 }
 
-TEST_CASE("a guide in fog under a beam, in pulses: as photons see it") {
+TEST_CASE("foggy guide under a beam: pulses agree with analog photon tracing") {
   check_methods(foggy_guide(), two_methods, 100000, 0.03, 30000);
 }
 
-TEST_CASE("diffuse reflectance by radius, within an angle, and its paths: as photons see it") {
+TEST_CASE(
+    "tissue slab: reflectance by radius and moments of its paths agree with analog photon "
+    "tracing") {
   const RadialDetector rings{{0, 0, 0}, 5, 5, 1};
   const TwoScenes scenes = tissue(rings, radial_sensor(rings, {0, 0, -1}));
   check_methods(scenes, two_methods, 200000, 0.03, 24000);
 
-  // mean optical path and mean of its square of each ring
+  // mean optical path of each ring, and mean of its square
   const double share = flatspeckle::tests::effort().samples;
   const RenderJob job = render_job(scenes.scene, {.method = RenderMethod::light}, 3);
   const SensorResult found =
@@ -221,14 +225,14 @@ TEST_CASE("diffuse reflectance by radius, within an angle, and its paths: as pho
   };
   const auto photons = static_cast<std::uint64_t>(share * 400000);
   PhotonTally light(rings.rings, photons);
-  std::vector<PhotonTally> beyond(2, light);  // what photons' moments are above the means found
+  std::vector<PhotonTally> beyond(2, light);  // excess of the photons' moments over the estimates
   walk_photons(scenes.walk, scenes.source, photons, 6, [&](const Photon& p) {
     const auto seen = scenes.sensor(p);
     if (!seen) return;
-    light.add(seen->pixel, seen->worth);
+    light.add(seen->pixel, seen->score);
     for (const int power : {1, 2})
       beyond[power - 1].add(
-          seen->pixel, seen->worth * (std::pow(p.optical_path, power) - mean(seen->pixel, power)));
+          seen->pixel, seen->score * (std::pow(p.optical_path, power) - mean(seen->pixel, power)));
   });
   for (int ring = 0; ring < rings.rings; ++ring)
     for (const int power : {1, 2}) {
@@ -242,13 +246,14 @@ TEST_CASE("diffuse reflectance by radius, within an angle, and its paths: as pho
     }
 }
 
-TEST_CASE("diffuse reflectance by polar angle: as photons see it") {
+TEST_CASE("tissue slab: reflectances by polar angle agree with analog photon tracing") {
   const PolarDetector rings{{0, 0, -1}, pi / 2, 6};
   check_methods(tissue(rings, polar_sensor(rings)), two_methods, 200000, 0.02, 24000);
 }
 
-TEST_CASE("a glass ball that scatters, seen from outside by a lens and a pinhole") {
-  std::vector<double> indices;              // by day the beam alone
+TEST_CASE(
+    "scattering glass ball: a lens camera agrees with analog photons, a pinhole with the lens") {
+  std::vector<double> indices;              // by day only the beam
   if (is_night) indices = {1.0, 1.4, 0.8};  // n = 0.8: few paths connect, with small weights
   for (const double index : indices)
     check_lens_and_pinhole(body_from_outside(Homogeneous{index - 1}, ball_walk(index), side_point,
@@ -259,7 +264,8 @@ TEST_CASE("a glass ball that scatters, seen from outside by a lens and a pinhole
                          is_night ? 12000000 : 6000000, is_night ? 200000 : 100000);
 }
 
-TEST_CASE("a Luneburg ball that scatters, seen from outside by a lens and a pinhole") {
+TEST_CASE(
+    "scattering Luneburg ball: a lens camera agrees with analog photons, a pinhole with the lens") {
   const WalkScene walk = luneburg_walk();
   check_lens_and_pinhole(
       body_from_outside(Luneburg({}), walk, side_point, towards_ball(), share_towards_ball), 400000,

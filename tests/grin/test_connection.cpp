@@ -25,9 +25,10 @@ using tests::everywhere;
 using tests::Listed;
 using tests::listed;
 
-TEST_CASE("in Luneburg's ball one curve joins any two points, and it is found") {
-  // Of the two ellipses and two ways round, that with cos sigma > 0 stays inside (the others leave
-  // the ball: within it a ray takes a quarter of its period).
+TEST_CASE(
+    "connections in Luneburg's ball: the only curve between two points is found, closed form") {
+  // Among the two ellipses and two senses, only the curve with cos sigma > 0 stays inside; within
+  // the ball a ray takes a quarter of its period.
   const HarmonicBall field{{}};
   const Inside<bench::Ball> ball{{1}};
   RandomStream random(71, 0, 0);
@@ -41,7 +42,7 @@ TEST_CASE("in Luneburg's ball one curve joins any two points, and it is found") 
   }
 }
 
-TEST_CASE("a pair that no curve joins gives none, and 0") {
+TEST_CASE("connection: points without a curve between them give no curve and multiplicity 0") {
   const HarmonicBall field{{}};
   const Vec3 p(1.2, 0, 0), q(0, 1.2, 0);
   CHECK(oracles::harmonic_curves(p, q, 100).empty());
@@ -57,7 +58,7 @@ TEST_CASE("a pair that no curve joins gives none, and 0") {
   CHECK(statistics.trials() == 200);
 }
 
-TEST_CASE("between two lenses curves come in mirrored pairs, of one length but not the same") {
+TEST_CASE("connections past two lenses: curves come in mirrored pairs of equal length") {
   const GaussianBlobs lenses({{{0, 0.7, 0}, 1, 0.5}, {{0, -0.7, 0}, 1, 0.5}});
   const Listed list =
       listed(lenses, everywhere, {-2, 0, 0}, {2, 0, 0}, {.step = 0.05, .max_length = 7}, 1000, 1);
@@ -74,7 +75,7 @@ TEST_CASE("between two lenses curves come in mirrored pairs, of one length but n
   }
 }
 
-TEST_CASE("a continuum of curves is degenerate: nothing is found and nothing runs for ever") {
+TEST_CASE("connection to an image point: the continuum of curves is degenerate, and trials end") {
   const Fisheye field({.centre_excess = 0.7, .radius = 0.8});
   const Vec3 p(0.3, 0.2, -0.4);
   const Vec3 image = -0.64 / p.squaredNorm() * p;
@@ -88,10 +89,10 @@ TEST_CASE("a continuum of curves is degenerate: nothing is found and nothing run
   CHECK(!estimate.curve);
 }
 
-TEST_CASE("in the fisheye the two arcs of a great circle join two points") {
+TEST_CASE("connections in a fisheye: the two arcs of a great circle are found, closed form") {
   const Fisheye field({.centre_excess = 0.7, .radius = 0.8});
   const Vec3 p(0.3, 0.2, -0.4), q(-0.1, 0.5, 0.2);
-  // on a sphere of radius R = n0 a / 2, by stereographic projection; both go round it again
+  // both are arcs on a sphere of radius R = n0 a / 2, by stereographic projection, and wind again
   const Listed list = listed(field, everywhere, p, q, {.step = 0.02, .max_length = 8}, 100, 1);
   REQUIRE(list.curves.size() >= 2);
   const double whole = 2 * pi * 1.7 * 0.8 / 2;
@@ -101,20 +102,21 @@ TEST_CASE("in the fisheye the two arcs of a great circle join two points") {
   CHECK(list.curves[1].curve.caustics == 2);
 }
 
-TEST_CASE("points that coincide, or nearly, from a scene of metres down to micrometres") {
+TEST_CASE(
+    "connection of coinciding and close points: straight, in units from metres to micrometres") {
   const Vec3 p(0.3, 0.2, -0.4);
   for (const double unit : {1.0, 1e-6}) {
     CAPTURE(unit);
     const Fisheye field({.centre_excess = 0.7, .radius = 0.8 * unit});
     const ConnectionOptions options{.step = 0.05 * unit, .max_length = 2 * unit};
-    const auto joined = [&](const Vec3& q) {
+    const auto connected = [&](const Vec3& q) {
       return listed(field, everywhere, unit * p, unit * q, options, 50, 3);
     };
-    CHECK(joined(p).statistics.count(TrialOutcome::degenerate) == 50);
+    CHECK(connected(p).statistics.count(TrialOutcome::degenerate) == 50);
     for (const double gap : {1e-9, 1e-6, 1e-3}) {
       CAPTURE(gap);
       const Vec3 to(0.6, -0.48, 0.64);
-      const Listed list = joined(p + gap * to);
+      const Listed list = connected(p + gap * to);
       REQUIRE(list.curves.size() >= 1);
       const Connection& curve = list.curves[0].curve;
       CHECK(curve.arc_length == doctest::Approx(gap * unit).epsilon(1e-5));
@@ -122,33 +124,33 @@ TEST_CASE("points that coincide, or nearly, from a scene of metres down to micro
             doctest::Approx(gap * gap * unit * unit).epsilon(1e-4 + gap).scale(0));
       CHECK((curve.start_direction - to).norm() < 1e-5 + gap);
     }
-    CHECK(joined({-0.1, 0.5, 0.2}).curves.size() == 1);
-    for (const double gap : {3e-12, 3e-11, 3e-10})  // never one by many names
-      CHECK(joined(p + gap * Vec3::UnitX()).curves.size() <= 1);
+    CHECK(connected({-0.1, 0.5, 0.2}).curves.size() == 1);
+    for (const double gap : {3e-12, 3e-11, 3e-10})  // never one curve counted as several
+      CHECK(connected(p + gap * Vec3::UnitX()).curves.size() <= 1);
   }
 }
 
-TEST_CASE("in a homogeneous field the straight line is the curve, and no trial runs") {
+TEST_CASE("connection in a homogeneous field: the straight line, without trials") {
   const Homogeneous glass{0.5};
   const Vec3 p(1, 2, 3), q(1, -1, 7);
   ConnectionOptions options{.step = 0.1, .max_length = 6};
   RandomStream random(76, 0, 0);
   ConnectionStatistics statistics;
-  const auto joined = [&](const auto& region) {
+  const auto connected = [&](const auto& region) {
     return connect(ConnectionTrial(glass, region, p, q, options), random, statistics);
   };
-  const ConnectionEstimate estimate = joined(everywhere);
+  const ConnectionEstimate estimate = connected(everywhere);
   REQUIRE(estimate.curve);
   CHECK(estimate.multiplicity == 1);
   CHECK(estimate.curve->spreading == doctest::Approx(25).epsilon(1e-15));
   CHECK(estimate.curve->optical_path == doctest::Approx(7.5).epsilon(1e-15));
   CHECK((estimate.curve->start_direction - Vec3(0, -0.6, 0.8)).norm() < 1e-15);
-  CHECK(!joined([](const Vec3& x) { return x.z() < 4 || x.z() > 5; }).curve);
+  CHECK(!connected([](const Vec3& x) { return x.z() < 4 || x.z() > 5; }).curve);
   options.max_length = 4.9;
-  CHECK(joined(everywhere).outcome == TrialOutcome::too_long);
+  CHECK(connected(everywhere).outcome == TrialOutcome::too_long);
   CHECK(statistics.trials() == 0);
   CHECK(statistics.tangent_steps + statistics.guess_steps == 0);
-  // the solver itself, told nothing, agrees
+  // the general solver agrees
   const GaussianBlobs flat({}, 0.5);
   const Listed list = listed(flat, everywhere, p, q, {.step = 1, .max_length = 6}, 50, 1);
   REQUIRE(list.curves.size() == 1);
@@ -156,7 +158,7 @@ TEST_CASE("in a homogeneous field the straight line is the curve, and no trial r
   CHECK(list.curves[0].curve.sigma == doctest::Approx(5 / 1.5).epsilon(1e-12));
 }
 
-TEST_CASE("an almost invisible field bends by as much as it should") {
+TEST_CASE("connection in a weak field: the deflection is proportional to the field") {
   RandomStream random(77, 0, 0);
   const GaussianBlobs strong = bench::random_blobs(random, 1e-3);
   RandomStream again(77, 0, 0);
@@ -171,7 +173,7 @@ TEST_CASE("an almost invisible field bends by as much as it should") {
   CHECK(bend(weak) == doctest::Approx(1e-3 * bend(strong)).epsilon(0.02).scale(0));
 }
 
-TEST_CASE("a trial converges whatever its number of steps, down to their rounding") {
+TEST_CASE("connection trials: convergence does not depend on the number of steps") {
   const GaussianBlobs blob({{{0.05, 0, 5}, 0.005, 0.1}}, 0);
   const auto not_converged = [&](double step) {
     const ConnectionOptions options{.step = step, .max_length = 20};
@@ -181,7 +183,7 @@ TEST_CASE("a trial converges whatever its number of steps, down to their roundin
   CHECK(not_converged(5e-4) == not_converged(5e-3));
 }
 
-TEST_CASE("walls and lengths: a curve that leaves the region or is too long is none") {
+TEST_CASE("connection: curves that leave the region or are too long are rejected") {
   const HarmonicBall field{{}};
   const Vec3 p(0.9, 0, 0), q(0, 0.9, 0);
   const auto list = [&](const auto& region, double longest) {
@@ -193,12 +195,12 @@ TEST_CASE("walls and lengths: a curve that leaves the region or is too long is n
   const Listed behind = list(wall, 1.7);
   CHECK(behind.curves.empty());
   CHECK(behind.statistics.count(TrialOutcome::converged) == 0);
-  // the ends may lie on the wall itself
+  // endpoints may lie on the wall itself
   const auto strictly_inside = [](const Vec3& x) { return x.norm() < 0.9; };
   CHECK(list(strictly_inside, 3).curves.size() == 1);
 }
 
-TEST_CASE("a target where no ray can be, or no index, ends as a failure") {
+TEST_CASE("connection: targets beyond all rays or without an index fail") {
   const ParabolicGuide guide({.axis_excess = 0.5, .alpha = 1});
   const Listed list = listed(guide, everywhere, Vec3(0.3, 0, 0), Vec3(2, 0, 1),
                              {.step = 0.1, .max_length = 20}, 50, 1);
@@ -208,7 +210,7 @@ TEST_CASE("a target where no ray can be, or no index, ends as a failure") {
   CHECK(outside.curves.empty());
 }
 
-TEST_CASE("statistics add up, in any order") {
+TEST_CASE("connection statistics: sums do not depend on their order") {
   const HarmonicBall field{{}};
   const ConnectionTrial trial(field, everywhere, Vec3(0.3, 0.2, -0.4), Vec3(-0.1, 0.5, 0.2),
                               {.step = 0.2, .max_length = 6});
@@ -220,11 +222,11 @@ TEST_CASE("statistics add up, in any order") {
   ConnectionStatistics forward, backward;
   for (const auto& part : parts) forward += part;
   std::for_each(parts.rbegin(), parts.rend(), [&](const auto& part) { backward += part; });
-  CHECK(forward.trials() == forward.pairs + forward.refind);
+  CHECK(forward.trials() == forward.pairs + forward.further);
   CHECK(forward.pairs == 20);
   CHECK(forward.outcomes == backward.outcomes);
-  CHECK(forward.refind == backward.refind);
-  CHECK(forward.refind_max == backward.refind_max);
+  CHECK(forward.further == backward.further);
+  CHECK(forward.most_trials_of_one == backward.most_trials_of_one);
   CHECK(forward.success_rate() > 0.5);
 }
 

@@ -22,7 +22,9 @@ using tests::everywhere;
 using tests::Listed;
 using tests::listed;
 
-TEST_CASE("without the rim two ellipses join two points, each both ways round, again and again") {
+TEST_CASE(
+    "connections without the rim: both senses and all windings of two ellipses are found, closed "
+    "form") {
   const HarmonicBall field{{}};
   RandomStream random(72, 0, 0);
   int pairs = 0;
@@ -31,8 +33,8 @@ TEST_CASE("without the rim two ellipses join two points, each both ways round, a
     const Vec3 p = random_point(random, 1), q = random_point(random, 1);
     std::vector<HarmonicCurve> exact = oracles::harmonic_curves(p, q, 6 * pi);
     const double longest = 8;
-    // the index is 0 at r = sqrt 2, where steps of this length end; and curves as long as the
-    // longest may count or not
+    // near r = sqrt 2 the index is 0 and steps of this length fail; curves as long as the limit may
+    // or may not be found
     const auto awkward = [&](const HarmonicCurve& curve) {
       return curve.x0.cross(curve.v0).norm() < 0.5 || curve.spreading() < 1e-3 ||
              std::abs(curve.arc_length() - longest) < 1e-3;
@@ -47,7 +49,7 @@ TEST_CASE("without the rim two ellipses join two points, each both ways round, a
   CHECK(pairs == most_pairs);
 }
 
-TEST_CASE("curves there are the curves back: same length and path, n_P^2/|J_PQ| = n_Q^2/|J_QP|") {
+TEST_CASE("connections are reciprocal: same curves both ways, n_P^2/|J_PQ| = n_Q^2/|J_QP|") {
   int curves = 0;
   for (int i = 0; i < 12; ++i) {
     RandomStream random(74, 0, i);
@@ -72,9 +74,9 @@ TEST_CASE("curves there are the curves back: same length and path, n_P^2/|J_PQ| 
   CHECK(curves >= 12);
 }
 
-TEST_CASE("none is missing: among lenses the orientations of all curves add up to 1") {
-  // The end points of long rays cover space once, counted with the sign of J, as the straight ones
-  // do (the odd number of images of gravitational lenses).
+TEST_CASE("connections among lenses are complete: the orientations of all curves add up to 1") {
+  // The endpoints of long rays cover space once, counted with the sign of J, like those of straight
+  // rays; gravitational lenses form an odd number of images for this reason.
   std::size_t most = 0;
   for (int i = 0; i < (is_night ? 10 : 3); ++i) {
     RandomStream random(79, 0, i);

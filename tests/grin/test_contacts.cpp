@@ -25,7 +25,7 @@ using flatspeckle::tests::is_night;
 namespace {
 
 constexpr double limit = 1e-9;
-const Box room{{-6, -6, -6}, {6, 6, 6}};
+const Box stage_box{{-6, -6, -6}, {6, 6, 6}};
 
 SolidBody ball(const Vec3& centre, double radius) {
   return {Kind::ball, {centre[0], centre[1], centre[2], radius}};
@@ -50,11 +50,12 @@ Surface surface_of(const SolidBody& body) {
 }
 
 SolidScene scene_of(const std::vector<SolidBody>& bodies, double index_around = 1) {
-  SolidScene scene{bodies, index_around, 0, block(room.low, room.high)};
+  SolidScene scene{bodies, index_around, 0, block(stage_box.low, stage_box.high)};
   return scene;
 }
 
-/// Which part an index field that hardly varies fills, so that rays are followed by steps there.
+/// Part filled by an almost uniform index field, where rays are followed by steps: none, or the
+/// part around the bodies.
 constexpr int nowhere = -2, around_them = -1;
 
 struct Staged {
@@ -62,7 +63,7 @@ struct Staged {
   AnyIndexField field = Homogeneous{0};
 };
 Staged make(const SolidScene& solid, int curved) {
-  Staged scene{.stage = {.boundary = room}};
+  Staged scene{.stage = {.boundary = stage_box}};
   int number = 0;
   for (const SolidBody& body : solid.bodies) {
     Body added{.surface = surface_of(body),
@@ -96,29 +97,30 @@ TracedRay traced(const Staged& scene, const Vec3& x, const Vec3& d) {
   SceneField field;
   field.field = scene.field;
   field.scale = std::holds_alternative<Homogeneous>(scene.field) ? 0 : 1e7;
-  const RayStops stops{{room}, 1000, 1e-8};
+  const RayStops stops{{stage_box}, 1000, 1e-8};
   const RaySteps steps{Sharma(), 0.5, 1e-11};
   return trace_rays(field, scene.stage, stops, steps, {{x, d}}, 0).front();
 }
-double difference(const TracedRay& ray, const SolidRay& right) {
+double difference(const TracedRay& ray, const SolidRay& reference) {
   return std::max(
-      {std::abs(static_cast<double>(ray.end.optical_path - right.optical_path)),
-       std::abs(static_cast<double>(ray.transmittance - right.fresnel * right.transmitted)),
-       std::abs(static_cast<double>(ray.end.v.norm() - right.index)),
-       difference(ray.end.x, right.x), difference(ray.end.v.normalized(), right.d)});
+      {std::abs(static_cast<double>(ray.end.optical_path - reference.optical_path)),
+       std::abs(static_cast<double>(ray.transmittance - reference.fresnel * reference.transmitted)),
+       std::abs(static_cast<double>(ray.end.v.norm() - reference.index)),
+       difference(ray.end.x, reference.x), difference(ray.end.v.normalized(), reference.d)});
 }
-double difference(const Flight& flight, const SolidRay& right) {
-  return std::max({std::abs(static_cast<double>(flight.optical_path - right.optical_path)),
-                   std::abs(static_cast<double>(flight.fresnel - right.fresnel)),
-                   std::abs(static_cast<double>(flight.weight - right.transmitted)),
-                   difference(flight.point.x, right.x), difference(flight.direction, right.d)});
+double difference(const Flight& flight, const SolidRay& reference) {
+  return std::max({std::abs(static_cast<double>(flight.optical_path - reference.optical_path)),
+                   std::abs(static_cast<double>(flight.fresnel - reference.fresnel)),
+                   std::abs(static_cast<double>(flight.weight - reference.transmitted)),
+                   difference(flight.point.x, reference.x),
+                   difference(flight.direction, reference.d)});
 }
 
 class Drawn {
  public:
   explicit Drawn(std::uint64_t seed) : random_(seed) {}
 
-  double even(double low, double high) {
+  double uniform(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random_);
   }
   int one_of(int count) { return std::uniform_int_distribution<int>(0, count - 1)(random_); }
@@ -126,13 +128,15 @@ class Drawn {
     std::normal_distribution<double> normal;
     return Vec3(normal(random_), normal(random_), normal(random_)).normalized();
   }
-  Vec3 place(double size) { return {even(-size, size), even(-size, size), even(-size, size)}; }
+  Vec3 place(double size) {
+    return {uniform(-size, size), uniform(-size, size), uniform(-size, size)};
+  }
 
   SolidBody material(const SolidBody& body) {
-    const double extinction = one_of(2) ? even(0, 0.5) : 0;
-    return of(body, one_of(4) ? even(1, 2) : 1, extinction);
+    const double extinction = one_of(2) ? uniform(0, 0.5) : 0;
+    return of(body, one_of(4) ? uniform(1, 2) : 1, extinction);
   }
-  /// None, or one that coordinates resolve.
+  /// Returns 0 or a gap that coordinates resolve.
   double gap() {
     constexpr double gaps[] = {0, 0, 0, 1e-12, 1e-11, 1e-10, 1e-9, 1e-6, 0.1};
     return gaps[one_of(9)];
@@ -141,15 +145,15 @@ class Drawn {
     const Vec3 x = place(1);
     switch (one_of(3)) {
       case 0:
-        return ball(x, even(0.3, 1));
+        return ball(x, uniform(0.3, 1));
       case 1:
-        return block(x, x + Vec3(even(0.3, 1.5), even(0.3, 1.5), even(0.3, 1.5)));
+        return block(x, x + Vec3(uniform(0.3, 1.5), uniform(0.3, 1.5), uniform(0.3, 1.5)));
       default:
         return any_lens(x);
     }
   }
   SolidBody any_lens(const Vec3& x) {
-    const double radius = even(0.3, 0.8), thickness = even(0.9, 2);
+    const double radius = uniform(0.3, 0.8), thickness = uniform(0.9, 2);
     return lens(x, radius, curvature(radius), curvature(radius), thickness);
   }
   double curvature(double radius) {
@@ -161,17 +165,17 @@ class Drawn {
       case 1:
         return side * large[one_of(4)];
       default:
-        return side * even(1.3, 5) * radius;
+        return side * uniform(1.3, 5) * radius;
     }
   }
 
-  /// Beside it, in it or around it, in contact or nearly so.
+  /// Returns a body beside, in or around this one, in contact or nearly so.
   SolidBody touching(const SolidBody& body) {
     const auto& s = body.shape;
     const double g = gap();
     if (body.kind == Kind::ball) {
       const Vec3 centre(s[0], s[1], s[2]), d = direction();
-      const double r = even(0.2, 0.9) * s[3];
+      const double r = uniform(0.2, 0.9) * s[3];
       switch (one_of(4)) {
         case 0:
           return ball(centre + (s[3] + r + g) * d, r);
@@ -193,33 +197,33 @@ class Drawn {
       switch (one_of(4)) {
         case 0:  // on a face
           (above ? from : to)[axis] = (above ? high : low)[axis] + (above ? g : -g);
-          (above ? to : from)[axis] = from[axis] + (above ? 1 : -1) * even(0.2, 0.8);
-          if (!above) from[axis] = to[axis] - even(0.2, 0.8);
-          if (one_of(2)) to[(axis + 1) % 3] += even(-0.1, 0.3);
+          (above ? to : from)[axis] = from[axis] + (above ? 1 : -1) * uniform(0.2, 0.8);
+          if (!above) from[axis] = to[axis] - uniform(0.2, 0.8);
+          if (one_of(2)) to[(axis + 1) % 3] += uniform(-0.1, 0.3);
           return block(from, to);
         case 1:  // inside, sharing faces
-          (above ? from : to)[axis] = low[axis] + even(0.3, 0.7) * (high - low)[axis];
+          (above ? from : to)[axis] = low[axis] + uniform(0.3, 0.7) * (high - low)[axis];
           (above ? to : from)[axis] += above ? -g : g;
           if (one_of(2)) to[(axis + 1) % 3] -= 0.3 * (high - low)[(axis + 1) % 3];
           return block(from, to);
         case 2: {  // a ball on a face, inside or outside
-          const double r = even(0.1, 0.14);
+          const double r = uniform(0.1, 0.14);
           Vec3 centre = (low + high) / 2;
           centre[axis] = (above ? high : low)[axis] + (one_of(2) ? 1 : -1) * (r + g);
           return ball(centre, r);
         }
         default: {  // a lens on the upper face
-          const double radius = even(0.2, 0.5), back = curvature(radius);
+          const double radius = uniform(0.2, 0.5), back = curvature(radius);
           return lens({(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, high[2] + g}, radius, 0,
-                      back, even(0.7, 1));
+                      back, uniform(0.7, 1));
         }
       }
     }
     // a lens behind it, cemented, or a ball inside
     if (one_of(2)) {
-      return lens({s[0], s[1], s[2] + s[6] + g}, s[3], s[5], curvature(s[3]), even(1, 2));
+      return lens({s[0], s[1], s[2] + s[6] + g}, s[3], s[5], curvature(s[3]), uniform(1, 2));
     }
-    const double r = even(0.1, 0.25);
+    const double r = uniform(0.1, 0.25);
     return ball({s[0], s[1], s[2] + s[6] / 2}, r);
   }
 
@@ -230,21 +234,21 @@ class Drawn {
       const SolidBody& beside = bodies[one_of(static_cast<int>(bodies.size()))];
       bodies.push_back(material(one_of(5) ? touching(beside) : any()));
     }
-    return scene_of(bodies, one_of(3) ? 1 : even(1, 1.6));
+    return scene_of(bodies, one_of(3) ? 1 : uniform(1, 1.6));
   }
 
  private:
   std::mt19937_64 random_;
 };
 
-/// Rays of random scenes against the oracle.
+/// Results of comparing rays of random scenes with the oracle.
 struct Comparison {
   int scenes = 0, rays = 0, undecided = 0;
   double largest = 0;
 };
 
-/// Calls compare(scene, solid, x, d) for rays that come from outside of all bodies, or begin
-/// anywhere among them; returns what it says: a difference, or nothing for an undecided ray.
+/// Calls compare(scene, solid, x, d) for rays that start outside all bodies or anywhere among them,
+/// and collects the differences that it returns; nullopt stands for an undecided ray.
 template <class Compare>
 Comparison compared(std::uint64_t seed, int scenes, const Compare& compare) {
   constexpr int rays = 12;
@@ -253,14 +257,14 @@ Comparison compared(std::uint64_t seed, int scenes, const Compare& compare) {
     Drawn drawn(seed * 1'000'000 + static_cast<std::uint64_t>(number));
     SolidScene solid = drawn.scene();
     const int curved = drawn.one_of(static_cast<int>(solid.bodies.size()) + 2) - 2;
-    // a field counts as another medium also where its index is the same
-    if (curved >= 0) solid.bodies[curved].index = drawn.even(1, 2);
-    if (curved == around_them) solid.index_around = drawn.even(1.01, 1.6);
+    // a field is another medium even where its index is the same
+    if (curved >= 0) solid.bodies[curved].index = drawn.uniform(1, 2);
+    if (curved == around_them) solid.index_around = drawn.uniform(1.01, 1.6);
     std::optional<Staged> scene;
     try {
       scene = make(solid, curved);
     } catch (const InputError&) {
-      continue;  // drawn twice, or no lens
+      continue;  // a body drawn twice, or an impossible lens
     }
     ++all.scenes;
     for (int ray = 0; ray < rays; ++ray) {
@@ -290,15 +294,15 @@ void check(const Comparison& all, int scenes) {
   CHECK(all.undecided < 0.03 * all.rays);
 }
 
-/// Rays that total reflection traps go round until they are absorbed by nothing.
+/// Largest number of crossings of a ray, as total reflection traps rays that nothing absorbs.
 constexpr int most_crossings = 60;
 
 std::optional<double> compare_traced(const Staged& scene, const SolidScene& solid, const Vec3& x,
                                      const Vec3& d) {
-  const auto right =
+  const auto reference =
       oracles::follow_decided(solid, long_of(x), long_of(d), nullptr, most_crossings);
-  if (!right) return std::nullopt;
-  return difference(traced(scene, x, d), *right);
+  if (!reference) return std::nullopt;
+  return difference(traced(scene, x, d), *reference);
 }
 
 std::optional<double> compare_flown(const Staged& scene, const SolidScene& solid, const Vec3& x,
@@ -307,19 +311,20 @@ std::optional<double> compare_flown(const Staged& scene, const SolidScene& solid
       make_space(scene.field, scene.stage, {.step = 0.05, .spreading = Spreading::none});
   RandomStream random(7, static_cast<std::uint64_t>(1e6 * std::abs(x[0] + d[1])), 0);
   const Flight flight = space->fly({x, Regions(scene.stage).at(x, d)}, d, random);
-  if (flight.end != Flight::End::boundary || !flight.is_joinable) return std::nullopt;
+  if (flight.end != Flight::End::boundary || !flight.is_connectable) return std::nullopt;
   std::vector<bool> reflects;
-  for (int i = 0; i < flight.passages.count; ++i) reflects.push_back(flight.passages.reflects(i));
-  const auto right =
+  for (int i = 0; i < flight.crossings.count; ++i) reflects.push_back(flight.crossings.reflects(i));
+  const auto reference =
       oracles::follow_decided(solid, long_of(x), long_of(d), &reflects, most_crossings);
-  if (!right) return std::nullopt;
-  if (right->crossings != flight.passages.count) return 1;
-  return difference(flight, *right);
+  if (!reference) return std::nullopt;
+  if (reference->crossings != flight.crossings.count) return 1;
+  return difference(flight, *reference);
 }
 
 }  // namespace
 
-TEST_CASE("a gap or a film of any width counts as none or as it is, and never as anything else") {
+TEST_CASE(
+    "gaps and films of any width: rays agree with an oracle, below 1e-12 with or without the gap") {
   const Vec3 x(-0.3, 0.1, -2), d = Vec3(0.2, -0.1, 1).normalized();
   const auto with_gap = [](double gap) {
     return scene_of(
@@ -343,7 +348,7 @@ TEST_CASE("a gap or a film of any width counts as none or as it is, and never as
       else
         CHECK(std::min(as_is, difference(traced(make(with_gap(gap), curved), x, d), *none)) <
               limit);
-      if (gap < 1e-14) continue;  // the two are refused as one
+      if (gap < 1e-14) continue;  // the surfaces coincide, and the scene is rejected
       const auto shell = oracles::follow(nested(gap), long_of(x), long_of(d));
       const auto ray = traced(make(nested(gap), curved), x, d);
       const double of_shell = difference(ray, *shell);
@@ -354,25 +359,27 @@ TEST_CASE("a gap or a film of any width counts as none or as it is, and never as
   CHECK_THROWS_AS(make(nested(1e-16), nowhere), InputError);
 }
 
-TEST_CASE("a plate of any thickness is met by rays that take long steps, or refused") {
+TEST_CASE(
+    "plates of any thickness: rays by long steps agree with an oracle, or the plate is rejected") {
   const Vec3 x(-0.3, 0.1, -2), d = Vec3(0.2, -0.1, 1).normalized();
   for (int tenth = -160; tenth <= 0; tenth += 5) {
     const double thickness = std::pow(10, 0.1 * tenth);
     CAPTURE(thickness);
     const SolidScene solid =
         scene_of({of(block({-1, -1, 0.7}, {1, 1, 0.7 + thickness}), 1.5)}, 1.2);
-    const auto right = oracles::follow(solid, long_of(x), long_of(d));
+    const auto reference = oracles::follow(solid, long_of(x), long_of(d));
     for (const int curved : {nowhere, around_them, 0}) {
       CAPTURE(curved);
       if (thickness < 1e-13)
         CHECK_THROWS_AS(make(solid, curved), InputError);
       else if (thickness > 1e-12)
-        CHECK(difference(traced(make(solid, curved), x, d), *right) < limit);
+        CHECK(difference(traced(make(solid, curved), x, d), *reference) < limit);
     }
   }
 }
 
-TEST_CASE("a lens is right at any radius of curvature, and from 1e12 on as one of planes") {
+TEST_CASE(
+    "lenses of any radius of curvature: rays agree with an oracle, beyond 1e12 with plane faces") {
   const Vec3 x(-0.3, 0.1, -2), d = Vec3(0.2, -0.1, 1).normalized();
   const auto flat =
       oracles::follow(scene_of({of(lens({0, 0, 0}, 0.9, 0, 0, 1), 1.5)}), long_of(x), long_of(d));
@@ -384,9 +391,9 @@ TEST_CASE("a lens is right at any radius of curvature, and from 1e12 on as one o
            {lens({0, 0, 0}, 0.9, radius, 0, 3), lens({0, 0, 0}, 0.9, 0, radius, 3),
             lens({0, 0, 0}, 0.9, radius, radius, 1)}) {
         const SolidScene solid = scene_of({of(body, 1.5)});
-        const auto right = oracles::follow(solid, long_of(x), long_of(d));
+        const auto reference = oracles::follow(solid, long_of(x), long_of(d));
         for (const int curved : {nowhere, 0})
-          CHECK(difference(traced(make(solid, curved), x, d), *right) < limit);
+          CHECK(difference(traced(make(solid, curved), x, d), *reference) < limit);
         if (radius > 1e12 && body.shape[6] == 1)
           CHECK(difference(traced(make(solid, nowhere), x, d), *flat) < limit);
       }
@@ -395,10 +402,11 @@ TEST_CASE("a lens is right at any radius of curvature, and from 1e12 on as one o
 }
 
 TEST_CASE(
-    "a ball and the barrel of a lens are right at any radius up to 1e50, where they are planes") {
+    "balls and lens barrels of radii up to 1e50: crossings agree with the closed form and with "
+    "planes") {
   const Vec3 x(-0.3, 0.1, -2), d = Vec3(0.2, -0.1, 1).normalized();
   const auto end_on = [&](const Surface& surface) {
-    const Stage stage{.boundary = room};
+    const Stage stage{.boundary = stage_box};
     return trace_rays({}, stage, {{surface}, 1000, 1e-10}, {Sharma(), 0.5, 1e-11}, {{x, d}}, 0)
         .front()
         .end;
@@ -415,8 +423,8 @@ TEST_CASE(
     if (radius > 1e12) CHECK((on_ball.x - on_plane.x).norm() < 1e-11);
     const Vec3 along(1, 0.2, 0.1), from(-2, 0.1, 0.5);
     const Lens rod = *Lens::make({radius, 0, 0}, radius, 0, 0, 1);
-    const double way = way_in(rod, from, along.normalized());
-    const Vec3 at = from + way * along.normalized();
+    const double ray_length = entry_distance(rod, from, along.normalized());
+    const Vec3 at = from + ray_length * along.normalized();
     const long double off =
         at[1] * at[1] / (radius + std::sqrt(1.0L * radius * radius - at[1] * at[1]));
     CHECK(std::abs(static_cast<double>(at[0] - off)) < 1e-14);

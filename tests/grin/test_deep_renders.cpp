@@ -8,7 +8,7 @@
 #include "tests/grin/slab_renders.h"
 #include "tests/oracles/photon_walk.h"
 
-// Light deep behind media: importance in depth changes the variance alone.
+// Light behind deep media: importance in depth changes only the variance.
 
 namespace flatspeckle::grin::tests::test_deep_renders {
 
@@ -24,7 +24,7 @@ ScatteringMedium hg(double albedo, double g) {
   return medium;
 }
 
-/// Sensors on both faces, the far one first.
+/// Returns a slab with sensors on both faces, the far one first.
 RenderScene both_faces(const ScatteringMedium& medium, double thickness) {
   RenderScene scene = slab(medium, thickness, 50 * thickness, Face::transmitted);
   scene.sensors.push_back(slab(medium, thickness, 50 * thickness, Face::reflected).sensors[0]);
@@ -47,7 +47,7 @@ void check_face(const Shares& found, double expected, double largest_relative_er
   CHECK(std::abs(found.value - expected) < 4 * found.error);
 }
 
-/// Pixels, then fates, of light tracing with importance in depth or without.
+/// Returns the pixels and then the energy balance of a run with or without importance in depth.
 Estimate traced(const RenderScene& scene, bool deep, RenderMethod method, int batches,
                 int paths_per_batch) {
   const RenderRequest request{method};
@@ -67,7 +67,8 @@ Estimate traced(const RenderScene& scene, bool deep, RenderMethod method, int ba
     kernel(paths_per_batch, random, film, counts, nullptr);
     film.energy.add_to(std::span(all).subspan(pixels));
     double spent = 0;
-    for (std::size_t fate = 1; fate < fates; ++fate) spent += all[pixels + fate].real();
+    for (std::size_t termination = 1; termination < termination_count; ++termination)
+      spent += all[pixels + termination].real();
     CHECK(spent == doctest::Approx(all[pixels].real()).epsilon(1e-12));
     sums.add(paths_per_batch, all);
   }
@@ -84,7 +85,8 @@ void check_unchanged(const RenderScene& scene, RenderMethod method, int batches 
     CAPTURE(whole.value[i].real());
     const double error = std::hypot(split.error[i], whole.error[i]);
     CAPTURE(error);
-    if (whole.value[i] == 0.0 && i >= whole.value.size() - fates) {  // too rare a fate to be seen
+    // terminations that are too rare to occur
+    if (whole.value[i] == 0.0 && i >= whole.value.size() - termination_count) {
       CHECK(split.value[i].real() < 10.0 / (batches * paths));
       continue;
     }
@@ -95,7 +97,7 @@ void check_unchanged(const RenderScene& scene, RenderMethod method, int batches 
 
 }  // namespace
 
-TEST_CASE("deep slabs that scatter isotropically against Peierls' equation") {
+TEST_CASE("deep isotropic slabs: reflectance and transmittance agree with Peierls' equation") {
   for (const double albedo : {0.6, 0.9, 0.999}) {
     CAPTURE(albedo);
     const double depth = 20;
@@ -109,7 +111,7 @@ TEST_CASE("deep slabs that scatter isotropically against Peierls' equation") {
 
 namespace {
 
-/// Shares of photons in the slab, in mean free paths, that come through and that come back.
+/// Returns the fractions of photons that a slab transmits and reflects; depth in mean free paths.
 oracles::PhotonTally counted_photons(double depth, double albedo, double g) {
   const std::uint64_t photons = is_night ? 100'000 : 30'000;
   const double half = 50 * depth;
@@ -124,13 +126,13 @@ oracles::PhotonTally counted_photons(double depth, double albedo, double g) {
 
 }  // namespace
 
-TEST_CASE("deep slabs against photons that are counted") {
+TEST_CASE("deep slabs: reflectance and transmittance agree with analog photon counts") {
   struct {
     double depth, albedo, g;
   } const slabs[] = {{30, 0.98, 0.8}, {10, 0.8, 0.5}, {60, 1, 0.9}};
   for (const auto& [deep, albedo, g] : slabs) {
     if (deep > 50 && !is_night) continue;
-    const double depth = deep;  // clang 14 captures no part of a binding
+    const double depth = deep;  // clang 14 cannot capture structured bindings
     CAPTURE(depth);
     const oracles::PhotonTally counted = counted_photons(depth, albedo, g);
     const RenderScene scene = both_faces(hg(albedo, g), depth);
@@ -144,14 +146,14 @@ TEST_CASE("deep slabs against photons that are counted") {
   }
 }
 
-TEST_CASE("splitting leaves pictures and the balance of power as they are") {
-  // pixels of a face
+TEST_CASE("splitting by depth: pictures and energy balance agree with unsplit tracing") {
+  // pixels on a face
   RenderScene box = slab(hg(0.8, 0.5), 10, 10, Face::transmitted);
   std::get<AreaDetector>(box.sensors[0]).pixels = {3, 2};
   check_unchanged(box, RenderMethod::light);
   check_unchanged(box, RenderMethod::bidirectional, 100, 50);
 
-  // a ball lit at one pole, seen at the other and from all of the far half
+  // a ball lit at one pole, detected at the other and by direction over the far half
   RenderScene ball = slab(isotropic(0.8), 8, 10, Face::transmitted);
   ball.stage.boundary = Sphere{Vec3(0, 0, 0), 5};
   ball.lights = {PointLight{{0, 0, -4.5}, 1}};
@@ -173,7 +175,7 @@ TEST_CASE("splitting leaves pictures and the balance of power as they are") {
   check_unchanged(body, RenderMethod::bidirectional, 100, 50);
 }
 
-TEST_CASE("in thin and in curved media nothing is split") {
+TEST_CASE("splitting by depth: not used in thin and curved media") {
   const auto deep = [](const RenderScene& scene) { return Tracers(scene, {}).plan().deep; };
   CHECK(deep(slab(isotropic(0.9), 20, 100, Face::transmitted)));
   CHECK(!deep(slab(isotropic(0.9), 4, 100, Face::transmitted)));
@@ -183,7 +185,7 @@ TEST_CASE("in thin and in curved media nothing is split") {
   CHECK(!deep(ramp));
 }
 
-TEST_CASE("a deep slab takes a pilot to light tracing") {
+TEST_CASE("deep slabs: the pilot run chooses light tracing") {
   const RenderScene scene = both_faces(isotropic(0.9), 20);
   CHECK(render_job(scene, {}, 1).plan.starts_with("light (chosen by a pilot)"));
 }

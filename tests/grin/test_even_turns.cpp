@@ -28,7 +28,8 @@ std::vector<Vec3> turned(const SpacePhaseFunction& phase, int count, RandomStrea
 
 }  // namespace
 
-TEST_CASE("each of even turns is one of the phase function on average, the azimuth any") {
+TEST_CASE(
+    "stratified scattering directions: each follows the phase function, with uniform azimuth") {
   constexpr int bins = 24, calls = 40000, count = 7;
   const HenyeyGreenstein<3> forward{0.8}, back{-0.3};
   for (const SpacePhaseFunction& phase :
@@ -46,17 +47,17 @@ TEST_CASE("each of even turns is one of the phase function on average, the azimu
       ++azimuths[static_cast<std::size_t>(turn * bins) % bins];
     }
     CHECK(longest == doctest::Approx(1).epsilon(1e-12));
-    std::vector<double> chances;
+    std::vector<double> probabilities;
     for (int i = 0; i < bins; ++i)
-      chances.push_back(
+      probabilities.push_back(
           flatspeckle::tests::integral([&](double c) { return 2 * pi * phase.density(c); },
                                        2.0 * i / bins - 1, 2.0 * (i + 1) / bins - 1));
-    flatspeckle::tests::check_chi_square(cosines, chances);
+    flatspeckle::tests::check_chi_square(cosines, probabilities);
     flatspeckle::tests::check_chi_square(azimuths, std::vector<double>(bins, 1.0 / bins));
   }
 }
 
-TEST_CASE("even turns lie in strata of the phase function") {
+TEST_CASE("stratified scattering directions: one in each stratum of the phase function") {
   constexpr int count = 16;
   const HgPhase phase{0.9};
   RandomStream random(4, 98, 1);
@@ -71,26 +72,27 @@ TEST_CASE("even turns lie in strata of the phase function") {
   }
 }
 
-TEST_CASE("even roulette keeps each by its chance, and as many as their sum") {
+TEST_CASE(
+    "stratified Russian roulette: survival agrees with the probabilities, counts with their sum") {
   constexpr int calls = 20000;
-  const std::vector<double> chances{0.3, 0.05, 0.9, 0.4, 0.01};
-  std::vector<double> kept(chances.size());
+  const std::vector<double> probabilities{0.3, 0.05, 0.9, 0.4, 0.01};
+  std::vector<double> kept(probabilities.size());
   bool is_near = true;
   RandomStream random(4, 98, 2);
   for (int i = 0; i < calls; ++i) {
-    EvenRoulette roulette(random);
+    EvenTermination roulette(random);
     int count = 0;
-    for (std::size_t k = 0; k < chances.size(); ++k) {
-      const bool stays = roulette.keeps(chances[k]);
+    for (std::size_t k = 0; k < probabilities.size(); ++k) {
+      const bool stays = roulette.keeps(probabilities[k]);
       kept[k] += stays;
       count += stays;
     }
-    is_near &= count == 1 || count == 2;  // of 1.66
+    is_near &= count == 1 || count == 2;  // their mean is 1.66
   }
   CHECK(is_near);
-  for (std::size_t k = 0; k < chances.size(); ++k)
-    CHECK(std::abs(kept[k] / calls - chances[k]) <
-          4 * std::sqrt(chances[k] * (1 - chances[k]) / calls));
+  for (std::size_t k = 0; k < probabilities.size(); ++k)
+    CHECK(std::abs(kept[k] / calls - probabilities[k]) <
+          4 * std::sqrt(probabilities[k] * (1 - probabilities[k]) / calls));
 }
 
 }  // namespace flatspeckle::grin::test_even_turns

@@ -22,7 +22,7 @@ struct Pictures {
     for (int part = 0; part < bins.parts(); ++part) result += of_part(pixel, part);
     return result;
   }
-  /// Of value times the bin's centre.
+  /// Returns the sum over the bins of value times bin centre.
   double moment(int pixel) const {
     const double width = (bins.last - bins.first) / bins.count;
     double result = 0;
@@ -40,7 +40,7 @@ Pictures one(const TimeBins& bins, double optical_path) {
 
 }  // namespace
 
-TEST_CASE("film: the sum over the bins is the steady picture, wherever the light arrives") {
+TEST_CASE("film: the sum over the bins is the steady picture, whenever light arrives") {
   constexpr int pixels = 3;
   for (const int count : {1, 2, 7}) {
     const TimeBins bins{2, 5, count};
@@ -61,7 +61,7 @@ TEST_CASE("film: the sum over the bins is the steady picture, wherever the light
   }
 }
 
-TEST_CASE("film: a contribution keeps its optical path between the first and last centre") {
+TEST_CASE("film: linear splatting keeps the optical path between the first and last bin centres") {
   const TimeBins bins{-1, 3, 8};  // centres at -0.75, -0.25 ... 2.75
   for (const double path : {-0.75, -0.7, -0.25, 0.1, 1.0, 2.74, 2.75}) {
     CAPTURE(path);
@@ -73,7 +73,7 @@ TEST_CASE("film: a contribution keeps its optical path between the first and las
   CHECK(shared.of_bin(0, 2) == doctest::Approx(0.7).epsilon(1e-12));
 }
 
-TEST_CASE("film: what comes before or after all bins stands apart") {
+TEST_CASE("film: light before and after all bins is kept in two outer parts") {
   const TimeBins bins{-1, 3, 8};
   for (const double path : {-1e300, -5.0, -1.0001, std::nan("")})
     CHECK(one(bins, path).of_part(0, 0) == 1);
@@ -93,7 +93,7 @@ TEST_CASE("film: moments of the optical path, with bins and without") {
   }
 }
 
-TEST_CASE("film: what is not finite is counted and left out, of light and of its derivatives") {
+TEST_CASE("film: values and derivatives that are not finite are counted and left out") {
   const TimeBins bins{.by_field = 2};
   std::vector<Complex> sums(bins.sums());
   Film film(1, bins, sums);

@@ -21,12 +21,12 @@ using flatspeckle::tests::is_night;
 namespace {
 
 const Vec3 centre(0.3, -0.2, 0.5);
-constexpr double radius = 1.7, wide = 2.1;  // of the fisheye, of the sphere where rays end
+constexpr double radius = 1.7, wide = 2.1;  // radii of the fisheye and of the sphere where rays end
 const Fisheye fisheye({1.6, radius}, centre);
 const Surface rim = Sphere{centre, wide};
 constexpr double inside = 1;
 
-/// By so small steps that they are exact to 1e-11.
+/// A ray by steps so small that it is exact to 1e-11.
 struct Stepped {
   RayState ray;
   RayTangent tangent = {};
@@ -36,18 +36,18 @@ struct Stepped {
   }
 };
 
-CurveEnds ends(const Vec3& from, const Vec3& to) {
+CurveEndpoints endpoints(const Vec3& from, const Vec3& to) {
   return {from, to, {{&rim, 1}, {&inside, 1}}};
 }
 
 }  // namespace
 
-TEST_CASE("rays of Maxwell's fisheye go where small steps lead") {
+TEST_CASE("fisheye rays in closed form: agree with small steps") {
   RandomStream random(3, 1, 0);
   for (int i = 0; i < 60; ++i) {
     const Vec3 x = wide / radius * random_point(random, 1);
     Vec3 w = random_direction(random);
-    if (i % 5 == 0) w = (x + 1e-5 * i * w).normalized();  // next to straight
+    if (i % 5 == 0) w = (x + 1e-5 * i * w).normalized();  // nearly straight
     Stepped exact{start_ray(fisheye, centre + radius * x, w)};
     exact.go(radius * 0.4 * random.uniform());
     const auto place = FisheyeOrbit(x, w).at(exact.ray.arc_length / radius);
@@ -57,7 +57,7 @@ TEST_CASE("rays of Maxwell's fisheye go where small steps lead") {
   }
 }
 
-TEST_CASE("rays of the fisheye that are followed around count their rounds") {
+TEST_CASE("fisheye rays in closed form: periodic on a circle, with increasing angle and sigma") {
   const FisheyeOrbit orbit(Vec3(0.3, 0, 0.1), Vec3(0, 0.6, 0.8));
   const double around = orbit.circumference();
   const auto once = orbit.at(0.3 * around), again = orbit.at(2.3 * around);
@@ -67,7 +67,7 @@ TEST_CASE("rays of the fisheye that are followed around count their rounds") {
   CHECK(again.sigma > once.sigma);
 }
 
-TEST_CASE("rays of the fisheye end on a sphere, or never") {
+TEST_CASE("fisheye rays in closed form: end on a sphere, or stay inside") {
   RandomStream random(4, 1, 0);
   int kept = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -75,7 +75,7 @@ TEST_CASE("rays of the fisheye end on a sphere, or never") {
     const Vec3 w = i % 7 == 0 ? x.normalized() : random_direction(random);
     const double end = x.norm() + 0.7 * random.uniform();
     const FisheyeOrbit orbit(x, w);
-    const double s = orbit.way_out(end);
+    const double s = orbit.exit_distance(end);
     REQUIRE(s >= 0);
     const double far = std::isfinite(s) ? s : orbit.circumference();
     kept += !std::isfinite(s);
@@ -89,7 +89,7 @@ TEST_CASE("rays of the fisheye end on a sphere, or never") {
   CHECK(kept > 100);
 }
 
-TEST_CASE("flights in the fisheye and their neighbours are those of small steps") {
+TEST_CASE("fisheye flights in closed form: rays and spreading agree with small steps") {
   const auto closed = make_ray_field(fisheye, {&rim, 1});
   static const PartMedium clear;
   RandomStream random(5, 1, 0);
@@ -99,12 +99,12 @@ TEST_CASE("flights in the fisheye and their neighbours are those of small steps"
     RayTangent tangent;
     Stepped exact{ray};
     double weight = 1;
-    const LegRoom room{Room{{&rim, 1}}, clear, 0.05};
+    const SegmentDomain domain{SurfaceRegion{{&rim, 1}}, clear, 0.05};
     const double n = ray.v.norm();
     const Vec3 first = ray.v.normalized();
-    if (closed->fly(room, 100, weight, random, ray, &tangent) != LegStop::surface) continue;
+    if (closed->fly(domain, 100, weight, random, ray, &tangent) != SegmentStop::surface) continue;
     CHECK((ray.x - centre).norm() == doctest::Approx(wide).epsilon(1e-9));
-    // sigma from the optical path: steps of equal sigma, so that the last is found by bisection
+    // sigma by bisection: equal steps of sigma reach the arc length of the ray
     double low = 0, high = 100;
     for (int k = 0; k < 50; ++k) {
       Stepped tried{exact.ray};
@@ -120,7 +120,7 @@ TEST_CASE("flights in the fisheye and their neighbours are those of small steps"
   }
 }
 
-TEST_CASE("ways between two points of the fisheye, as the solver of curves has them") {
+TEST_CASE("fisheye connections in closed form: agree with the general solver") {
   const auto closed = make_ray_field(fisheye, {&rim, 1});
   ConnectionStatistics statistics;
   RandomStream random(6, 1, 0);
@@ -130,11 +130,11 @@ TEST_CASE("ways between two points of the fisheye, as the solver of curves has t
     const Vec3 from = centre + 0.9 * wide * random_point(random, 1);
     const Vec3 to = i % 4 == 0 ? Vec3(from + 1e-3 * random_point(random, 1))
                                : Vec3(centre + 0.9 * wide * random_point(random, 1));
-    const ConnectionTrial trial(fisheye, ends(from, to).region, from, to, options);
+    const ConnectionTrial trial(fisheye, endpoints(from, to).region, from, to, options);
     const auto by_steps = trial.along_chord(statistics);
     if (by_steps.outcome != TrialOutcome::converged) continue;
     for (int draw = 0; draw < 40; ++draw) {
-      const auto found = closed->connect(ends(from, to), options, random, statistics);
+      const auto found = closed->connect(endpoints(from, to), options, random, statistics);
       if (!found.curve || std::abs(found.curve->sigma - by_steps.curve.sigma) > 1e-4) continue;
       ++compared;
       CHECK((found.curve->start_direction - by_steps.curve.start_direction).norm() < 1e-6);
@@ -150,9 +150,10 @@ TEST_CASE("ways between two points of the fisheye, as the solver of curves has t
   CHECK(compared > 60);
 }
 
-TEST_CASE("all ways between two points of the fisheye are found as often as their weight says") {
-  // sums over ways of exp(-arc): a circle all inside, one that is cut by the rim, and one of which
-  // the longer part alone is inside
+TEST_CASE(
+    "fisheye connections in closed form: means by multiplicity agree with sums over all curves") {
+  // sums of exp(-arc length) over the curves: a circle inside, one cut by the rim, and one whose
+  // longer arc alone is inside
   const auto closed = make_ray_field(fisheye, {&rim, 1});
   RandomStream random(7, 1, 0);
   ConnectionStatistics statistics;
@@ -167,17 +168,18 @@ TEST_CASE("all ways between two points of the fisheye are found as often as thei
     double sum = 0, square = 0;
     const int draws = is_night ? 20000 : 8000;
     for (int i = 0; i < draws; ++i) {
-      const auto found = closed->connect(ends(from, to), options, random, statistics);
+      const auto found = closed->connect(endpoints(from, to), options, random, statistics);
       const double value =
           found.curve ? found.multiplicity * std::exp(-found.curve->arc_length) : 0;
       sum += value / draws;
       square += value * value / draws;
     }
     double expected = 0;
-    const auto all = closed->connections(ends(from, to), options, 3000, random, statistics);
+    const auto all = closed->connections(endpoints(from, to), options, 3000, random, statistics);
     for (const auto& found : all) expected += std::exp(-found.curve.arc_length);
     CAPTURE(all.size());
-    CHECK(std::abs(sum - expected) < 4 * std::sqrt(std::max(square - sum * sum, 0.0) / draws) + 1e-3 * expected);
+    CHECK(std::abs(sum - expected) <
+          4 * std::sqrt(std::max(square - sum * sum, 0.0) / draws) + 1e-3 * expected);
   }
 }
 

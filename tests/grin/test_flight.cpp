@@ -33,8 +33,8 @@ Stage with_body(const Surface& boundary, const Surface& body, const ScatteringMe
   return {.boundary = boundary, .medium = around, .bodies = {Body{body, in}}};
 }
 
-/// The chance to have ended at an optical depth below tau, of flights from `from`: uniform where
-/// the depth is the true one.
+/// Checks that exp(-optical depth) of the flights' ends is uniform in (0, 1), with all below that
+/// of the exit gathered there.
 void check_depths(const std::vector<double>& survived, double depth_of_exit) {
   constexpr int bins = 30;
   std::vector<double> counts(bins), probabilities(bins);
@@ -48,7 +48,7 @@ void check_depths(const std::vector<double>& survived, double depth_of_exit) {
   flatspeckle::tests::check_chi_square(counts, probabilities);
 }
 
-/// The true optical depth of a straight way.
+/// Returns the exact optical depth of a straight ray segment.
 double straight_depth(const ScatteringMedium& medium, const Vec3& x, const Vec3& d, double length) {
   double sum = 0;
   constexpr int steps = 4000;
@@ -58,24 +58,24 @@ double straight_depth(const ScatteringMedium& medium, const Vec3& x, const Vec3&
 }
 
 void check_free_flights(const Space& space, const ScatteringMedium& medium, const Vec3& x,
-                        const Vec3& d, const std::function<double(double)>& depth, double way,
-                        int flights) {
+                        const Vec3& d, const std::function<double(double)>& depth,
+                        double ray_length, int flights) {
   std::vector<double> survived;
   RandomStream random(7, 90, 0);
   for (int i = 0; i < flights; ++i) {
     const Flight flight = space.fly({x}, d, random);
     REQUIRE(flight.end != Flight::End::lost);
     const bool left = flight.end == Flight::End::boundary;
-    if (left) CHECK(flight.arc_length == doctest::Approx(way).epsilon(1e-7));
-    survived.push_back(std::exp(-depth(left ? way : flight.arc_length)));
+    if (left) CHECK(flight.arc_length == doctest::Approx(ray_length).epsilon(1e-7));
+    survived.push_back(std::exp(-depth(left ? ray_length : flight.arc_length)));
   }
-  check_depths(survived, depth(way));
+  check_depths(survived, depth(ray_length));
   CHECK(medium.mu_s > 0);
 }
 
 }  // namespace
 
-TEST_CASE("straight flights end on the boundary, as sphere tracing finds it") {
+TEST_CASE("straight flights: ends on the boundary agree with sphere tracing") {
   const TriangleMesh cube = cube_mesh(0.8);
   const Surface surfaces[] = {ball, box, smooth(cube, 0.08)};
   const LinearRamp even{0.25, Vec3::Zero()};
@@ -98,35 +98,36 @@ TEST_CASE("straight flights end on the boundary, as sphere tracing finds it") {
   }
 }
 
-TEST_CASE("what just passed a surface does not meet it again") {
+TEST_CASE("straight crossings: a ray that has just left a surface does not meet it again") {
   RandomStream random(2, 91, 0);
   const Surface surfaces[] = {ball, box};
   for (const Surface& surface : surfaces) {
     for (int i = 0; i < 3000; ++i) {
       const Vec3 inside = random_point(random, 0.7), d = random_direction(random);
-      const Vec3 x = inside + way_out(surface, inside, d) * d;
+      const Vec3 x = inside + exit_distance(surface, inside, d) * d;
       const Vec3 n = normal(surface, x);
-      CHECK(way_in(surface, x, d) == no_way);
+      CHECK(entry_distance(surface, x, d) == no_crossing);
       const Vec3 back = d - 2 * d.dot(n) * n;
-      CHECK(way_out(surface, x, back) > 1e-9);
-      CHECK(way_in(surface, x + 0.5 * d, -d) == doctest::Approx(0.5));
+      CHECK(exit_distance(surface, x, back) > 1e-9);
+      CHECK(entry_distance(surface, x + 0.5 * d, -d) == doctest::Approx(0.5));
     }
   }
 }
 
-TEST_CASE("free flights follow the extinction along the way, straight and curved, grid or not") {
+TEST_CASE(
+    "free flights: optical depths are exponential, straight and curved, with and without a grid") {
   const Vec3 x(-0.5, 0.2, 0.1), d = Vec3(0.9, -0.2, 0.3).normalized();
   for (const bool gridded : {false, true}) {
     for (const double mu_s : {1.5, 20.0}) {
       ScatteringMedium medium{.mu_s = mu_s, .mu_a = 0.3};
       if (gridded) medium.density = tests::random_density(1);
       const Stage stage = stage_of(ball, medium);
-      const double way = way_out(ball, x, d);
+      const double ray_length = exit_distance(ball, x, d);
       check_free_flights(
           Space(Homogeneous{0.1}, stage), medium, x, d,
-          [&](double s) { return straight_depth(medium, x, d, s); }, way, 6000);
+          [&](double s) { return straight_depth(medium, x, d, s); }, ray_length, 6000);
       const auto check_curved = [&](const auto& field) {
-        // through a grid by steps, so small that they end where closed forms do
+        // through a grid by steps so small that rays end where closed forms do
         const auto curved = make_space(field, stage, {0.02, 8});
         // depth by small steps, tabulated
         RayState ray = start_ray(field, x, d);
@@ -158,14 +159,16 @@ TEST_CASE("free flights follow the extinction along the way, straight and curved
   }
 }
 
-TEST_CASE("absorption without scattering weighs a flight, exactly or by ratio tracking") {
+TEST_CASE(
+    "flights in absorbers: mean weights agree with Beer and Lambert, exactly or by ratio "
+    "tracking") {
   const Vec3 x(-0.5, 0.2, 0.1), d = Vec3(0.9, -0.2, 0.3).normalized();
   ScatteringMedium medium{.mu_a = 1.7};
-  const double way = way_out(ball, x, d);
+  const double ray_length = exit_distance(ball, x, d);
   for (const bool gridded : {false, true}) {
     if (gridded) medium.density = tests::random_density(3);
-    const double expected = std::exp(-straight_depth(medium, x, d, way));
-    // a curved space so weak that the way is straight
+    const double expected = std::exp(-straight_depth(medium, x, d, ray_length));
+    // a space that bends rays so weakly that they are straight
     const auto curved =
         make_space(LinearRamp{0, 1e-9 * Vec3::UnitX()}, stage_of(ball, medium), {0.1, 8});
     const Space straight(Homogeneous{0}, stage_of(ball, medium));
@@ -189,7 +192,8 @@ TEST_CASE("absorption without scattering weighs a flight, exactly or by ratio tr
   }
 }
 
-TEST_CASE("curved flights in a Luneburg ball: place, direction, |J|, optical path (C27)") {
+TEST_CASE(
+    "curved flights in a Luneburg ball: position, direction, |J| and optical path agree with C27") {
   const auto space = make_space(Luneburg({}), stage_of(ball), {0.02, 8});
   const auto coarse = make_space(Luneburg({}), stage_of(ball, {.mu_s = 2}), {0.05, 8});
   RandomStream random(3, 91, 0);
@@ -200,7 +204,7 @@ TEST_CASE("curved flights in a Luneburg ball: place, direction, |J|, optical pat
     for (const Space* by : {space.get(), coarse.get()}) {
       const Flight flight = by->fly({x}, d, random);
       REQUIRE(flight.end != Flight::End::lost);
-      // sigma from the place: both coordinates in the ray's plane
+      // sigma of the nearest point of the exact ray: a search, then Newton's method
       double sigma = 0;
       for (int k = 1; k < 4000; ++k)
         if ((exact.x(k * 0.001) - flight.point.x).norm() < (exact.x(sigma) - flight.point.x).norm())
@@ -220,7 +224,7 @@ TEST_CASE("curved flights in a Luneburg ball: place, direction, |J|, optical pat
   }
 }
 
-TEST_CASE("curved flights in a fisheye: |J| by the optical path, and the angular momentum (C27)") {
+TEST_CASE("curved flights in a fisheye: |J| and angular momentum agree with C27") {
   const double a = 0.8;
   const Fisheye field({.centre_excess = 0.7, .radius = a});
   const auto space = make_space(field, stage_of(box, {.mu_s = 0.7}), {0.01, 8});
@@ -240,7 +244,7 @@ TEST_CASE("curved flights in a fisheye: |J| by the optical path, and the angular
   }
 }
 
-TEST_CASE("a flight walked back spreads as n_P^2 / |J_PQ| = n_Q^2 / |J_QP|") {
+TEST_CASE("reversed flights: reciprocity n_P^2 / |J_PQ| = n_Q^2 / |J_QP|") {
   RandomStream fields(5, 91, 0);
   const auto blobs = bench::random_blobs(fields, 0.2);
   const auto space = make_space(blobs, stage_of(ball), {0.01, 8});
@@ -259,7 +263,7 @@ TEST_CASE("a flight walked back spreads as n_P^2 / |J_PQ| = n_Q^2 / |J_QP|") {
   }
 }
 
-TEST_CASE("a glass sphere splits light by Fresnel, bends it by Snell and keeps angular momentum") {
+TEST_CASE("flights through a glass sphere: agree with Fresnel, Snell and angular momentum") {
   const double n = 1.5;
   const Space space(Homogeneous{n - 1}, with_body(Sphere{Vec3::Zero(), 3}, ball));
   for (const double impact : {0.1, 0.6, 0.95}) {
@@ -267,7 +271,8 @@ TEST_CASE("a glass sphere splits light by Fresnel, bends it by Snell and keeps a
     const double at = std::asin(impact), in = std::asin(impact / n);
     const Interface face(Vec3(std::sin(at), 0, std::cos(at)), Vec3::UnitZ(), 0, n - 1);
     const double r = face.reflectance();
-    // ways through the ball with k inner reflections: (1-r)^2 r^k, the way turned by a known angle
+    // paths of k chords in the ball: probability r for k = 0, else (1-r)^2 r^(k-1), with a known
+    // turn
     std::array<double, 4> seen{};
     RandomStream random(7, 91, 0);
     constexpr int flights = 40000;
@@ -275,7 +280,7 @@ TEST_CASE("a glass sphere splits light by Fresnel, bends it by Snell and keeps a
       const Flight flight = space.fly({x}, Vec3::UnitZ(), random);
       REQUIRE(flight.end == Flight::End::boundary);
       CHECK(flight.crosses_body);
-      CHECK(flight.passages.count ==
+      CHECK(flight.crossings.count ==
             static_cast<int>(std::round((flight.arc_length - (2 - std::cos(at)) -
                                          (std::sqrt(9 - impact * impact) - std::cos(at))) /
                                         (2 * std::cos(in)))) +
@@ -285,9 +290,9 @@ TEST_CASE("a glass sphere splits light by Fresnel, bends it by Snell and keeps a
             1e-12);
       const double before = 2 - std::cos(at), inside = 2 * std::cos(in);
       const double after = [&] { return std::sqrt(9 - impact * impact) - std::cos(at); }();
-      const double legs = (flight.arc_length - before - after) / inside;
-      const int k = static_cast<int>(std::round(legs));
-      CHECK(std::abs(legs - k) < 1e-9);
+      const double chords = (flight.arc_length - before - after) / inside;
+      const int k = static_cast<int>(std::round(chords));
+      CHECK(std::abs(chords - k) < 1e-9);
       CHECK(flight.optical_path == doctest::Approx(before + after + n * k * inside));
       const double turn = k == 0 ? std::numbers::pi - 2 * at
                                  : 2 * (at - in) + (k - 1) * (std::numbers::pi - 2 * in);
@@ -295,13 +300,14 @@ TEST_CASE("a glass sphere splits light by Fresnel, bends it by Snell and keeps a
       if (k < 4) ++seen[k];
     }
     for (int k = 0; k < 4; ++k) {
-      const double chance = k == 0 ? r : (1 - r) * (1 - r) * std::pow(r, k - 1);
-      CHECK(std::abs(seen[k] / flights - chance) < 4 * std::sqrt(chance / flights) + 1e-4);
+      const double probability = k == 0 ? r : (1 - r) * (1 - r) * std::pow(r, k - 1);
+      CHECK(std::abs(seen[k] / flights - probability) <
+            4 * std::sqrt(probability / flights) + 1e-4);
     }
   }
 }
 
-TEST_CASE("what total reflection traps is lost, and what it does not trap is not") {
+TEST_CASE("flights in a glass ball: lost if and only if total reflection traps them") {
   const Space space(Homogeneous{0.5}, with_body(Sphere{Vec3::Zero(), 3}, ball));
   RandomStream random(8, 91, 0);
   const double free = 1 / 1.5;
@@ -316,7 +322,7 @@ TEST_CASE("what total reflection traps is lost, and what it does not trap is not
   }
 }
 
-TEST_CASE("a flight is the same through a mesh of a cube as through the cube") {
+TEST_CASE("flights through a mesh of a cube: agree with the cube") {
   const Box cube{Vec3::Constant(-0.8), Vec3::Constant(0.8)};
   const Space exact(Homogeneous{0}, with_body(Sphere{Vec3::Zero(), 3}, cube));
   const Space mesh(Homogeneous{0},
@@ -327,12 +333,12 @@ TEST_CASE("a flight is the same through a mesh of a cube as through the cube") {
     const Flight a = exact.fly({x}, d, random), b = mesh.fly({x}, d, random);
     CHECK((a.point.x - b.point.x).norm() < 1e-6);
     if (a.crosses_body == b.crosses_body) continue;
-    // missed by less than a cell, at an edge
-    CHECK(way_in(Box{Vec3::Constant(-0.76), Vec3::Constant(0.76)}, x, d) == no_way);
+    // the ray passes an edge by less than a cell
+    CHECK(entry_distance(Box{Vec3::Constant(-0.76), Vec3::Constant(0.76)}, x, d) == no_crossing);
   }
 }
 
-TEST_CASE("a Luneburg body in a box: a beam meets at the far pole, whatever the step") {
+TEST_CASE("Luneburg body in a box: a beam is focused at the far pole, at any step") {
   for (const double step : {0.05, 0.02}) {
     const auto space =
         make_space(Luneburg({}), with_body(Box{{-2, -2, -2}, {2, 2, 2}}, ball), {step, 10});
@@ -344,7 +350,7 @@ TEST_CASE("a Luneburg body in a box: a beam meets at the far pole, whatever the 
       REQUIRE(flight.end == Flight::End::boundary);
       CHECK(flight.crosses_body);
       CHECK(flight.point.part == around);
-      // beyond the pole light goes straight from it
+      // beyond the pole rays are straight
       const Vec3 from = flight.point.x - Vec3::UnitZ();
       CHECK((from.normalized() - flight.direction).norm() < (step > 0.03 ? 1e-5 : 1e-6));
       CHECK(std::abs(flight.optical_path - (1 + std::numbers::pi / 2 + 1 + from.norm())) < 1e-5);
@@ -352,7 +358,7 @@ TEST_CASE("a Luneburg body in a box: a beam meets at the far pole, whatever the 
   }
 }
 
-TEST_CASE("flights that are too long, or where there is no index, are lost") {
+TEST_CASE("flights: lost where they are too long or the index is not defined") {
   RandomStream random(11, 91, 0);
   const auto brief = make_space(Fisheye({}), stage_of(ball), {0.05, 0.3});
   CHECK(brief->fly({Vec3::Zero()}, Vec3::UnitX(), random).end == Flight::End::lost);
@@ -364,7 +370,7 @@ TEST_CASE("flights that are too long, or where there is no index, are lost") {
   CHECK(guide->fly({0.9 * Vec3::UnitX()}, Vec3::UnitZ(), random).end == Flight::End::lost);
 }
 
-TEST_CASE("spreading is left out where it is not wanted, and nothing else changes") {
+TEST_CASE("flights without spreading: all else agrees with flights with it") {
   const Stage stage = stage_of(ball, {.mu_s = 1});
   const AnyIndexField fields[] = {Luneburg({}), Fisheye({1, 1.5})};
   for (const AnyIndexField& field : fields) {
@@ -388,7 +394,7 @@ TEST_CASE("spreading is left out where it is not wanted, and nothing else change
   }
 }
 
-TEST_CASE("a frozen wave is the wave at that phase; other fields have none") {
+TEST_CASE("frozen fields: a wave at that phase; other fields are rejected") {
   const StandingWave wave(0.3, 0.05, 0, 9, 40);
   const Stage stage = stage_of(ball);
   const auto space = make_space(wave, stage, {0.02, 8});

@@ -18,7 +18,7 @@ const Vec3 points[] = {{0, 0, 0},         {1e-9, 0, 0},  {0, -1e-5, 0.2}, {0.02,
 
 }  // namespace
 
-TEST_CASE("Derivatives of lenses, guides, ramps and blobs") {
+TEST_CASE("index fields: derivatives of lenses, guides, ramps and blobs agree with differences") {
   for (const Vec3& x : points) {
     check_derivatives(Homogeneous{0.3}, x, 1, 1);
     check_derivatives(Luneburg(LuneburgProfile{2}), x, 1, 1);
@@ -35,7 +35,7 @@ TEST_CASE("Derivatives of lenses, guides, ramps and blobs") {
   }
 }
 
-TEST_CASE("Forces that lenses and guides tell are those of their index") {
+TEST_CASE("index fields: forces in lenses and guides agree with their index") {
   const auto check = [](const auto& field, const Vec3& x) {
     const auto force = field.force(x);
     const auto at = field.hessian(x);
@@ -52,7 +52,7 @@ TEST_CASE("Forces that lenses and guides tell are those of their index") {
   CHECK(std::isnan(ParabolicGuide(ParabolicProfile{0.5, 0.7}).force({9, 0, 0}).force[0]));
 }
 
-TEST_CASE("Fields are weak without losing digits, and steep without overflowing") {
+TEST_CASE("index fields: weak ones keep their digits, steep ones do not overflow") {
   const double weak = 1e-6;
   for (const Vec3& x : points) {
     check_derivatives(ParabolicGuide(ParabolicProfile{weak, 1e-3}), x, 1, weak);
@@ -76,7 +76,7 @@ TEST_CASE("Fields are weak without losing digits, and steep without overflowing"
   }
 }
 
-TEST_CASE("The Luneburg rim belongs to the lens, what is beyond does not") {
+TEST_CASE("Luneburg lens: the rim belongs to the lens, points beyond do not") {
   const Luneburg lens(LuneburgProfile{2});
   for (const double r : {2.0, 2 * (1 + 1e-12), 2 * (1 - 1e-12)}) {
     const IndexHessian at = lens.hessian({r, 0, 0});
@@ -89,7 +89,7 @@ TEST_CASE("The Luneburg rim belongs to the lens, what is beyond does not") {
   CHECK(lens.excess({2.001, 0, 0}) == 0);
 }
 
-TEST_CASE("The fisheye far out: its index keeps its digits where it goes to zero") {
+TEST_CASE("fisheye: the index keeps its digits far out, where it approaches 0") {
   const Fisheye eye(FisheyeProfile{1, 1});
   for (const double r : {1e1, 1e2, 1e3}) {
     const double n = 2 / (1 + r * r);
@@ -98,36 +98,38 @@ TEST_CASE("The fisheye far out: its index keeps its digits where it goes to zero
   }
 }
 
-TEST_CASE("Table of Bessel profiles against the series of core/bessel") {
+TEST_CASE("Bessel profiles: the table agrees with the series of core/bessel") {
   for (const int m : {0, 1, 2, 7, 30, 64}) {
     const BesselProfile profile(m, 60);
-    double worst_value = 0, worst_slope = 0;
+    double worst_value = 0, worst_derivative = 0;
     for (int i = 1; i < 4000; ++i) {
       const double x = i * 0.0171;
       const std::vector<long double> j = bessel_j(m + 1, x);
       const auto jet = profile.jet(x * x);
       const long double power = std::pow(static_cast<long double>(x), m);
-      // J_m rises to its envelope at x = m; before it, the error is relative to itself.
+      // J_m reaches its envelope at x = m; below, the error is relative to J_m itself.
       const long double envelope = x > m ? std::sqrt(2 / (3.14159L * x)) : j[m];
-      const long double slope = x > m ? envelope : j[m + 1];
+      const long double derivative_scale = x > m ? envelope : j[m + 1];
       worst_value = std::max(worst_value, double(std::abs(jet.value * power - j[m]) / envelope));
-      worst_slope =
-          std::max(worst_slope, double(std::abs(-2 * x * jet.slope * power - j[m + 1]) / slope));
+      worst_derivative =
+          std::max(worst_derivative,
+                   double(std::abs(-2 * x * jet.derivative * power - j[m + 1]) / derivative_scale));
     }
     CAPTURE(m);
     CHECK(worst_value < 2e-14);
-    CHECK(worst_slope < 1e-12);
+    CHECK(worst_derivative < 1e-12);
   }
   CHECK(BesselProfile(0, 1).jet(0).value == doctest::Approx(1).epsilon(1e-15));
-  CHECK(BesselProfile(0, 1).jet(0).slope == doctest::Approx(-0.25).epsilon(1e-14));
+  CHECK(BesselProfile(0, 1).jet(0).derivative == doctest::Approx(-0.25).epsilon(1e-14));
   CHECK_THROWS_AS(BesselProfile(0, 0), InputError);
   CHECK_THROWS_AS(BesselProfile(0, std::nan("")), InputError);
 }
 
-TEST_CASE("Sound waves: derivatives and the wave equation, on the axis too") {
+TEST_CASE(
+    "sound waves: derivatives agree with differences and the wave equation, also on the axis") {
   const double k = 7;
   for (const int m : {0, 1, 2, 3, 8}) {
-    const StandingWave wave(0.33, 0.02, m, k, 0.6);  // the last points are past its table
+    const StandingWave wave(0.33, 0.02, m, k, 0.6);  // the last points are beyond its table
     for (const Vec3& x : points) {
       CAPTURE(m);
       check_derivatives(wave, x, 1 / k, 1, 1e-11);
@@ -143,7 +145,9 @@ TEST_CASE("Sound waves: derivatives and the wave equation, on the axis too") {
             .epsilon(1e-14));
 }
 
-TEST_CASE("Focused sound: derivatives, the wave equation, all in phase at the focus") {
+TEST_CASE(
+    "focused sound: derivatives agree with differences and the wave equation; in phase at the "
+    "focus") {
   const double k = 11;
   const Vec3 focus{0.1, 0.2, 0.3};
   for (const auto& directions : {arc_directions(16, 0.7), cap_directions(40, 0.5)}) {
@@ -157,12 +161,12 @@ TEST_CASE("Focused sound: derivatives, the wave equation, all in phase at the fo
     CHECK(sound.frozen(0).gradient(focus).gradient.norm() < 0.11);
     CHECK(std::abs(sound.frozen(0).excess(focus + Vec3(2, 0, 0)) - 0.33) < 0.005);
   }
-  // A line focus goes on along y.
+  // A line focus extends along y.
   const FocusedSound line(0, 1, k, arc_directions(16, 0.7), focus);
   CHECK(line.excess(focus + Vec3(0, 5, 0)) == doctest::Approx(1));
 }
 
-TEST_CASE("Sums of fields") {
+TEST_CASE("sums of fields: values and derivatives agree with their terms") {
   AnySum sum;
   const GaussianBlobs blobs({{{0, 0, 0}, 0.2, 0.4}});
   const TanhRamp ramp{0.1, 0.2, 0.5};
@@ -173,7 +177,7 @@ TEST_CASE("Sums of fields") {
   }
 }
 
-TEST_CASE("A field chosen at run time") {
+TEST_CASE("fields chosen at run time: values and derivatives agree with the fields") {
   AnySum sum;
   sum.add(ParabolicGuide(ParabolicProfile{0.5, 0.7})).add(StandingWave(0, 0.02, 1, 7, 1));
   const std::vector<AnyIndexField> fields{Homogeneous{0.2}, SechGuide(SechProfile{0.5, 0.5}), sum};

@@ -8,14 +8,14 @@ namespace flatspeckle::grin::test_interface {
 
 namespace {
 
-/// In index n at this angle to the z axis, going up.
+/// Returns the ray vector in index n that ascends at this angle to the z axis.
 Vec3 ray_vector(double n, double angle) {
   return n * Vec3(std::sin(angle), 0, std::cos(angle));
 }
 
 }  // namespace
 
-TEST_CASE("Snell and Fresnel in the textbook's form") {
+TEST_CASE("interface: refraction and reflectance agree with Snell and Fresnel") {
   const double n1 = 1, n2 = 1.5;
   for (const double angle : {0.0, 0.3, 1.0, 1.5}) {
     const Interface jump(ray_vector(n1, angle), -Vec3::UnitZ(), n1 - 1, n2 - 1);
@@ -35,7 +35,7 @@ TEST_CASE("Snell and Fresnel in the textbook's form") {
   }
 }
 
-TEST_CASE("Brewster's angle, the critical angle, and beyond it") {
+TEST_CASE("interface: Brewster's angle, the critical angle and total reflection") {
   const double brewster = std::atan(1.5);
   CHECK(Interface(ray_vector(1, brewster), Vec3::UnitZ(), 0, 0.5).reflectance_p() < 1e-30);
   const double critical = std::asin(1 / 1.5);
@@ -50,7 +50,7 @@ TEST_CASE("Brewster's angle, the critical angle, and beyond it") {
   CHECK(above.reflectance_p() == 1);
 }
 
-TEST_CASE("A jump of 1e-9 keeps its digits, one of 0 does nothing") {
+TEST_CASE("interface: a jump of 1e-9 keeps its digits, one of 0 has no effect") {
   const Interface faint(Vec3::UnitZ(), Vec3::UnitZ(), 0, 1e-9);
   CHECK(faint.reflectance() == doctest::Approx(0.25e-18 * (1 - 1e-9)).epsilon(1e-12));
   const Interface nothing(ray_vector(1.3, 0.4), Vec3::UnitZ(), 0.3, 0.3);

@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "grin/rays/surfaces/lens.h"
-#include "grin/rays/surfaces/straight_way.h"
+#include "grin/rays/surfaces/straight_crossing.h"
 #include "tests/statistics.h"
 
 namespace flatspeckle::grin::test_lens {
@@ -33,17 +33,17 @@ Vec3 random_direction(std::mt19937& random) {
   std::normal_distribution<double> normal;
   return Vec3{normal(random), normal(random), normal(random)}.normalized();
 }
-/// By small steps, to where the side changes.
+/// Returns the distance to a change of side, by small steps; no_crossing beyond 12.
 double marched(const Lens& lens, const Vec3& x, const Vec3& d) {
   const bool inside = lens.distance(x) < 0;
-  for (double way = 0; way < 12; way += 1e-3)
-    if ((lens.distance(x + way * d) < 0) != inside) return way;
-  return no_way;
+  for (double ray_length = 0; ray_length < 12; ray_length += 1e-3)
+    if ((lens.distance(x + ray_length * d) < 0) != inside) return ray_length;
+  return no_crossing;
 }
 
 }  // namespace
 
-TEST_CASE("the distance from a lens has slope 1 at most, and its normal is its gradient") {
+TEST_CASE("lens: the signed distance changes by at most the distance between points") {
   std::mt19937 random(1);
   for (const Shape& shape : shapes) {
     CAPTURE(shape.name);
@@ -55,7 +55,7 @@ TEST_CASE("the distance from a lens has slope 1 at most, and its normal is its g
   }
 }
 
-TEST_CASE("ways into and out of a lens are those of small steps, and end where it does") {
+TEST_CASE("lens: entry and exit distances agree with small steps and end on the surface") {
   std::mt19937 random(2);
   for (const Shape& shape : shapes) {
     CAPTURE(shape.name);
@@ -64,47 +64,47 @@ TEST_CASE("ways into and out of a lens are those of small steps, and end where i
     for (int i = 0; i < (is_night ? 800 : 300); ++i) {
       const Vec3 x = random_point(random, 1.8), d = random_direction(random);
       const bool inside = lens.distance(x) < 0;
-      const double way = inside ? way_out(lens, x, d) : way_in(lens, x, d);
+      const double ray_length = inside ? exit_distance(lens, x, d) : entry_distance(lens, x, d);
       const double seen = marched(lens, x, d);
       CAPTURE(i);
-      if (way == no_way) {
-        CHECK(seen == no_way);
+      if (ray_length == no_crossing) {
+        CHECK(seen == no_crossing);
         continue;
       }
       ++met;
-      CHECK(std::abs(lens.distance(x + way * d)) < 1e-13);
-      if (seen != no_way) CHECK(std::abs(way - seen) < 1.1e-3);  // steps may miss an edge
+      CHECK(std::abs(lens.distance(x + ray_length * d)) < 1e-13);
+      if (seen != no_crossing)
+        CHECK(std::abs(ray_length - seen) < 1.1e-3);  // steps may miss an edge
     }
     CHECK(met > (is_night ? 60 : 20));
   }
 }
 
-TEST_CASE(
-    "a ray that has left a hollow face meets the lens again at the other side of the hollow") {
+TEST_CASE("lens: a ray that leaves a concave face meets its far side") {
   const Lens lens = *Lens::make({0, 0, 0}, 1, -1.2, 0, 0.2);
   const Vec3 x(-0.9, 0, -1.2 + std::sqrt(1.44 - 0.81));
   CHECK(std::abs(lens.distance(x)) < 1e-14);
-  CHECK(way_in(lens, x, Vec3::UnitX()) == doctest::Approx(1.8));
+  CHECK(entry_distance(lens, x, Vec3::UnitX()) == doctest::Approx(1.8));
 }
 
-TEST_CASE("a ray that leaves a lens, and is outside but for a tolerance, does not meet it again") {
+TEST_CASE("lens: a ray that leaves within a tolerance of the surface does not meet it again") {
   const Lens rod = *Lens::make({0, 0, 0}, 0.9, 0, 0, 3), ball = *Lens::make({0, 0, 0}, 1, 1, -1, 2);
   for (const double before : {0.0, 1e-15, 1e-10}) {
     CAPTURE(before);
-    CHECK(way_in(rod, {0, 0, 3 - before}, Vec3::UnitZ()) == no_way);
-    CHECK(way_in(rod, {0.9 - before, 0, 1}, Vec3::UnitX()) == no_way);
-    CHECK(way_in(ball, {0, 0, before}, -Vec3::UnitZ()) == no_way);
+    CHECK(entry_distance(rod, {0, 0, 3 - before}, Vec3::UnitZ()) == no_crossing);
+    CHECK(entry_distance(rod, {0.9 - before, 0, 1}, Vec3::UnitX()) == no_crossing);
+    CHECK(entry_distance(ball, {0, 0, before}, -Vec3::UnitZ()) == no_crossing);
   }
 }
 
-TEST_CASE("the normal of a lens turns as its curvature says") {
+TEST_CASE("lens: differences of the normal agree with the curvature") {
   constexpr double h = 1e-5;
   for (const Shape& shape : shapes) {
     CAPTURE(shape.name);
     const Lens lens = lens_of(shape);
     for (const Vec3& from : {Vec3(0.4, 0.1, -3), Vec3(0.4, 0.1, 3), Vec3(4, 0.3, 0.5)}) {
       const Vec3 towards = (Vec3(0.4, 0, 0.5) - from).normalized();
-      const Vec3 x = from + way_in(lens, from, towards) * towards;
+      const Vec3 x = from + entry_distance(lens, from, towards) * towards;
       const Vec3 n = lens.normal(x);
       const Vec3 along = n.cross(Vec3(0.3, 0.5, 0.8)).normalized();
       const Vec3 turn = (lens.normal(x + h * along) - lens.normal(x - h * along)) / (2 * h);
@@ -114,7 +114,7 @@ TEST_CASE("the normal of a lens turns as its curvature says") {
   }
 }
 
-TEST_CASE("what is no lens") {
+TEST_CASE("lens: impossible shapes are rejected") {
   CHECK_FALSE(Lens::make({0, 0, 0}, 1, 0.9, 0, 1));
   CHECK_FALSE(Lens::make({0, 0, 0}, 1, 1, -1, 1.9));  // faces meet within the radius
   CHECK(Lens::make({0, 0, 0}, 1, 1, -1, 2));          // a ball

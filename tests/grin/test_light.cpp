@@ -3,7 +3,7 @@
 #include "core/error.h"
 #include "grin/rays/connections/geometric_spreading.h"
 #include "grin/render/lights/light.h"
-#include "tests/grin/path_ends.h"
+#include "tests/grin/path_endpoints.h"
 
 namespace flatspeckle::grin::test_light {
 
@@ -29,7 +29,7 @@ FaceLight environment(double radiance = 1) {
   return {Vec3::Zero(), infinity, radiance};
 }
 
-/// On the lower face of the box, and tilted within it.
+/// Returns a fibre on the lower face of the box; tilted_fibre() is inside the box.
 FibreLight fibre(double aperture, Spread spread = Spread::even) {
   return {Vec3(0.3, -0.4, 0.5), Vec3(0, 0, 1), 0.3, aperture, 2, spread};
 }
@@ -37,7 +37,7 @@ FibreLight tilted_fibre(Spread spread) {
   return {Vec3(0.3, -0.4, 1.7), Vec3(1, -2, 1).normalized(), 0.3, 0.9, 2, spread};
 }
 
-/// Mean of strength / density over what is sampled: the power.
+/// Returns the mean of strength / density over samples, which is the power.
 template <class Space>
 Average sampled_power(const StageLights& lights, const Space& space, std::uint64_t seed) {
   Average power;
@@ -50,7 +50,7 @@ Average sampled_power(const StageLights& lights, const Space& space, std::uint64
   return power;
 }
 
-std::string complaint(const Surface& boundary, std::vector<Light> lights) {
+std::string error_message(const Surface& boundary, std::vector<Light> lights) {
   try {
     lights_in(boundary, std::move(lights), UniformSpace{});
   } catch (const InputError& error) {
@@ -59,7 +59,7 @@ std::string complaint(const Surface& boundary, std::vector<Light> lights) {
   return "";
 }
 
-/// Shares of equal parts of a surface that is told apart by `part`.
+/// Checks the fractions of sampled positions in the parts of a surface that `part` numbers.
 template <class Part>
 void check_positions(const StageLights& lights, const Part& part, const std::vector<double>& shares,
                      std::uint64_t seed) {
@@ -76,7 +76,7 @@ int of(double share, int parts) {
 
 }  // namespace
 
-TEST_CASE("lights sample directions by their density") {
+TEST_CASE("lights: sampled directions agree with their density") {
   RandomStream random(1, 83, 0);
   const auto check = [&](const StageLights& lights, std::uint64_t seed) {
     const EndPosition at = lights.sample_position(TiltedSpace{}, random);
@@ -93,7 +93,7 @@ TEST_CASE("lights sample directions by their density") {
   }
 }
 
-TEST_CASE("lights sample positions uniformly by area") {
+TEST_CASE("lights: sampled positions are uniform by area") {
   const Vec3 size = test_box.high - test_box.low;
   // 4 x 4 parts of each of the six faces
   std::vector<double> shares;
@@ -151,10 +151,10 @@ TEST_CASE("lights sample positions uniformly by area") {
                   part_of_disk(fibre(0.2).centre, Vec3::UnitZ(), 0.3), equal, 9);
 }
 
-TEST_CASE("Gaussian beams and fibres sample positions by their density, which is a Gaussian") {
+TEST_CASE("Gaussian beams and fibres: sampled positions agree with a Gaussian density") {
   constexpr double radius = 0.25;
   const Vec3 centre(0.2, -0.3, 1.5), along = Vec3(1, 1, 0.5).normalized();
-  // of rings between equal steps of r: exp(-2 r^2 / radius^2), cut at 3 radii
+  // fractions in rings of equal width: exp(-2 r^2 / radius^2), cut at 3 radii
   constexpr int rings = 24;
   const auto beyond = [&](double r) { return std::exp(-2 * r * r / (radius * radius)); };
   std::vector<double> shares(rings);
@@ -178,7 +178,7 @@ TEST_CASE("Gaussian beams and fibres sample positions by their density, which is
   }
 }
 
-TEST_CASE("strength integrated over positions and directions is the power") {
+TEST_CASE("lights: strength integrated over positions and directions is the power") {
   const double n = 1.5, box_area = 2 * (3 * 3 + 3 * 2.5 + 2.5 * 3);
   const auto in_box = [&](Light light) { return lights_in(test_box, {light}, UniformSpace{n}); };
   const auto in_sphere = [&](Light light) {
@@ -207,10 +207,10 @@ TEST_CASE("strength integrated over positions and directions is the power") {
   const double power = pi * mean * 2.5 * pi * 0.9 * 0.9;
   const StageLights lights = lights_in(test_box, {disk_light()}, tilted);
   sampled_power(lights, tilted, 7).check(power);
-  CHECK(lights.power() == doctest::Approx(power).epsilon(2e-3));  // of 4096 points
+  CHECK(lights.power() == doctest::Approx(power).epsilon(2e-3));  // estimated from 4096 points
 }
 
-TEST_CASE("one of several lights is drawn by its power, and the sum of all is right") {
+TEST_CASE("several lights: drawn in proportion to their powers, which add up") {
   const double n = 1.2;
   const std::vector<Light> mixed = {PointLight{Vec3(0, 0, 1), 2}, disk_light(),
                                     BeamLight{Vec3(0, 0, 1), Vec3(0, 1, 1), 0.3, 5},
@@ -239,7 +239,7 @@ TEST_CASE("one of several lights is drawn by its power, and the sum of all is ri
   }
 }
 
-TEST_CASE("a light that is hit is the light that is sampled") {
+TEST_CASE("lights: hits agree with samples") {
   check_hits(lights_in(test_box, {disk_light()}, TiltedSpace{}), TiltedSpace{}, 1);
   check_hits(lights_in(test_box, {environment()}, TiltedSpace{}), TiltedSpace{}, 2);
   check_hits(lights_in(test_box, {environment(), disk_light()}, TiltedSpace{}), TiltedSpace{}, 3);
@@ -247,7 +247,7 @@ TEST_CASE("a light that is hit is the light that is sampled") {
   check_hits(lights_in(test_sphere, {environment()}, TiltedSpace{}), TiltedSpace{}, 5);
 }
 
-TEST_CASE("a face's value is its L/n^2 at any index and angle, and nothing is hit beside it") {
+TEST_CASE("face light: hits have its L/n^2 at any index and angle, and none are beside it") {
   const StageLights lights = lights_in(test_box, {disk_light()}, TiltedSpace{});
   const auto value = [&](const Vec3& x, const Vec3& d) {
     double sum = 0;
@@ -261,7 +261,7 @@ TEST_CASE("a face's value is its L/n^2 at any index and angle, and nothing is hi
   CHECK(value(Vec3(0.4, 0.59, 0.5), Vec3(0, 0, -1)) > 0);
 }
 
-TEST_CASE("what a fibre's sampling says is what it is towards a direction") {
+TEST_CASE("fibre light: sampled directions agree with the values towards them") {
   RandomStream random(1, 87, 0);
   for (const Spread spread : {Spread::even, Spread::gaussian}) {
     const StageLights lights = lights_in(test_box, {tilted_fibre(spread)}, TiltedSpace{});
@@ -275,7 +275,7 @@ TEST_CASE("what a fibre's sampling says is what it is towards a direction") {
   }
 }
 
-TEST_CASE("points and beams are not hit, beams not joined; a light may be in the body") {
+TEST_CASE("point and beam lights: not hit, beams not connected, points may be in a body") {
   Stage stage = empty_stage(test_box);
   stage.bodies.push_back({Sphere{Vec3(0, 0, 1.5), 0.5}});
   const StageLights lights(
@@ -298,16 +298,16 @@ TEST_CASE("points and beams are not hit, beams not joined; a light may be in the
   CHECK((seen[0] && seen[1]));
 }
 
-TEST_CASE("lights that cannot be are refused by name") {
+TEST_CASE("lights: invalid ones are rejected by name") {
   const double nan = std::nan("");
   const auto refused = [](const Surface& boundary, Light light, const std::string& words) {
-    const std::string line = complaint(boundary, {light});
+    const std::string line = error_message(boundary, {light});
     CAPTURE(line);
     CHECK(line.find(words) != std::string::npos);
     CHECK(line.find('\n') == std::string::npos);
   };
-  CHECK(complaint(test_box, {}).starts_with("light is not given"));
-  CHECK(complaint(test_box, {disk_light(), environment()}).empty());
+  CHECK(error_message(test_box, {}).starts_with("light is not given"));
+  CHECK(error_message(test_box, {disk_light(), environment()}).empty());
   refused(test_box, PointLight{Vec3(0, 0, 0)}, "point_light, position = 0 0 0: must be inside");
   refused(test_box, PointLight{Vec3(0, nan, 1)}, "point_light, position");
   refused(test_box, BeamLight{Vec3(0, 0, 1), Vec3::Zero(), 1}, "beam_light, direction");
@@ -315,20 +315,20 @@ TEST_CASE("lights that cannot be are refused by name") {
   refused(test_box, BeamLight{Vec3(0, 0, 0.5), Vec3(0, 0, 1), 1.1}, "beam_light, radius = 1.1");
   refused(test_box, BeamLight{Vec3(0, 0, 0.5), Vec3(0, 1, 1), 0.5}, "must be inside the stage");
   refused(test_box, BeamLight{Vec3(0, 0, 0.5), Vec3(0, 0, 1), 0.5, 1, Spread::gaussian},
-          "gaussian_beam, radius = 0.5: its disk of radius 1.5 must be inside the stage");
+          "gaussian_beam, radius = 0.5: the light, a disk of radius 1.5 perpendicular");
   refused(test_box, FibreLight{Vec3(0, 0, 0.5), Vec3(0, 0, 1), 1.1, 0.2}, "fibre_light, radius");
   refused(test_box, FibreLight{Vec3(0, 0, 0.5), Vec3(0, 0, -1), 0.1, 0.2},
           "fibre_light, direction");
   refused(test_box, FibreLight{Vec3(0, 0, 0.5), Vec3(0, 0, 1), 0.1, 1.2, 1, Spread::gaussian},
-          "gaussian_fibre, aperture = 1.2: must be at most the index there");
+          "gaussian_fibre, aperture = 1.2: must be at most the index of refraction at the fibre");
   refused(test_box, FaceLight{Vec3(0, 0, 0.5), 1.01}, "within one face of the boundary");
   refused(test_box, FaceLight{Vec3(0, 0, 0.6), 0.1}, "must be on the boundary");
   refused(test_box, FaceLight{Vec3(0, nan, 0.5), 0.1}, "face_light, position");
   refused(test_sphere, FaceLight{cap_light().centre, 3.5}, "face_light, radius = 3.5");
   for (const double radius : {0.0, -1.0, nan, -infinity})
     refused(test_sphere, FaceLight{cap_light().centre, radius}, "face_light, radius");
-  refused(Plane{Vec3::Zero(), Vec3::UnitZ()}, environment(), "needs a sphere or a box");
-  refused(test_box, BeamLight{Vec3(0, 0, 1), Vec3(0, 0, 1), 1e-200}, "light = 1: has a size");
+  refused(Plane{Vec3::Zero(), Vec3::UnitZ()}, environment(), "requires a sphere or a box");
+  refused(test_box, BeamLight{Vec3(0, 0, 1), Vec3(0, 0, 1), 1e-200}, "light = 1: must have a size");
 }
 
 }  // namespace flatspeckle::grin::test_light

@@ -8,7 +8,7 @@
 #include "grin/render/transport/path_score.h"
 #include "tests/grin/render_tests.h"
 
-// Light that a method may miss: it is found, or the run is not converged.
+// Light that a method may miss: it is detected, or the run does not converge.
 
 namespace flatspeckle::grin::tests::test_light_checks {
 
@@ -31,8 +31,8 @@ AreaDetector square(const Vec3& centre, double size) {
   return {centre, Vec3::UnitY(), size, size, {1, 1}, pi / 2};
 }
 
-/// Balls of index 1.5 in a row along a beam that is not much narrower, between six detectors: the
-/// faces of the stage, or less.
+/// Returns balls of index 1.5 in a row along a slightly narrower beam, between six detectors whose
+/// sides are this fraction of those of the faces of the stage.
 RenderScene balls_in_a_row(int balls, double share) {
   const double height = 4 + 2.2 * balls;
   RenderScene scene = scene_in_box(5, height, {}, {Vec3::Zero(), Vec3::UnitZ(), 0.9, 1});
@@ -49,7 +49,7 @@ RenderScene balls_in_a_row(int balls, double share) {
   return scene;
 }
 
-/// By rays alone, as plain counts have it.
+/// Checks that all light checks hold and, with full faces, that they detect all power.
 void check_balls(int balls, double share, double samples) {
   CAPTURE(balls);
   CAPTURE(share);
@@ -66,7 +66,7 @@ void check_balls(int balls, double share, double samples) {
   if (share == 1) CHECK(std::sqrt(variance) < 0.05);
 }
 
-/// A thin beam in fog of optical depth 2, and all that comes through.
+/// Returns a thin beam in fog of optical depth 2, and a detector of all transmitted light.
 RenderScene thin_beam(double radius) {
   RenderScene scene =
       scene_in_box(500, 2, {.mu_s = 0.9, .mu_a = 0.1}, {Vec3::Zero(), Vec3::UnitZ(), radius, 1});
@@ -76,42 +76,43 @@ RenderScene thin_beam(double radius) {
 
 }  // namespace
 
-TEST_CASE("balls in a row under a beam: six faces take all light") {
+TEST_CASE("balls in a row under a beam: six faces detect all power") {
   for (const int balls : {1, 3, 6, 10}) check_balls(balls, 1, 4000);
 }
 
-TEST_CASE("balls in a row under a beam: small detectors have the light of rays that hit them") {
+TEST_CASE("balls in a row under a beam: light checks of small detectors hold") {
   for (const int balls : {2, 6}) check_balls(balls, 0.1, 8000);
 }
 
-TEST_CASE("nightly: balls in a row under a beam, 1 to 50, detectors of all sizes") {
+TEST_CASE(
+    "nightly: 1 to 50 balls in a row under a beam: light checks of detectors of all sizes hold") {
   for (const int balls : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 15, 20, 30, 40, 50})
     for (const double share : {1.0, 0.3, 0.1, 0.03}) check_balls(balls, share, 200000);
 }
 
-TEST_CASE("a small detector in a wide beam has its irradiance, by any method") {
+TEST_CASE("small detector in a wide beam: irradiance agrees with the closed form, by any method") {
   for (const double size : {1.0, 0.1, 1e-3, 1e-6})
     for (const RenderMethod method :
-         {RenderMethod::light, RenderMethod::bidirectional, RenderMethod::analog}) {
+         {RenderMethod::light, RenderMethod::bidirectional, RenderMethod::forward}) {
       CAPTURE(size);
       CAPTURE(name(method));
       RenderScene scene = scene_in_box(2, 1, {.mu_a = 0.7}, {Vec3::Zero(), Vec3::UnitZ(), 1, 3});
       scene.sensors = {square({0.2, 0.1, 1}, size)};
       const Rendered found = rendered(scene, {method}, 4000);
-      const double right = 3 / pi * std::exp(-0.7);
-      CHECK(std::abs(found.value() - right) <= 4 * found.error() + 1e-9);
-      CHECK(found.error() < 0.02 * right);
+      const double exact = 3 / pi * std::exp(-0.7);
+      CHECK(std::abs(found.value() - exact) <= 4 * found.error() + 1e-9);
+      CHECK(found.error() < 0.02 * exact);
     }
 }
 
-TEST_CASE("a small detector at the edge of a Gaussian beam has its irradiance") {
+TEST_CASE("small detector at the edge of a Gaussian beam: irradiance agrees with the closed form") {
   RenderScene scene = scene_in_box(4, 1, {}, {Vec3::Zero(), Vec3::UnitZ(), 1, 1, Spread::gaussian});
   scene.sensors = {square({1.8, 0, 1}, 1e-3)};
   const Rendered found = rendered(scene, {RenderMethod::light}, 4000);
   CHECK(found.value() == doctest::Approx(2 / pi * std::exp(-2 * 1.8 * 1.8)).epsilon(1e-3));
 }
 
-TEST_CASE("light of a thin beam in fog: path tracing, which misses it, does not converge") {
+TEST_CASE("thin beam in fog: path tracing, which misses it, does not converge") {
   for (const double radius : {1e-3, 1e-2}) {
     CAPTURE(radius);
     for (const RenderMethod method : {RenderMethod::path, RenderMethod::bidirectional}) {
@@ -130,7 +131,7 @@ TEST_CASE("light of a thin beam in fog: path tracing, which misses it, does not 
   }
 }
 
-TEST_CASE("powers on disks: darkness meets no target") {
+TEST_CASE("powers on disks: dark disks do not reach a target error") {
   PowersWithin powers{
       .radii = {1, 2}, .power = {{1e-4, 0.2}, {1e-5, 2e-3}, {0, 0}}, .covariance = {}};
   CHECK(largest_error(powers, 1) == doctest::Approx(0.01));
@@ -146,10 +147,10 @@ TEST_CASE("powers on disks: darkness meets no target") {
   CHECK(std::isinf(largest_error(powers, 1)));
 }
 
-TEST_CASE("scores by g: mean 0, however narrow the peak") {
+TEST_CASE("path scores by g: mean 0 for any width of the peak") {
   for (const double sign : {1., -1.})
     for (const double beside : {0.5, 1e-2, 1e-4, 1e-8, 1e-10, 1e-12}) {
-      if (sign < 0 && beside < 1e-3) continue;  // turns keep no digits of angles from backwards
+      if (sign < 0 && beside < 1e-3) continue;  // sampled turns do not resolve angles near pi
       const double g = sign * (1 - beside);
       CAPTURE(g);
       const ScatteringMedium medium{.mu_s = 1, .phase = {HgPhase{g}}};

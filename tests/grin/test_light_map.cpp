@@ -17,7 +17,7 @@ struct Mapped {
   Estimate fluence, absorbed, energy;
 };
 
-/// By itself, without a sensor.
+/// Renders the map alone, without a sensor.
 Mapped mapped(RenderScene scene, const LightMap& map, double samples) {
   scene.sensors.clear();
   scene.map = map;
@@ -50,7 +50,7 @@ void check_cells(const Estimate& found, const std::vector<double>& expected) {
   }
 }
 
-/// Of the field at one phase of sound.
+/// Returns the squared index at x, at one phase of sound.
 double square_index(const RenderScene& scene, const Vec3& x, double phase) {
   const Stage& stage = scene.stage;
   if (const Part part = Regions(stage).at(x); part != stage.field_part())
@@ -65,7 +65,8 @@ double square_index(const RenderScene& scene, const Vec3& x, double phase) {
       scene.field);
 }
 
-/// 4 pi times that, by cell; over a lattice in each and, where it counts, the phases of sound.
+/// Returns 4 pi times the mean squared index of each cell, over a lattice and, for sound, its
+/// phases.
 std::vector<double> mean_square_index(const RenderScene& scene, const BoxCells& cells) {
   const int nodes = is_night ? 60 : 30;
   const int phases = scene.random_phase ? 8 : 1;
@@ -85,9 +86,10 @@ std::vector<double> mean_square_index(const RenderScene& scene, const BoxCells& 
 
 }  // namespace
 
-TEST_CASE("the point source in an infinite medium") {
+TEST_CASE(
+    "oracle of a point source in an infinite medium: limits and power agree with closed forms") {
   using oracles::point_source_fluence;
-  // unscattered light near by; diffusion far away, D = 1/3 where little is absorbed
+  // unscattered light nearby; diffusion far away, D = 1/3 where little is absorbed
   const double near = 1e-6, far = 40;
   CHECK(point_source_fluence(2, 0.5, near) ==
         doctest::Approx(1 / (4 * pi * near * near)).epsilon(1e-5));
@@ -101,7 +103,7 @@ TEST_CASE("the point source in an infinite medium") {
   CHECK(power == doctest::Approx(1).epsilon(1e-5));
 }
 
-TEST_CASE("fluence around a point light is that of transport theory") {
+TEST_CASE("fluence around a point light: agrees with transport theory") {
   for (const double albedo : {0.3, 0.9}) {
     const RenderScene scene = oracles::lamp_map(albedo);
     const Mapped found = mapped(scene, *scene.map, is_night ? 400000 : 100000);
@@ -115,7 +117,7 @@ TEST_CASE("fluence around a point light is that of transport theory") {
   }
 }
 
-TEST_CASE("a map alone books the power of light; what it finds absorbed is all of that") {
+TEST_CASE("map without sensors: absorbed power agrees with the energy balance") {
   const ScatteringMedium medium = fog(1, 0.4, 0.7);
   RenderScene scene = lamp_in(unit_box(), medium);
   scene.stage.bodies.push_back({Sphere{Vec3(0.2, 0, 0.3), 0.4}, fog(0, 2, 0)});
@@ -129,22 +131,22 @@ TEST_CASE("a map alone books the power of light; what it finds absorbed is all o
     power += cells.volume(0) * found.absorbed.value[i].real();
     variance += std::pow(cells.volume(0) * found.absorbed.error[i], 2);
   }
-  const auto share = [&](Fate fate) {
-    return found.energy.value[static_cast<std::size_t>(fate)].real();
+  const auto share = [&](Termination termination) {
+    return found.energy.value[static_cast<std::size_t>(termination)].real();
   };
-  const double booked = share(Fate::absorbed_stage) + share(Fate::absorbed_body);
-  CHECK(share(Fate::emitted) == doctest::Approx(1).epsilon(1e-12));
-  CHECK(share(Fate::absorbed_body) > 0.05);
-  CHECK(share(Fate::scattered) > 0.05);
+  const double tallied = share(Termination::absorbed_stage) + share(Termination::absorbed_body);
+  CHECK(share(Termination::emitted) == doctest::Approx(1).epsilon(1e-12));
+  CHECK(share(Termination::absorbed_body) > 0.05);
+  CHECK(share(Termination::scattered) > 0.05);
   double all = 0;
-  for (std::size_t fate = 1; fate < EnergyBalance::size; ++fate)
-    all += found.energy.value[fate].real();
+  for (std::size_t termination = 1; termination < EnergyBalance::size; ++termination)
+    all += found.energy.value[termination].real();
   CHECK(all == doctest::Approx(1).epsilon(1e-12));
-  CHECK(std::abs(power - booked) < 4 * std::sqrt(variance));
+  CHECK(std::abs(power - tallied) < 4 * std::sqrt(variance));
   CHECK(std::sqrt(variance) < (is_night ? 0.03 : 0.05));
 }
 
-TEST_CASE("in clear absorbing media the fluence of a beam falls exponentially, also by a grid") {
+TEST_CASE("fluence of a beam in absorbers: agrees with Beer and Lambert, with and without a grid") {
   ScatteringMedium even, by_grid;
   even.mu_a = 1.3;
   by_grid.mu_a = 1.3;
@@ -171,7 +173,7 @@ TEST_CASE("in clear absorbing media the fluence of a beam falls exponentially, a
 }
 
 // The white furnace (C24): the radiance is n^2 in every direction, the fluence 4 pi n^2.
-TEST_CASE("fluence in the white furnace is that of the index, in every field") {
+TEST_CASE("fluence in the white furnace: agrees with 4 pi n^2, in every field") {
   const BoxCells cells(std::get<Box>(unit_box()), {3, 2, 2});
   for (const NamedRender& named : furnaces(fog(0.6, 0, 0.5))) {
     CAPTURE(named.name);

@@ -26,7 +26,7 @@ struct Both {
   RayTangent tangent = {};
 };
 
-/// By so small steps that rounding is left.
+/// Returns the ray and its tangent after steps so small that only rounding is left.
 Both stepped(Both from, double sigma) {
   constexpr int steps = 4000;
   for (int i = 0; i < steps; ++i) Sharma::step(lens, from.ray, from.tangent, sigma / steps);
@@ -44,14 +44,14 @@ void check_same(const Both& a, const Both& b, double tolerance) {
 
 }  // namespace
 
-TEST_CASE("rays of a Luneburg ball go where small steps lead, their neighbours too") {
+TEST_CASE("Luneburg rays in closed form: rays and tangents agree with small steps") {
   const auto rays = make_ray_field(lens, {&rim, 1});
   RandomStream random(3, 1, 0);
   for (int i = 0; i < 100; ++i) {
     Both start{
         start_ray(lens, centre + radius * random_point(random, 1), random_direction(random))};
     start.tangent.dx.setRandom();
-    const double sigma = 4 * radius * random.uniform();  // ellipses go on beyond the rim
+    const double sigma = 4 * radius * random.uniform();  // ellipses extend beyond the rim
     Both found = start;
     rays->advance(sigma, 7, found.ray, &found.tangent);
     if ((found.ray.x - centre).norm() > radius || sigma > radius) continue;
@@ -59,7 +59,8 @@ TEST_CASE("rays of a Luneburg ball go where small steps lead, their neighbours t
   }
 }
 
-TEST_CASE("rays of a Luneburg ball end on its rim or a sphere within, where n^2 says") {
+TEST_CASE(
+    "Luneburg rays in closed form: exits from inner spheres and index agree with the ellipse") {
   RandomStream random(4, 1, 0);
   for (int i = 0; i < 1000; ++i) {
     const Vec3 x = random_point(random, 1);
@@ -67,7 +68,7 @@ TEST_CASE("rays of a Luneburg ball end on its rim or a sphere within, where n^2 
     const tests::LuneburgRay exact{x, v};
     const double end = x.norm() + (1 - x.norm()) * random.uniform();
     const LuneburgOrbit orbit(x, v);
-    const double t = orbit.way_out(end);
+    const double t = orbit.exit_distance(end);
     REQUIRE(t >= 0);
     CHECK(t <= std::numbers::pi / 2);
     CHECK(exact.x(t).norm() == doctest::Approx(end).epsilon(1e-12));
@@ -82,7 +83,7 @@ TEST_CASE("rays of a Luneburg ball end on its rim or a sphere within, where n^2 
   }
 }
 
-TEST_CASE("the one way between two points of a Luneburg ball, as the solver of curves has it") {
+TEST_CASE("Luneburg connections in closed form: agree with the general solver") {
   const auto closed = make_ray_field(lens, {&rim, 1});
   const double inside = 1;
   ConnectionStatistics statistics;
@@ -92,12 +93,12 @@ TEST_CASE("the one way between two points of a Luneburg ball, as the solver of c
     const Vec3 from = centre + 0.95 * radius * random_point(random, 1);
     const Vec3 to =
         centre + (1 - apart) * (from - centre) + apart * 0.95 * radius * random_point(random, 1);
-    const CurveEnds ends{from, to, {{&rim, 1}, {&inside, 1}}};
+    const CurveEndpoints endpoints{from, to, {{&rim, 1}, {&inside, 1}}};
     const ConnectionOptions options{.step = 0.01, .max_length = 10};
-    const ConnectionTrial trial(lens, ends.region, from, to, options);
+    const ConnectionTrial trial(lens, endpoints.region, from, to, options);
     const auto by_steps = trial.along_chord(statistics);
     if (by_steps.outcome != TrialOutcome::converged) continue;
-    const auto found = closed->connect(ends, options, random, statistics);
+    const auto found = closed->connect(endpoints, options, random, statistics);
     REQUIRE(found.curve);
     CHECK(found.multiplicity == 1);
     CHECK((found.curve->start_direction - by_steps.curve.start_direction).norm() < 1e-7);
@@ -111,13 +112,14 @@ TEST_CASE("the one way between two points of a Luneburg ball, as the solver of c
   CHECK(statistics.count(TrialOutcome::converged) > 380);
 }
 
-TEST_CASE("points on one another have no way between them") {
+TEST_CASE("Luneburg connections in closed form: coinciding points are degenerate") {
   const auto closed = make_ray_field(lens, {&rim, 1});
   const double inside = 1;
   ConnectionStatistics statistics;
   RandomStream random(6, 1, 0);
-  const CurveEnds ends{centre, centre, {{&rim, 1}, {&inside, 1}}};
-  const auto found = closed->connect(ends, {.step = 0.1, .max_length = 10}, random, statistics);
+  const CurveEndpoints endpoints{centre, centre, {{&rim, 1}, {&inside, 1}}};
+  const auto found =
+      closed->connect(endpoints, {.step = 0.1, .max_length = 10}, random, statistics);
   CHECK(found.outcome == TrialOutcome::degenerate);
   CHECK(!found.curve);
 }

@@ -18,42 +18,43 @@ namespace flatspeckle::grin::tests::test_mesh_body {
 
 namespace {
 
-const Box room{Vec3::Constant(-2), Vec3::Constant(2)};
+const Box stage_box{Vec3::Constant(-2), Vec3::Constant(2)};
 
-/// Of a line between two points of the outside; each triangle by itself (Moeller and Trumbore).
+/// Returns the length inside a mesh of the segment between two outside points, from its crossings
+/// of each triangle (Moeller and Trumbore).
 double length_inside(const TriangleMesh& mesh, const Vec3& from, const Vec3& to) {
-  const Vec3 way = to - from;
+  const Vec3 segment = to - from;
   double sum = 0;
   for (const auto& [i, j, k] : mesh.triangles) {
     const Vec3 a = mesh.corners[i], ab = mesh.corners[j] - a, ac = mesh.corners[k] - a;
-    const Vec3 n = ab.cross(ac), to_a = a - from, turned = to_a.cross(way);
-    const double speed = way.dot(n);
+    const Vec3 n = ab.cross(ac), to_a = a - from, turned = to_a.cross(segment);
+    const double speed = segment.dot(n);
     const double u = turned.dot(ac) / speed, v = -turned.dot(ab) / speed;
     const double at = to_a.dot(n) / speed;
     if (u >= 0 && v >= 0 && u + v <= 1 && at > 0 && at < 1)
-      sum += (speed > 0 ? at : -at) * way.norm();
+      sum += (speed > 0 ? at : -at) * segment.norm();
   }
   return sum;
 }
 
 }  // namespace
 
-TEST_CASE("straight ways through a torus attenuate as triangles say") {
+TEST_CASE("straight segments through a torus: attenuation agrees with its triangles") {
   const TriangleMesh mesh = torus_mesh();
-  const Stage stage{room, {}, {Body{smooth(mesh, 0.05), {.mu_a = 1}}}};
+  const Stage stage{stage_box, {}, {Body{smooth(mesh, 0.05), {.mu_a = 1}}}};
   const Space space(Homogeneous{0}, stage);
-  CHECK(!space.joins_through());
+  CHECK(!space.connects_through());
   RandomStream random(1, 98, 0);
   ConnectionStatistics statistics;
   double sum = 0, difference = 0;
   int rough = 0, twice = 0;
-  constexpr int ways = 800;
-  for (int i = 0; i < ways; ++i) {
+  constexpr int segments = 800;
+  for (int i = 0; i < segments; ++i) {
     const Vec3 p = 1.2 * random_direction(random), q = 0.3 * random_direction(random) - p;
     const double exact = length_inside(mesh, p, q);
-    const auto join = space.join({p}, {q}, random, statistics);
-    REQUIRE(join);
-    const double found = -std::log(join->transmittance);
+    const auto connection = space.connect({p}, {q}, random, statistics);
+    REQUIRE(connection);
+    const double found = -std::log(connection->transmittance);
     sum += exact;
     difference += found - exact;
     rough += std::abs(found - exact) > 0.005;
@@ -61,17 +62,17 @@ TEST_CASE("straight ways through a torus attenuate as triangles say") {
     RandomStream again(2, 98, i);
     const Flight flight = space.fly({p}, (q - p).normalized(), again);
     CHECK(flight.end == Flight::End::boundary);
-    CHECK(flight.weight == doctest::Approx(join->transmittance).epsilon(1e-9));
+    CHECK(flight.weight == doctest::Approx(connection->transmittance).epsilon(1e-9));
   }
   CHECK(std::abs(difference) < 1e-3 * sum);
-  CHECK(rough < 0.03 * ways);  // those that graze it
+  CHECK(rough < 0.03 * segments);  // segments that graze the torus
   CHECK(twice > 50);
 }
 
-TEST_CASE("a clear ball of triangles keeps no light, whatever its index") {
+TEST_CASE("clear ball of triangles: transmits all rays at any index") {
   for (const double index : {1.0001, 1.4, 0.7}) {
     CAPTURE(index);
-    const Stage stage{room, {}, {Body{smooth(ball_mesh(5), 0.2)}}};
+    const Stage stage{stage_box, {}, {Body{smooth(ball_mesh(5), 0.2)}}};
     const Space space(Homogeneous{index - 1}, stage);
     RandomStream random(3, 98, 0);
     int lost = 0;
@@ -87,7 +88,7 @@ TEST_CASE("a clear ball of triangles keeps no light, whatever its index") {
   }
 }
 
-TEST_CASE("light stays uniform about a body of triangles, by every estimator") {
+TEST_CASE("white furnace with a body of triangles: radiance is uniform, by every estimator") {
   const LevelSurface torus = smooth(torus_mesh(), 0.08);
   for (const ScatteringMedium& medium : {ScatteringMedium(), fog(1, 0, 0.85)})
     for (const double excess : {0.0, 0.4}) {
@@ -101,9 +102,10 @@ TEST_CASE("light stays uniform about a body of triangles, by every estimator") {
     }
 }
 
-/// Ways by its curved surface are many, and some are found by one trial of thousands. Were these
-/// worth thousands of others, the variance of a share of the batches would be that of one path.
-TEST_CASE("no path by a ring of triangles is worth far more than others") {
+/// Connections through its curved surface are many, and some are found by one trial in thousands.
+/// If their weights were thousands of times the others', a single path would dominate the variance
+/// of a part of the batches.
+TEST_CASE("ring of triangles: no single path dominates the variance") {
   const RenderJob job = render_job(even_ring(), {RenderMethod::bidirectional}, 4);
   std::vector<Complex> sums(job.batches.size);
   const int shares = 8, batches = (is_night ? 6000 : 1200) / shares;

@@ -11,7 +11,7 @@
 #include "grin/rays/marching/trace.h"
 #include "grin/rays/surfaces/mesh_surface.h"
 #include "grin/rays/surfaces/spline_cell.h"
-#include "grin/rays/surfaces/straight_way.h"
+#include "grin/rays/surfaces/straight_crossing.h"
 
 namespace flatspeckle::grin::tests::test_mesh_surface {
 
@@ -40,7 +40,7 @@ std::vector<Vec3> soup(const TriangleMesh& mesh) {
 
 }  // namespace
 
-TEST_CASE("the first change of sign of a polynomial is found, and pairs of them") {
+TEST_CASE("Bernstein polynomials: the first zero agrees with a search by small steps") {
   RandomStream random(1, 1, 9);
   int found = 0, pairs = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -49,18 +49,18 @@ TEST_CASE("the first change of sign of a polynomial is found, and pairs of them"
     p.c[0] = random.uniform();
     const auto at = [&](double t) { return p.split(t).right.c[0]; };
     int first = 0;
-    constexpr int looks = 1000;
-    while (first < looks && at((first + 1.0) / looks) > 0) ++first;
+    constexpr int samples = 1000;
+    while (first < samples && at((first + 1.0) / samples) > 0) ++first;
     const auto zero = p.first_zero(1e-16);
-    if (first == looks) {
-      // or two zeros between two looks
+    if (first == samples) {
+      // there may be two zeros between samples
       if (zero) CHECK(std::abs(at(*zero)) < 1e-13);
       continue;
     }
     ++found;
     pairs += p.c[9] > 0;
     REQUIRE(zero);
-    CHECK(*zero <= (first + 1.0) / looks);
+    CHECK(*zero <= (first + 1.0) / samples);
     CHECK(std::abs(at(*zero)) < 1e-14);
     const auto rest = p.without_zero_at_start();
     CHECK(rest.split(0.3).right.c[0] == doctest::Approx((at(0.3) - p.c[0]) / 0.3));
@@ -69,7 +69,8 @@ TEST_CASE("the first change of sign of a polynomial is found, and pairs of them"
   CHECK(pairs > 100);
 }
 
-TEST_CASE("a ray that grazes: two zeros as near as 1e-6, and none where it just misses") {
+TEST_CASE(
+    "Bernstein polynomials of grazing rays: two close zeros are found, none for a near miss") {
   for (const double gap : {1e-3, 1e-6, -1e-12, -1e-3}) {
     // (t - 0.4)^2 - gap^2, or + gap
     const double constant = 0.16 + (gap > 0 ? -gap * gap : -gap);
@@ -81,7 +82,7 @@ TEST_CASE("a ray that grazes: two zeros as near as 1e-6, and none where it just 
 }
 
 TEST_CASE(
-    "triangles become a closed mesh: corners shared, turned outwards; open ones are refused") {
+    "closed mesh: corners are merged and triangles face outwards, open surfaces are rejected") {
   std::vector<Vec3> corners = soup(cube_mesh(1));
   corners.insert(corners.end(), {Vec3::Zero(), Vec3::Ones(), Vec3::Ones()});  // no area
   const TriangleMesh mesh = closed_mesh(corners);
@@ -102,9 +103,7 @@ TEST_CASE(
   CHECK_THROWS_AS(closed_mesh({}), InputError);
 }
 
-TEST_CASE(
-    "triangles become a closed mesh: corners apart by rounding are welded, up to 1e-5 of the "
-    "size") {
+TEST_CASE("closed mesh: corners apart by up to 1e-5 of the size are merged") {
   RandomStream random(1, 1, 10);
   const std::vector<Vec3> exact = soup(cube_mesh(1));
   for (const double noise : {1e-16, 1e-12, 1e-9, 1e-7, 1e-6, 1e-4, 1e-2}) {
@@ -113,7 +112,8 @@ TEST_CASE(
     for (Vec3& corner : corners) corner += random_point(random, noise);
     if (noise > 1e-5) {
       CHECK_THROWS_WITH_AS(closed_mesh(corners),
-                           doctest::Contains("edges belong to one side alone: from"), InputError);
+                           doctest::Contains("edges are not shared by opposite triangles: from"),
+                           InputError);
       continue;
     }
     const TriangleMesh mesh = closed_mesh(corners);
@@ -123,7 +123,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("triangles become a closed mesh: a body twice is one, and faces back to back go") {
+TEST_CASE("closed mesh: duplicate bodies and faces back to back are removed") {
   const std::vector<Vec3> cube = soup(cube_mesh(1));
   std::vector<Vec3> twice = cube, beside = cube;
   twice.insert(twice.end(), cube.begin(), cube.end());
@@ -133,7 +133,7 @@ TEST_CASE("triangles become a closed mesh: a body twice is one, and faces back t
   CHECK(area(closed_mesh(beside)) == doctest::Approx(40));
 }
 
-TEST_CASE("meshes without a volume and numbers that are none are refused by name") {
+TEST_CASE("closed mesh: no volume and coordinates that are not numbers are rejected by name") {
   std::vector<Vec3> corners = soup(cube_mesh(1));
   for (Vec3& corner : corners) corner[2] = 0;
   CHECK_THROWS_WITH_AS(closed_mesh(corners), doctest::Contains("encloses no volume"), InputError);
@@ -145,7 +145,7 @@ TEST_CASE("meshes without a volume and numbers that are none are refused by name
   }
 }
 
-TEST_CASE("parts of a mesh that lie in or over one another are refused as such, hollows are not") {
+TEST_CASE("mesh surface: overlapping parts are rejected, cavities are not") {
   const auto with = [](double scale, const Vec3& by, bool turned) {
     std::vector<Vec3> corners = soup(ball_mesh(3)), more = soup(ball_mesh(3));
     for (Vec3& corner : more) corner = scale * corner + by;
@@ -161,7 +161,7 @@ TEST_CASE("parts of a mesh that lie in or over one another are refused as such, 
   CHECK_THROWS_WITH_AS(with(0.5, {2, 0, 0}, true), doctest::Contains("inside out"), OverlapError);
 }
 
-TEST_CASE("distance to a mesh: a cube's in closed form, its winding number") {
+TEST_CASE("mesh distance: distance and winding number of a cube agree with the closed form") {
   const MeshDistance exact(cube_mesh(1)), ball(ball_mesh(3));
   const Box box{Vec3::Constant(-1), Vec3::Constant(1)};
   RandomStream random(1, 1, 0);
@@ -177,7 +177,7 @@ TEST_CASE("distance to a mesh: a cube's in closed form, its winding number") {
   }
 }
 
-TEST_CASE("the smooth surface of a cube has its faces, and rounds its edges") {
+TEST_CASE("smooth surface of a cube: faces agree with the cube, edges are rounded") {
   const LevelSurface surface = smooth(cube_mesh(1), 0.1);
   const Box box{Vec3::Constant(-1), Vec3::Constant(1)};
   for (const double t : {0.2, 0.5, -0.65}) {
@@ -189,7 +189,7 @@ TEST_CASE("the smooth surface of a cube has its faces, and rounds its edges") {
   CHECK(surface.distance(Vec3(1, 1, 0.3)) > 0);
   CHECK(surface.distance(Vec3(0.97, 0.97, 0.3)) < 0);
   CHECK(std::abs(surface.volume() / 8 - 1) < 0.005);
-  CHECK(surface.looks_convex());
+  CHECK(surface.is_probably_convex());
   RandomStream random(1, 1, 1);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 x = random_point(random, 2);
@@ -199,7 +199,7 @@ TEST_CASE("the smooth surface of a cube has its faces, and rounds its edges") {
   }
 }
 
-TEST_CASE("the smooth surface of a ball is off by the fourth power of the spacing") {
+TEST_CASE("smooth surface of a ball: the error is of fourth order in the spacing") {
   const TriangleMesh mesh = ball_mesh(6);
   const double radius = std::cbrt(volume(mesh) * 3 / (4 * pi));
   RandomStream random(1, 1, 2);
@@ -207,19 +207,19 @@ TEST_CASE("the smooth surface of a ball is off by the fourth power of the spacin
     const LevelSurface surface = smooth(mesh, spacing);
     const double allowed = spacing > 0.2 ? 1e-3 : 1.5e-4;
     CHECK(std::abs(surface.volume() / volume(mesh) - 1) < 3 * allowed);
-    CHECK(surface.looks_convex());
+    CHECK(surface.is_probably_convex());
     for (int i = 0; i < 300; ++i) {
       const Vec3 from = any_direction(random) * 4;
       const Vec3 d = (random_point(random, 0.4) - from).normalized();
-      const double way = surface.way(from, d, 1);
-      REQUIRE(way < 10);
-      CHECK(way >= surface.distance(from) - 1e-12);
-      const Vec3 x = from + way * d, n = x.normalized();
+      const double ray_length = surface.crossing_distance(from, d, 1);
+      REQUIRE(ray_length < 10);
+      CHECK(ray_length >= surface.distance(from) - 1e-12);
+      const Vec3 x = from + ray_length * d, n = x.normalized();
       CHECK(std::abs(x.norm() - radius) < 2 * allowed);
       CHECK((surface.normal(x) - n).norm() < 0.02);
       const Mat3 turn = surface.curvature(x) - (Mat3::Identity() - n * n.transpose()) / radius;
       CHECK((turn * (Mat3::Identity() - n * n.transpose())).norm() < 0.15);
-      // it turns as the normals of neighbours do
+      // the curvature agrees with differences of the normal
       const Vec3 aside = 1e-5 * n.cross(any_direction(random));
       const Vec3 change = surface.normal(x + aside) - surface.normal(x - aside);
       CHECK((change - 2 * surface.curvature(x) * aside).norm() < 1e-3 * aside.norm());
@@ -227,71 +227,71 @@ TEST_CASE("the smooth surface of a ball is off by the fourth power of the spacin
   }
 }
 
-TEST_CASE("lines cross a torus where its sign changes, each crossing once and none missed") {
+TEST_CASE("lines through a torus: crossings agree with the changes of sign") {
   const LevelSurface surface = smooth(torus_mesh(), 0.06);
-  CHECK(!surface.looks_convex());
+  CHECK(!surface.is_probably_convex());
   RandomStream random(1, 1, 3);
   int crossings[6] = {};
   for (int i = 0; i < 1500; ++i) {
     const Vec3 from = any_direction(random) * 2;
     const Vec3 d = (random_point(random, 0.6) - from).normalized();
-    std::vector<double> ways{0};
+    std::vector<double> distances{0};
     for (double side = 1;; side = -side) {
-      const double way = surface.way(from + ways.back() * d, d, side);
-      if (way == no_way) break;
-      ways.push_back(ways.back() + way);
-      REQUIRE(ways.size() < 7);
-      CHECK(std::abs(surface.distance(from + ways.back() * d)) < 1e-15);
+      const double ray_length = surface.crossing_distance(from + distances.back() * d, d, side);
+      if (ray_length == no_crossing) break;
+      distances.push_back(distances.back() + ray_length);
+      REQUIRE(distances.size() < 7);
+      CHECK(std::abs(surface.distance(from + distances.back() * d)) < 1e-15);
     }
-    REQUIRE(ways.size() % 2 == 1);
-    ++crossings[(ways.size() - 1)];
+    REQUIRE(distances.size() % 2 == 1);
+    ++crossings[(distances.size() - 1)];
     for (double s = 0; s < 4; s += 0.01) {
       std::size_t passed = 0;
-      while (passed + 1 < ways.size() && ways[passed + 1] < s) ++passed;
+      while (passed + 1 < distances.size() && distances[passed + 1] < s) ++passed;
       CHECK((surface.distance(from + s * d) < 0) == (passed % 2 == 1));
     }
   }
   for (const int count : {0, 2, 4}) CHECK(crossings[count] > 50);
 }
 
-TEST_CASE("what is on a smooth surface is on the side that it is said to be") {
+TEST_CASE("points on a smooth surface: crossings agree with the given side") {
   const LevelSurface ball = smooth(ball_mesh(5), 0.15), cube = smooth(cube_mesh(1), 0.25);
   RandomStream random(1, 1, 4);
   for (const LevelSurface& surface : {ball, cube}) {
     for (int i = 0; i < 3000; ++i) {
       const Vec3 from = any_direction(random) * 3;
       const Vec3 d = (random_point(random, 0.5) - from).normalized();
-      Vec3 x = from + surface.way(from, d, 1) * d;
-      x += (random.uniform() - 0.5) * 2e-14 * d;  // to rounding
+      Vec3 x = from + surface.crossing_distance(from, d, 1) * d;
+      x += (random.uniform() - 0.5) * 2e-14 * d;  // within rounding
       const Vec3 n = surface.normal(x);
       const double steep = std::pow(10, -6 * random.uniform());  // down to a grazing 1e-6
       const Vec3 along = n.cross(any_direction(random)).normalized();
       const Vec3 out = (along + steep * n).normalized(), in = (along - steep * n).normalized();
-      CHECK(surface.way(x, out, 1) > 1e-9);
-      CHECK(surface.way(x, in, -1) > 1e-9);
-      CHECK(surface.way(x, in, -1) < 4);
-      CHECK(surface.way(x, in, 1) < 1e-7);
-      CHECK(surface.way(x, out, -1) < 1e-7);
+      CHECK(surface.crossing_distance(x, out, 1) > 1e-9);
+      CHECK(surface.crossing_distance(x, in, -1) > 1e-9);
+      CHECK(surface.crossing_distance(x, in, -1) < 4);
+      CHECK(surface.crossing_distance(x, in, 1) < 1e-7);
+      CHECK(surface.crossing_distance(x, out, -1) < 1e-7);
     }
   }
 }
 
-TEST_CASE("rays by steps end on a smooth surface where straight ways do") {
+TEST_CASE("smooth surface: rays by steps end at the entry distance of straight lines") {
   const std::vector<Surface> surfaces{smooth(torus_mesh(), 0.06)};
   RandomStream random(1, 1, 5);
   for (int i = 0; i < 200; ++i) {
     const Vec3 from = any_direction(random) * 2;
     const Vec3 d = (random_point(random, 0.5) - from).normalized();
-    const double way = way_in(surfaces[0], from, d);
+    const double ray_length = entry_distance(surfaces[0], from, d);
     FixedSteps<Leapfrog> none{1};
     RayState ray = start_ray(Homogeneous{}, from, d);
     const TraceEnd end = trace(Homogeneous{}, surfaces, {10, 1e-9}, none, ray);
-    CHECK((end.stop == Stop::surface) == (way < 10));
-    if (way < 10) CHECK(ray.arc_length == doctest::Approx(way).epsilon(1e-6));
+    CHECK((end.stop == Stop::surface) == (ray_length < 10));
+    if (ray_length < 10) CHECK(ray.arc_length == doctest::Approx(ray_length).epsilon(1e-6));
   }
 }
 
-TEST_CASE("thin things have a finer spacing by themselves") {
+TEST_CASE("default spacing: finer for thin meshes") {
   const auto bar = [](double y, double z) {
     TriangleMesh mesh = cube_mesh(1);
     for (Vec3& corner : mesh.corners) corner = corner.cwiseProduct(Vec3(1, y, z));
@@ -304,7 +304,7 @@ TEST_CASE("thin things have a finer spacing by themselves") {
                        InputError);
 }
 
-TEST_CASE("spacings that do not suit a mesh are refused") {
+TEST_CASE("spacing: too coarse and too fine values are rejected") {
   const TriangleMesh mesh = torus_mesh();
   CHECK_THROWS_WITH_AS(smooth(mesh, 0.4), doctest::Contains("too coarse"), InputError);
   CHECK_THROWS_WITH_AS(smooth(mesh, 5), doctest::Contains("too coarse"), InputError);

@@ -11,7 +11,7 @@ using bench::NamedRender;
 
 namespace {
 
-/// A box with a light and a sensor on its two ends.
+/// Returns a box with a light and a sensor on its two ends.
 RenderScene box(double mu_s, const AnyIndexField& field, const Light& light, const Sensor& sensor) {
   return {.field = field,
           .step = 0.2,
@@ -31,7 +31,7 @@ RenderMethod chosen(const RenderScene& scene) {
   return best_tracer(Tracers(scene, {})).method;
 }
 
-/// The shipped slab, in part.
+/// Returns a scene like the shipped slab.
 RenderScene tissue() {
   RenderScene scene =
       box(10, Homogeneous{}, BeamLight{{0, 0, 0}, Vec3::UnitZ(), 1},
@@ -41,7 +41,7 @@ RenderScene tissue() {
   return scene;
 }
 
-/// A hundred mean free paths, with light that comes through and light that comes back.
+/// Returns a slab of 100 mean free paths with detectors of transmitted and reflected light.
 RenderScene deep_slab() {
   RenderScene scene = tissue();
   const auto face = [](double z) {
@@ -53,7 +53,8 @@ RenderScene deep_slab() {
   return scene;
 }
 
-/// Variance by pixel times flights and joins: what these cost differs by less than a factor of two.
+/// Returns the variance of all pixels times the number of flights and connections, whose costs
+/// differ by less than a factor of two.
 double cost(const RenderScene& scene, RenderMethod method) {
   const double samples = (is_night ? 1 : 0.4) * (scene.stage.medium.mu_s > 1 ? 5000 : 30000);
   const RenderJob job = render_job(scene, {method}, 3);
@@ -62,12 +63,12 @@ double cost(const RenderScene& scene, RenderMethod method) {
   double variance = 0;
   for (const double error : picture.error) variance += error * error;
   const TransportCounts counts = transport_counts(job, state.sums);
-  return variance * static_cast<double>(counts.flights + counts.joins);
+  return variance * static_cast<double>(counts.flights + counts.connections_made);
 }
 
 }  // namespace
 
-TEST_CASE("the method that is chosen is nearly as cheap as any, by the flights of a longer run") {
+TEST_CASE("method choice: cost within a factor of 2 of the other methods, from a longer run") {
   const ParabolicGuide guide({.axis_excess = 0.6, .alpha = 0.5});
   const NamedRender rows[] = {{"tissue", tissue()},
                               {"fog, lamp", box(0.5, Homogeneous{}, lamp, far_pixels)},
@@ -88,7 +89,7 @@ TEST_CASE("the method that is chosen is nearly as cheap as any, by the flights o
   CHECK(chosen(deep_slab()) == RenderMethod::light);
 }
 
-TEST_CASE("methods without finite variance are not chosen, and say so") {
+TEST_CASE("method choice: methods of infinite variance are not chosen, and plans report it") {
   const RenderScene scene = box(0.3, Homogeneous{}, PointLight{{0, 0, 1}}, pinhole);
   CHECK(!has_finite_variance(scene, RenderMethod::path));
   CHECK(!has_finite_variance(scene, RenderMethod::light));
@@ -103,8 +104,11 @@ TEST_CASE("methods without finite variance are not chosen, and say so") {
   CHECK(plan({}).starts_with("bidirectional (chosen by a pilot)"));
 }
 
-/// No 1/r^2 in any join: the error falls as that of independent samples, to the right value.
-TEST_CASE("path tracing of beams has finite variance where light goes straight on") {
+/// No connection has a 1/r^2: the error falls as the root of the number of samples, to the right
+/// value.
+TEST_CASE(
+    "path tracing of beams along straight rays: finite variance, agrees with bidirectional "
+    "tracing") {
   const auto in_body = [&](double excess) {
     RenderScene scene = box(0.3, Homogeneous{}, beam, pinhole);
     scene.stage.bodies.push_back({Sphere{{0, 0, 4}, 0.8}, {.mu_s = 1}, excess});
@@ -131,8 +135,8 @@ TEST_CASE("path tracing of beams has finite variance where light goes straight o
 
 namespace {
 
-/// The shipped one, lit by another spot: its rays meet again and again, so that joins bring much
-/// more than straight lines promise.
+/// Returns the shipped fibre lit by another spot. Its rays refocus repeatedly, so that connections
+/// contribute much more than straight lines would.
 RenderScene fibre(double spot) {
   RenderScene scene =
       box(0, ParabolicGuide({.axis_excess = 0.6, .alpha = 0.5}), FaceLight{Vec3(0, 0, 0), spot, 1},
@@ -144,7 +148,7 @@ RenderScene fibre(double spot) {
 
 }  // namespace
 
-TEST_CASE("joins are made for what they bring, not for what the straight line promises") {
+TEST_CASE("connections in a fibre: made by their own contribution, not that of the straight line") {
   for (const double spot : {0.08, 0.1, 0.4}) {
     if (!is_night && spot != 0.1) continue;
     CAPTURE(spot);
@@ -153,14 +157,14 @@ TEST_CASE("joins are made for what they bring, not for what the straight line pr
       CAPTURE(method_word(method));
       const RenderJob job = render_job(scene, {method}, 3);
       const RunState state = run_render(job, 2000, 1);
-      CHECK(static_cast<double>(transport_counts(job, state.sums).joins) > 200);
+      CHECK(static_cast<double>(transport_counts(job, state.sums).connections_made) > 200);
     }
   }
 }
 
-/// Light tracing and bidirectional tracing cost the same there (variance times seconds 0.017 and
-/// 0.019 with the shipped spot), path tracing twenty times as much.
-TEST_CASE("few strong paths do not mislead the choice") {
+/// Light tracing and bidirectional tracing have the same cost in the fibre (variance times seconds
+/// 0.017 and 0.019 with the shipped spot), path tracing twenty times as much.
+TEST_CASE("method choice in a fibre: path tracing is not chosen for lack of high-weight paths") {
   for (const double spot : {0.08, 0.1, 0.4}) {
     if (!is_night && spot > 0.08) continue;
     CAPTURE(spot);
@@ -168,9 +172,9 @@ TEST_CASE("few strong paths do not mislead the choice") {
   }
 }
 
-/// The shipped one: single strong paths make up most of the variance of light tracing, which
-/// needs five times the work. A short trial that lacks them has it for the best.
-TEST_CASE("the choice waits while another method may need much less") {
+/// In this shipped scene single high-weight paths cause most of the variance of light tracing,
+/// which needs five times the work. A short pilot run without them rates it best.
+TEST_CASE("method choice: the pilot run goes on while another method may be much cheaper") {
   RenderScene scene = box(0.01, Homogeneous{}, BeamLight{{0, 0, -20}, Vec3::UnitZ(), 4}, pinhole);
   scene.stage.boundary = Box{{-20, -20, -20}, {20, 20, 20}};
   scene.stage.medium.phase = {HgPhase{0.5}};
@@ -186,7 +190,7 @@ TEST_CASE("the choice waits while another method may need much less") {
   }
 }
 
-TEST_CASE("in the dark nothing is preferred") {
+TEST_CASE("method choice without detected light: bidirectional tracing") {
   const Light aside = BeamLight{{0, 0, 1}, Vec3::UnitX(), 0.01};
   CHECK(chosen(box(0, Homogeneous{}, aside, pinhole)) == RenderMethod::bidirectional);
 }

@@ -14,8 +14,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// Power over all directions and its mean cosine, by Fejer's first rule, exact for polynomials of
-/// the cosine.
+/// Returns the power over all directions and its mean cosine, by Fejer's first rule, exact for
+/// polynomials of the cosine.
 std::array<double, 2> over_all_directions(const MieSphere& sphere) {
   const int n = 2 * sphere.order() + 4;
   double power = 0, cosine = 0;
@@ -34,7 +34,7 @@ std::array<double, 2> over_all_directions(const MieSphere& sphere) {
 
 }  // namespace
 
-TEST_CASE("spheres: Wiscombe's efficiencies and mean cosines (1979, MIEV0)") {
+TEST_CASE("Mie spheres: efficiencies and mean cosines agree with Wiscombe (1979, MIEV0)") {
   struct Case {
     Complex index;
     double size, extinction, scattering, mean_cosine;
@@ -58,14 +58,14 @@ TEST_CASE("spheres: Wiscombe's efficiencies and mean cosines (1979, MIEV0)") {
     CAPTURE(known.index);
     CAPTURE(known.size);
     const MieSphere sphere(known.size, known.index);
-    constexpr double digits = 1e-6;  // the last one printed is not always rounded
+    constexpr double digits = 1e-6;  // the last printed digit is not always rounded
     CHECK(std::abs(sphere.extinction() - known.extinction) < digits);
     CHECK(std::abs(sphere.scattering() - known.scattering) < digits);
     CHECK(std::abs(sphere.mean_cosine() - known.mean_cosine) < digits);
   }
 }
 
-TEST_CASE("spheres: the series in 60 digits") {
+TEST_CASE("Mie spheres: efficiencies and mean cosines agree with the series in 60 digits") {
   struct Case {
     Complex index;
     double size, extinction, scattering, mean_cosine;
@@ -84,7 +84,7 @@ TEST_CASE("spheres: the series in 60 digits") {
   }
 }
 
-TEST_CASE("a sphere of Bohren and Huffman's appendix A") {
+TEST_CASE("Mie spheres: efficiency and phase function agree with Bohren and Huffman's appendix A") {
   const double x = 2 * pi * 0.525 / 0.6328;
   const MieSphere sphere(x, 1.55);
   CHECK(std::abs(sphere.scattering() - 3.10543) < 0.5e-5);
@@ -101,7 +101,8 @@ TEST_CASE("a sphere of Bohren and Huffman's appendix A") {
     CHECK(s11(degrees) / s11(0) == doctest::Approx(known).epsilon(1e-5));
 }
 
-TEST_CASE("spheres: the optical theorem, and power in all directions") {
+TEST_CASE(
+    "Mie spheres: amplitudes agree with the optical theorem and the power in all directions") {
   for (const Complex index : {Complex(1.33), Complex(1.5, 0.01), Complex(0.7), Complex(1.001),
                               Complex(0.2, 3.4), Complex(9, 0.0)})
     for (const double x : {1e-6, 1e-3, 0.3, pi, 8.0, 60.0, 300.0}) {
@@ -120,7 +121,7 @@ TEST_CASE("spheres: the optical theorem, and power in all directions") {
     }
 }
 
-TEST_CASE("small spheres are Rayleigh's, and faint ones those of Rayleigh and Gans") {
+TEST_CASE("Mie spheres: small ones agree with Rayleigh, faint ones with Rayleigh and Gans") {
   for (const Complex index : {Complex(1.5), Complex(1.3, 0.5)}) {
     constexpr double x = 1e-4;
     const MieSphere sphere(x, index);
@@ -143,13 +144,13 @@ TEST_CASE("small spheres are Rayleigh's, and faint ones those of Rayleigh and Ga
   }
 }
 
-TEST_CASE("no sphere") {
+TEST_CASE("Mie spheres: index 1 does not scatter") {
   const MieSphere sphere(3, 1);
   CHECK(sphere.extinction() == 0);
   CHECK(sphere.scattering() == 0);
 }
 
-TEST_CASE("turns are drawn from the phase function of spheres") {
+TEST_CASE("Mie phase function: sampled angles agree with the density") {
   for (const double x : {0.01, 3.0, 40.0}) {
     CAPTURE(x);
     const MiePhase phase{MieSphere(x, 1.33)};

@@ -6,11 +6,11 @@
 #include "bench/oracles/guided_beam.h"
 #include "bench/oracles/quadrature.h"
 #include "grin/render/sensors/sensor_edges.h"
-#include "tests/grin/analog_powers.h"
+#include "tests/grin/forward_powers.h"
 #include "tests/statistics.h"
 
-// Derivatives of powers by numbers of the index field: against closed forms, and against
-// differences of powers that the same random numbers make.
+// Derivatives of powers by parameters of the index field, against closed forms and against
+// differences of powers with the same random numbers.
 
 namespace flatspeckle::grin::tests::test_moving_paths {
 
@@ -47,12 +47,14 @@ void check_differences(const RenderValues& values, const std::string& name, cons
   const Powers low = powers(less, samples), high = powers(more, samples);
   for (const std::size_t pixel : pixels) {
     CAPTURE(pixel);
-    const Slope other = difference(high, low, member(more) - member(less),
-                                   [&](std::span<const Complex> sums, std::size_t stride) {
-                                     return pixel_area * sums[pixel * stride].real();
-                                   });
+    const DerivativeEstimate other =
+        difference(high, low, member(more) - member(less),
+                   [&](std::span<const Complex> sums, std::size_t stride) {
+                     return pixel_area * sums[pixel * stride].real();
+                   });
     const Estimate& image = all.found.gradients->image;
-    const Slope one{pixel_area * image.value[pixel].real(), pixel_area * image.error[pixel]};
+    const DerivativeEstimate one{pixel_area * image.value[pixel].real(),
+                                 pixel_area * image.error[pixel]};
     CAPTURE(one.value);
     CAPTURE(one.error);
     CAPTURE(other.value);
@@ -64,7 +66,7 @@ void check_differences(const RenderValues& values, const std::string& name, cons
 
 }  // namespace
 
-TEST_CASE("edges of light that nothing scatters are exact") {
+TEST_CASE("derivatives of clear light by the field: agree with the closed form") {
   for (const double length : {6.0, 15.0}) {
     CAPTURE(length);
     const GuidedBeam guide{0.2, length};
@@ -77,7 +79,7 @@ TEST_CASE("edges of light that nothing scatters are exact") {
   }
 }
 
-TEST_CASE("what is absorbed changes with the way") {
+TEST_CASE("derivatives of absorbed light by the field: agree with the closed form") {
   const GuidedBeam guide{0.2, 6, 0.5};
   const Powers all = powers(with(guided_values(guide, radii), {"alpha"}), 20000);
   const Estimate& within = all.found.gradients->within;
@@ -90,17 +92,17 @@ TEST_CASE("what is absorbed changes with the way") {
   }
 }
 
-TEST_CASE("derivatives by the field are those of differences of the same paths") {
+TEST_CASE("derivatives by the field: agree with differences of the same paths") {
   const auto alpha = [](RenderValues& values) -> double& {
     return *values.field.of<ParabolicValues>().alpha;
   };
-  // the density of paths contributes a third; by day, absorbed light has to show that
+  // the density of paths contributes a third; by day, only the test of absorbed light covers that
   if (is_night) {
     SUBCASE("of isotropic light, on a wide disk") {
       check_differences(guided_values({0.25, 6}, {2.5}, 1), "alpha", alpha, {0}, pi * 2.5 * 2.5);
     }
   }
-  // and a tenth
+  // here it contributes a tenth
   RenderValues forward = guided_values({0.25, 6}, radii, 0.5, 0.8);
   SUBCASE("of forward light, on a small disk") {
     check_differences(forward, "alpha", alpha, {0}, pi * 0.3 * 0.3);
@@ -133,9 +135,9 @@ TEST_CASE("derivatives by the field are those of differences of the same paths")
   }
 }
 
-/// Far from a lens: rays are straight, and of all lights that are given by L/n^2 or by a numerical
-/// aperture as much lands within as the square of the index says.
-TEST_CASE("light begins as the index has it there") {
+/// Rays are almost straight. The power on the disk from a light given by L/n^2 or by a numerical
+/// aperture depends on the square of the index.
+TEST_CASE("derivatives of emission by the index: agree with the closed form") {
   RenderValues straight = guided_values({1e-4, 4}, {1});
   straight.lights = {};
   SUBCASE("a face") {
@@ -154,7 +156,7 @@ TEST_CASE("light begins as the index has it there") {
   }
 }
 
-TEST_CASE("derivatives by the index are those of differences, whatever shines") {
+TEST_CASE("derivatives by the index: agree with differences of the same paths, for every light") {
   const auto index = [](RenderValues& values) -> double& {
     return values.field.of<ParabolicValues>().index;
   };
@@ -177,8 +179,8 @@ TEST_CASE("derivatives by the index are those of differences, whatever shines") 
   check_differences(fog, "index", index, {0}, pi * 2 * 2, is_night ? 120000 : 60000);
 }
 
-/// A turn of 1e-9 is none, and light of a sharp picture lands as if nothing scattered it.
-TEST_CASE("fog that does not turn light changes nothing") {
+/// Turns with 1 - g = 1e-9 are negligible: the picture is that of unscattered light.
+TEST_CASE("derivatives in fog without turns: agree with the closed form of clear light") {
   const GuidedBeam guide{0.2, 6};
   const RenderValues fog = guided_values(guide, radii, 0.5, 1 - 1e-9);
   const Powers all = powers(with(fog, {"alpha"}), is_night ? 100000 : 20000);
@@ -193,8 +195,8 @@ TEST_CASE("fog that does not turn light changes nothing") {
   }
 }
 
-/// On a disk with all of the beam, where only the density of paths changes.
-TEST_CASE("derivatives of absorbed light in fog that does not turn it: closed form") {
+/// The disk contains the whole beam, so that only the density of paths changes.
+TEST_CASE("derivatives of absorbed light in fog without turns: agree with the closed form") {
   const GuidedBeam guide{0.2, 6, 0.5};
   const Powers all = powers(with(guided_values(guide, {2}, 0.5, 1 - 1e-6), {"alpha"}), 40000);
   const Estimate& within = all.found.gradients->within;
@@ -206,7 +208,7 @@ TEST_CASE("derivatives of absorbed light in fog that does not turn it: closed fo
   CHECK(within.error[0] < 0.025 * std::abs(exact));
 }
 
-TEST_CASE("derivatives by the medium stand before those by the field") {
+TEST_CASE("derivatives: those by the medium precede those by the field") {
   RenderValues both = with(guided_values({0.2, 6}, radii, 0.5, 0.5), {"alpha", "index"});
   both.gradient = true;
   const Powers all = powers(both, 1000);
@@ -218,7 +220,7 @@ TEST_CASE("derivatives by the medium stand before those by the field") {
   CHECK(within.rare.size() == 10);
 }
 
-TEST_CASE("the kernel of edges has no second moment") {
+TEST_CASE("edge kernel: normalised, without a second moment") {
   oracles::GaussPanels points;
   points.add(-1, 1);
   const auto moment = [&](int power) {

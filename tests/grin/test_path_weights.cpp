@@ -7,25 +7,25 @@
 #include "bench/scenes/random_fields.h"
 #include "core/numbers/random.h"
 #include "grin/render/flights/space.h"
-#include "grin/render/transport/beam_join.h"
+#include "grin/render/transport/beam_connection.h"
 
 namespace flatspeckle::grin::tests::test_path_weights {
 
 namespace {
 
-/// One way along a path from the light to the sensor, and the same walked back.
+/// An edge of a path, from the light towards the sensor and back.
 struct Edge {
   Flight forth, back;
 };
 
-/// A path's vertices, their indices, and the edges between them.
+/// Vertices of a path, their refractive indices, and the edges between them.
 struct WholePath {
   std::vector<PathPoint> points;
   std::vector<double> index;
   std::vector<Edge> edges;
   EndPosition light, sensor;
 
-  /// The sensor as it would be chosen from the vertex before it.
+  /// Returns the sensor's position as chosen from the vertex before it.
   EndPosition chosen_sensor(const Transport& transport) const {
     EndPosition chosen = sensor;
     chosen.choice = transport.sensors[0].choice(sensor, points[points.size() - 2].x);
@@ -33,22 +33,22 @@ struct WholePath {
   }
 };
 
-Flight as_flight(const Join& join, const PathPoint& to) {
+Flight as_flight(const TestConnection& connection, const PathPoint& to) {
   Flight flight;
   flight.end = Flight::End::collision;
   flight.point = to;
-  flight.start_direction = join.start_direction;
-  flight.direction = join.end_direction;
-  flight.spreading = join.spreading;
-  flight.optical_path = join.optical_path;
-  flight.optical_depth = join.optical_depth;
-  flight.passages = join.passages;
-  flight.fresnel = join.fresnel;
-  flight.hollows = join.hollows;
+  flight.start_direction = connection.start_direction;
+  flight.direction = connection.end_direction;
+  flight.spreading = connection.spreading;
+  flight.optical_path = connection.optical_path;
+  flight.optical_depth = connection.optical_depth;
+  flight.crossings = connection.crossings;
+  flight.fresnel = connection.fresnel;
+  flight.concave_crossings = connection.concave_crossings;
   return flight;
 }
 
-/// By the formula of C25, where no curve can be solved for.
+/// Returns the reversed flight by the formula of C25, for flights that no connection solves for.
 Flight reversed(const Flight& flight, const PathPoint& from, double n_from, double n_to) {
   Flight back = flight;
   back.point = from;
@@ -85,7 +85,7 @@ PathVertex light_subpath(const Transport& transport, const Space& space, const W
       density = transport.lights.towards(path.light, edge.forth.start_direction).density;
     const PathVertex before = vertex;
     vertex = arrived(transport, before, edge.forth, density, 1, path.index[i + 1]);
-    if (i > 0 || !path.light.is_beam || !transport.strategies.joins_beams) continue;
+    if (i > 0 || !path.light.is_beam || !transport.strategies.connects_beams) continue;
     RandomStream random(6, 91, 0);
     TransportCounts counts;
     weigh_in_beam(transport, space, before, edge.forth, random, counts, vertex);
@@ -107,32 +107,35 @@ PathVertex sensor_subpath(const Transport& transport, const WholePath& path, int
   return vertex;
 }
 
-/// Weight of the strategy in which all vertices were made from one side, `end` being hit.
+/// Returns the weight of the strategy that creates all vertices from one side and hits `end`.
 double weight_of_hit(const Strategies& allowed, PathVertex last, const EndPosition& end,
                      double density, int more) {
   last.density *= std::abs(end.inward.dot(last.arrived));
-  return 1 / (1 + rivals_of_hit(allowed, last, end.position_density, density, more));
+  return 1 / (1 + competing_with_hit(allowed, last, end.position_density, density, more));
 }
 
-/// Where the first collision of a sensor's path is joined to a beam; nothing where light came to it
-/// in another way.
+/// Returns the weight of the connection of the first collision to the beam; nullopt if light
+/// reached it along another path.
 std::optional<double> weight_in_beam(const Transport& transport, const Space& space,
                                      const WholePath& path) {
-  if (!transport.strategies.joins_beams || path.points.size() < 3) return {};
+  if (!transport.strategies.connects_beams || path.points.size() < 3) return {};
   RandomStream random(7, 91, 0);
   ConnectionStatistics statistics;
   const StageLights::Beam beam = transport.lights.beam_of(path.light);
-  const auto way = space.plainest_way_to_beam(path.points[1], beam.light(), random, statistics);
+  const auto beam_connection =
+      space.simplest_connection_to_beam(path.points[1], beam.light(), random, statistics);
   const Flight& first = path.edges[0].forth;
-  if (!way || !(way->passages == first.passages) || (way->place - path.points[0].x).norm() > 1e-4)
+  if (!beam_connection || !(beam_connection->crossings == first.crossings) ||
+      (beam_connection->place - path.points[0].x).norm() > 1e-4)
     return {};
   const PathVertex z = sensor_subpath(transport, path, static_cast<int>(path.points.size()) - 1);
-  return joined_to_beam(transport, path.light, *way, z,
-                        leaving(transport, transport.sensors[0], z, way->start_direction))
+  return connected_to_beam(
+             transport, path.light, *beam_connection, z,
+             leaving(transport, transport.sensors[0], z, beam_connection->start_direction))
       .weight;
 }
 
-/// Of the strategy with s vertices made from the light; nothing where there is no such strategy.
+/// Returns the weight of the strategy with s vertices from the light; nullopt if there is none.
 std::optional<double> weight_of(const Transport& transport, const Space& space,
                                 const WholePath& path, int s) {
   const int all = static_cast<int>(path.points.size());
@@ -154,26 +157,26 @@ std::optional<double> weight_of(const Transport& transport, const Space& space,
   }
   if (s == 1 && path.light.is_beam) return weight_in_beam(transport, space, path);
   const Flight& edge = path.edges[s - 1].forth;
-  if (!edge.is_joinable) return {};
+  if (!edge.is_connectable) return {};
   const PathVertex y = light_subpath(transport, space, path, s);
   const EndPosition chosen = path.chosen_sensor(transport);
   const PathVertex z = s == all - 1 ? end_vertex(transport.strategies, chosen)
                                     : sensor_subpath(transport, path, all - s);
-  const Join curve{.start_direction = edge.start_direction,
-                   .end_direction = edge.direction,
-                   .spreading = edge.spreading,
-                   .optical_path = edge.optical_path,
-                   .optical_depth = edge.optical_depth,
-                   .passages = edge.passages,
-                   .fresnel = edge.fresnel,
-                   .hollows = edge.hollows};
-  return joined_path(allowed, y, leaving(transport, transport.lights, y, curve.start_direction), z,
-                     leaving(transport, transport.sensors[0], z, -curve.end_direction), curve)
+  const TestConnection curve{.start_direction = edge.start_direction,
+                             .end_direction = edge.direction,
+                             .spreading = edge.spreading,
+                             .optical_path = edge.optical_path,
+                             .optical_depth = edge.optical_depth,
+                             .crossings = edge.crossings,
+                             .fresnel = edge.fresnel,
+                             .concave_crossings = edge.concave_crossings};
+  return connected_path(allowed, y, leaving(transport, transport.lights, y, curve.start_direction),
+                        z, leaving(transport, transport.sensors[0], z, -curve.end_direction), curve)
       .weight;
 }
 
-/// Over all strategies that could have made a path: of a short end, those with the fewest vertices
-/// from there, and if that is a hit the next.
+/// Returns the sum of the weights of all strategies that can create a path. With a short subpath
+/// these are the strategy with the fewest vertices on its side and, if that is a hit, the next one.
 double sum_of_weights(const Transport& transport, const Space& space, const WholePath& path,
                       int& strategies) {
   const int all = static_cast<int>(path.points.size());
@@ -188,8 +191,8 @@ double sum_of_weights(const Transport& transport, const Space& space, const Whol
     sum += *weight;
     ++strategies;
     if (is_short && count >= 1) break;
-    // a surface that is hit is joined to as well, but not where a body is in the way
-    if (is_short && !path.edges[s == 0 ? 0 : all - 2].forth.is_joinable) break;
+    // a surface that is hit is also connected to, unless a body is in between
+    if (is_short && !path.edges[s == 0 ? 0 : all - 2].forth.is_connectable) break;
   }
   return sum;
 }
@@ -203,14 +206,14 @@ Stage foggy_ball() {
 Transport transport_of(const Space& space, const Stage& stage, const Light& light,
                        const Sensor& sensor, const Strategies& strategies = {}) {
   return {stage, StageLights({light}, stage, [&](const PathPoint& p) { return space.index(p); }),
-          sensor_ends({sensor}, stage), strategies};
+          sensor_endpoints({sensor}, stage), strategies};
 }
 
 const Strategies path_tracing{.short_light = true};
 const Strategies light_tracing{.short_sensor = true};
-const Strategies soon_left{.joined_share = 0.3, .kept = 0.4};
+const Strategies soon_left{.connected_fraction = 0.3, .kept = 0.4};
 
-/// Through random points, each way of each edge solved for by itself; nothing where one of them
+/// Returns a path through random points, each edge solved for in both directions; nullopt if one
 /// has no curve or the two differ.
 std::optional<WholePath> random_path(const Transport& transport, const Space& space,
                                      int scatterings, RandomStream& random) {
@@ -224,8 +227,8 @@ std::optional<WholePath> random_path(const Transport& transport, const Space& sp
   ConnectionStatistics statistics;
   for (std::size_t i = 0; i + 1 < path.points.size(); ++i) {
     const PathPoint &p = path.points[i], &q = path.points[i + 1];
-    const auto forth = space.join(p, q, random, statistics);
-    const auto back = space.join(q, p, random, statistics);
+    const auto forth = space.connect(p, q, random, statistics);
+    const auto back = space.connect(q, p, random, statistics);
     if (!forth || !back || (forth->start_direction + back->end_direction).norm() > 1e-6)
       return std::nullopt;
     path.edges.push_back({as_flight(*forth, q), as_flight(*back, p)});
@@ -241,7 +244,7 @@ const Sensor sensors[] = {Camera{Vec3(0, 0.1, -0.6), Vec3::UnitZ(), Vec3::UnitY(
 
 }  // namespace
 
-TEST_CASE("the weights of all strategies that make a path sum to 1 where rays are curved") {
+TEST_CASE("MIS weights: sum to 1 over all strategies on paths of curved rays") {
   const Stage stage = foggy_ball();
   const auto space = make_space(Fisheye({.centre_excess = 0.7, .radius = 2.5}), stage, {0.02, 20});
   RandomStream random(3, 91, 0);
@@ -254,7 +257,7 @@ TEST_CASE("the weights of all strategies that make a path sum to 1 where rays ar
           for (int trial = 0; trial < 20; ++trial) {
             const auto path = random_path(transport, *space, scatterings, random);
             if (!path) continue;
-            // a path that the sensor does not see has no weights
+            // a path that the sensor does not detect has no weights
             if (!(transport.sensors[0]
                       .towards(path->sensor, path->edges.back().back.start_direction)
                       .strength > 0))
@@ -273,12 +276,13 @@ TEST_CASE("the weights of all strategies that make a path sum to 1 where rays ar
 
 namespace {
 
-/// A path that the sensor does not see has no weights.
+/// Whether the sensor detects light in this direction; other paths have no weights.
 bool sees(const Transport& transport, const EndPosition& sensor, const Vec3& direction) {
   return transport.sensors[0].towards(sensor, direction).strength > 0;
 }
 
-/// Walks from the light, then to the sensor's point if that can be joined, and is seen.
+/// Returns a random walk from the light, then connected to the sensor's point; nullopt if there is
+/// no connection or the sensor does not detect it.
 std::optional<WholePath> walked_path(const Transport& transport, const Space& space,
                                      int scatterings, RandomStream& random) {
   WholePath path;
@@ -300,24 +304,24 @@ std::optional<WholePath> walked_path(const Transport& transport, const Space& sp
     direction = transport.medium(flight.point.part).phase.sample(flight.direction, random);
   }
   ConnectionStatistics statistics;
-  if (!space.can_join(path.points.back(), path.sensor.point)) return std::nullopt;
-  const auto last = space.join(path.points.back(), path.sensor.point, random, statistics);
+  if (!space.can_connect(path.points.back(), path.sensor.point)) return std::nullopt;
+  const auto last = space.connect(path.points.back(), path.sensor.point, random, statistics);
   if (!last || !sees(transport, path.sensor, -last->end_direction)) return std::nullopt;
   add(as_flight(*last, path.sensor.point));
   return path;
 }
 
-/// A path's edges that pass a body's surface and could be joined.
-int joined_through(const WholePath& path) {
+/// Returns the number of edges that cross a body's surface and are connectable.
+int connected_through(const WholePath& path) {
   int count = 0;
   for (std::size_t i = 0; i < path.edges.size(); ++i)
-    count += path.points[i].part != path.points[i + 1].part && path.edges[i].forth.is_joinable;
+    count += path.points[i].part != path.points[i + 1].part && path.edges[i].forth.is_connectable;
   return count;
 }
 
 }  // namespace
 
-TEST_CASE("weights sum to 1 on paths through a body that refracts nothing") {
+TEST_CASE("MIS weights: sum to 1 on paths through a body without refraction") {
   Stage stage = foggy_ball();
   stage.bodies.push_back({Sphere{Vec3(0.1, 0, 0), 0.8}, {2.5, 0, {}}});
   const auto space = make_space(Homogeneous{}, stage, {0.02, 20});
@@ -337,14 +341,14 @@ TEST_CASE("weights sum to 1 on paths through a body that refracts nothing") {
           REQUIRE(strategies > 0);
           CHECK(sum == doctest::Approx(1).epsilon(1e-6));
           ++paths;
-          through += joined_through(*path);
+          through += connected_through(*path);
         }
       }
   CHECK(paths > 300);
   CHECK(through > 200);
 }
 
-TEST_CASE("weights sum to 1 on paths that cross a body, and of beams") {
+TEST_CASE("MIS weights: sum to 1 on paths through a body, also from beams and fibres") {
   Stage stage = foggy_ball();
   stage.bodies.push_back({Sphere{Vec3(0.1, 0, 0), 0.8}, {2.5, 0, {}}});
   const auto space = make_space(Fisheye({.centre_excess = 0.7, .radius = 1.5}), stage, {0.02, 20});
@@ -371,7 +375,7 @@ TEST_CASE("weights sum to 1 on paths that cross a body, and of beams") {
   CHECK(crossing > 200);
 }
 
-TEST_CASE("weights sum to 1 on paths from beams that sensors' paths are joined to") {
+TEST_CASE("MIS weights: sum to 1 on paths from beams with beam connections") {
   const Light beam = BeamLight{Vec3(0.1, 0, -1.2), Vec3::UnitZ(), 0.25, 1, Spread::gaussian};
   Stage with_ball = foggy_ball(), with_glass = with_ball;
   with_ball.bodies.push_back({Sphere{Vec3(0.1, 0, 0), 0.6}, {2.5, 0, {}}});
@@ -383,8 +387,8 @@ TEST_CASE("weights sum to 1 on paths from beams that sensors' paths are joined t
   } rows[] = {{"nothing refracts", with_ball, Homogeneous{}},
               {"glass ball", with_glass, Homogeneous{}},
               {"guide", foggy_ball(), ParabolicGuide({.axis_excess = 0.5, .alpha = 0.3})}};
-  Strategies joined{.joins_beams = true}, soon = soon_left, short_light = path_tracing;
-  soon.joins_beams = short_light.joins_beams = true;
+  Strategies with_beams{.connects_beams = true}, soon = soon_left, short_light = path_tracing;
+  soon.connects_beams = short_light.connects_beams = true;
   RandomStream random(8, 91, 0);
   for (const auto& row : rows) {
     CAPTURE(row.name);
@@ -392,7 +396,7 @@ TEST_CASE("weights sum to 1 on paths from beams that sensors' paths are joined t
     const auto space = make_space(field, stage, {0.02, 20});
     int paths = 0, in_beam = 0;
     for (const Sensor& sensor : {sensors[0], sensors[1], sensors[2]})
-      for (const Strategies& mask : {joined, soon, short_light}) {
+      for (const Strategies& mask : {with_beams, soon, short_light}) {
         const Transport transport = transport_of(*space, stage, beam, sensor, mask);
         for (int trial = 0; trial < 300; ++trial) {
           const auto path = walked_path(transport, *space, 1 + trial % 5, random);
@@ -400,7 +404,7 @@ TEST_CASE("weights sum to 1 on paths from beams that sensors' paths are joined t
           int strategies = 0;
           const double sum = sum_of_weights(transport, *space, *path, strategies);
           if (strategies == 0) continue;
-          CAPTURE(path->edges[0].forth.passages.count);
+          CAPTURE(path->edges[0].forth.crossings.count);
           CHECK(sum == doctest::Approx(1).epsilon(1e-8));
           ++paths;
           in_beam += weight_in_beam(transport, *space, *path).has_value();

@@ -14,7 +14,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr double asymmetries[] = {-0.999, -0.5, 0, 0.5, 0.9, 0.99, 0.999};
 
-/// Angles from -pi (Dimension 2) or 0 (3) to pi, denser towards 0 where `width` is small.
+/// Returns angles from -pi (Dimension 2) or 0 (3) to pi, denser towards 0 for small `width`.
 std::vector<double> bin_edges(int dimension, double width, int bins = 80) {
   const double steepness = std::asinh(1 / width);
   std::vector<double> edges;
@@ -25,7 +25,7 @@ std::vector<double> bin_edges(int dimension, double width, int bins = 80) {
   return edges;
 }
 
-/// Of the bins, by the density alone: per radian, or per steradian round the axis.
+/// Returns the probabilities of the bins, from the density per radian or per steradian alone.
 template <typename Phase>
 std::vector<double> probabilities(const Phase& phase, int dimension,
                                   const std::vector<double>& edges) {
@@ -63,7 +63,7 @@ void check_sampler(const Phase& phase, int dimension, double width, std::uint64_
                                        probabilities(phase, dimension, edges));
 }
 
-/// <cos^power> over all directions.
+/// Returns <cos^power> over all directions.
 template <typename Phase>
 double moment(const Phase& phase, int dimension, int power, double width) {
   double sum = 0;
@@ -79,7 +79,7 @@ double moment(const Phase& phase, int dimension, int power, double width) {
   return sum;
 }
 
-/// A lobe of backward scattering is not resolved by bins that crowd at 0.
+/// Returns the width for bin_edges. Bins that crowd at 0 do not resolve backward lobes.
 double lobe_width(double g) {
   return g > 0 ? (1 - g) / 2 : 0.5;
 }
@@ -94,7 +94,7 @@ void check_henyey_greenstein(double g, std::uint64_t seed) {
   if (g > -0.9) check_sampler(phase, Dimension, lobe_width(g), seed);
 }
 
-/// <cos> of the sampler by the midpoint rule in u, which is the quantile function's mean.
+/// Returns <cos> of the sampler, the mean over its random number by the midpoint rule.
 template <typename Phase>
 double sampled_mean_cosine(const Phase& phase) {
   constexpr int points = 100000;
@@ -113,7 +113,7 @@ double sideways(double angle) {
 
 }  // namespace
 
-TEST_CASE("isotropic: normalised, unpolarised by g, sampled by its density") {
+TEST_CASE("isotropic phase function: normalised, mean cosine 0, samples agree with the density") {
   CHECK(moment(Isotropic<2>{}, 2, 0, 1) == doctest::Approx(1).epsilon(1e-12));
   CHECK(moment(Isotropic<3>{}, 3, 0, 1) == doctest::Approx(1).epsilon(1e-12));
   CHECK(std::abs(moment(Isotropic<2>{}, 2, 1, 1)) < 1e-12);
@@ -122,7 +122,7 @@ TEST_CASE("isotropic: normalised, unpolarised by g, sampled by its density") {
   check_sampler(Isotropic<3>{}, 3, 1, 2);
 }
 
-TEST_CASE("Henyey-Greenstein: integral 1, mean cosine g, sampled by its density") {
+TEST_CASE("Henyey-Greenstein: normalised, mean cosine g, samples agree with the density") {
   std::uint64_t seed = 10;
   for (const double g : asymmetries) {
     check_henyey_greenstein<2>(g, ++seed);
@@ -138,7 +138,8 @@ TEST_CASE("Henyey-Greenstein: the sampler's mean cosine is g") {
   }
 }
 
-TEST_CASE("Henyey-Greenstein in flatland is C22 and its sampler inverts the distribution") {
+TEST_CASE(
+    "Henyey-Greenstein in flatland: agrees with C22, and the sampler inverts the distribution") {
   for (const double g : {-0.5, 0.3, 0.9}) {
     const HenyeyGreenstein<2> phase{g};
     for (const double angle : {-3.0, -0.4, 0.0, 1e-3, 2.0, pi}) {
@@ -153,7 +154,7 @@ TEST_CASE("Henyey-Greenstein in flatland is C22 and its sampler inverts the dist
   }
 }
 
-TEST_CASE("extreme asymmetry and extreme random numbers give finite angles and densities") {
+TEST_CASE("Henyey-Greenstein: extreme g and random numbers give finite angles and densities") {
   for (const double g : {-0.999, 0.0, 0.999}) {
     for (const double u : {0x1p-54, 0.5 - 0x1p-54, 0.5, 0.5 + 0x1p-53, 1 - 0x1p-53}) {
       CAPTURE(g);
@@ -171,19 +172,20 @@ TEST_CASE("extreme asymmetry and extreme random numbers give finite angles and d
   CHECK(HenyeyGreenstein<2>{0.999}.density(pi) == doctest::Approx(0.001 / 1.999 / (2 * pi)));
 }
 
-TEST_CASE("a tabulated phase function: normalised, sampled by its density") {
+TEST_CASE("tabulated phase function: normalised, samples agree with the density") {
   std::uint64_t seed = 100;
   for (const auto& p : {two_lobes, sideways}) {
     const TabulatedPhaseFunction phase(p, 720);
     CHECK(moment(phase, 2, 0, 1) == doctest::Approx(1).epsilon(1e-6));
     check_sampler(phase, 2, 1, ++seed);
   }
-  const TabulatedPhaseFunction coarse(two_lobes, 7);  // the table itself is the law, however coarse
+  const TabulatedPhaseFunction coarse(two_lobes,
+                                      7);  // its density is the table
   CHECK(moment(coarse, 2, 0, 1) == doctest::Approx(1).epsilon(1e-6));
   check_sampler(coarse, 2, 1, ++seed);
 }
 
-TEST_CASE("a tabulated phase function is even, periodic, and what was tabulated") {
+TEST_CASE("tabulated phase function: even, periodic, agrees with the tabulated function") {
   const TabulatedPhaseFunction phase(
       [](double angle) { return 5 * HenyeyGreenstein<2>{0.8}.density(angle); }, 4096);
   for (const double angle : {0.0, 0.1, 1.0, 3.0, pi}) {
@@ -195,7 +197,7 @@ TEST_CASE("a tabulated phase function is even, periodic, and what was tabulated"
   CHECK(sampled_mean_cosine(phase) == doctest::Approx(0.8).epsilon(1e-4));
 }
 
-TEST_CASE("a tabulated phase function never sends light where its density is 0") {
+TEST_CASE("tabulated phase function: no samples where the density is 0") {
   const TabulatedPhaseFunction phase(sideways, 720);
   RandomStream random(4, 77, 0);
   for (int i = 0; i < 10000; ++i) CHECK(phase.density(phase.sample(random.uniform())) > 0);

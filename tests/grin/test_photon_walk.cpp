@@ -7,7 +7,7 @@
 #include "bench/oracles/peierls_slab.h"
 #include "tests/oracles/photon_walk.h"
 
-// The oracle itself, and its references, against what is known for certain.
+// The photon walk, an oracle, and its references, against published values and closed forms.
 
 namespace flatspeckle::grin::test_photon_walk {
 
@@ -22,7 +22,7 @@ WalkScene slab(double thickness, double half_width, const WalkMedium& medium) {
           .medium = medium};
 }
 
-/// Bins: reflected, transmitted.
+/// Returns the numbers of reflected (bin 0) and transmitted (bin 1) photons.
 PhotonTally slab_counts(const WalkScene& scene, std::uint64_t photons) {
   PhotonTally counts(2, photons);
   walk_photons(scene, beam_source({0, 0, 0}, {0, 0, 1}, 0), photons, 7, [&](const Photon& p) {
@@ -40,14 +40,14 @@ void check_share(const PhotonTally& counts, std::size_t bin, double expected) {
 
 }  // namespace
 
-TEST_CASE("Peierls' equation has the published critical thicknesses") {
+TEST_CASE("Peierls' equation: critical thicknesses agree with published ones") {
   // Sood, Forster and Parsons 2003, problems PUa-1-0-SL, PUb-1-0-SL, Ua-1-0-SL: half thicknesses.
   CHECK(critical_ratio(2 * 0.605055) == doctest::Approx(1.50).epsilon(2e-6));
   CHECK(critical_ratio(2 * 0.73660355) == doctest::Approx(1.40).epsilon(2e-6));
   CHECK(critical_ratio(2 * 0.93772556) == doctest::Approx(1.30).epsilon(2e-6));
 }
 
-TEST_CASE("Peierls' slab grows into Chandrasekhar's half-space") {
+TEST_CASE("Peierls' equation: thick slabs agree with Chandrasekhar's half-space") {
   for (double albedo : {0.5, 0.9})
     CHECK(isotropic_slab(30, albedo).reflected ==
           doctest::Approx(isotropic_half_space(albedo)).epsilon(2e-5));
@@ -55,7 +55,7 @@ TEST_CASE("Peierls' slab grows into Chandrasekhar's half-space") {
   CHECK(lossless.reflected + lossless.transmitted == doctest::Approx(1).epsilon(1e-6));
 }
 
-TEST_CASE("analog photons in a slab: van de Hulst, and Peierls") {
+TEST_CASE("analog photons in a slab: agree with van de Hulst and Peierls") {
   const WalkScene hulst =
       slab(0.02, 3, {.mu_s = 90, .mu_a = 10, .law = WalkMedium::Law::henyey_greenstein, .g = 0.75});
   const PhotonTally counts = slab_counts(hulst, 1000000);
@@ -70,7 +70,7 @@ TEST_CASE("analog photons in a slab: van de Hulst, and Peierls") {
   }
 }
 
-TEST_CASE("analog photons follow curved rays: Luneburg's focus and paths") {
+TEST_CASE("analog photons on curved rays: agree with Luneburg's focus and optical paths") {
   WalkScene scene{{{-1.5, -1.5, -1}, {1.5, 1.5, 1.5}}};
   scene.balls = {{Vec3::Zero(), 1}};
   scene.curved =
@@ -87,14 +87,14 @@ TEST_CASE("analog photons follow curved rays: Luneburg's focus and paths") {
   CHECK(left == 200);
 }
 
-TEST_CASE("analog photons are reciprocal where the index varies: n^2 weighs the ends") {
+TEST_CASE("analog photons in a varying index: reciprocal with n^2 of the endpoints as weights") {
   WalkScene scene{.boundary = {{-1, -1, -1}, {1, 1, 1}},
                   .medium = {.mu_s = 1, .law = WalkMedium::Law::rayleigh}};
   scene.curved = WalkIndex{[](const Vec3& x) { return 1.25 + 0.25 * x.z(); },
                            [](const Vec3&) { return Vec3(0, 0, 0.25); }, 0.02};
   const std::uint64_t photons = 40000;
   // Lambertian light from a disk on top to one at the bottom and back: n_top^2 share(top -> bottom)
-  // = the other way.
+  // = n_bottom^2 share(bottom -> top).
   PhotonTally down(1, photons), up(1, photons);
   walk_photons(scene, lambertian_source({0, 0, 1}, {0, 0, -1}, 1), photons, 5,
                [&](const Photon& p) {

@@ -14,7 +14,7 @@ constexpr PixelGrid grid{12, 10};
 constexpr int batches = 256;
 constexpr double strong = 3000;
 
-/// Expected numbers of contributions of a pixel: of size 1, and strong ones.
+/// Expected numbers of contributions to a pixel: weak ones of size 1, and strong ones.
 struct Expected {
   double weak, strong;
 };
@@ -43,59 +43,59 @@ double truth(const Expected& mean) {
 }
 
 struct Coverage {
-  double marked = 0, unmarked = 0;          ///< shares of their pixels within two errors
-  double of_unmarked = 0, pixels_seen = 0;  ///< how many are not marked; all
+  double undersampled = 0, resolved = 0;       ///< fractions of their pixels within two errors
+  double resolved_pixels = 0, all_pixels = 0;  ///< numbers of resolved and of all pixels
 };
 
 template <typename Mean>
 Coverage coverage(const Mean& mean, int pictures) {
   std::mt19937_64 random(1);
   Coverage found;
-  double marked = 0;
+  double undersampled = 0;
   for (int k = 0; k < pictures; ++k) {
     const Estimate estimate = picture(mean, random);
     for (std::size_t i = 0; i < estimate.value.size(); ++i) {
       const bool within = std::abs(estimate.value[i] - truth(mean(i))) <= 2 * estimate.error[i];
-      (estimate.rare[i] ? marked : found.of_unmarked) += 1;
-      (estimate.rare[i] ? found.marked : found.unmarked) += within;
+      (estimate.rare[i] ? undersampled : found.resolved_pixels) += 1;
+      (estimate.rare[i] ? found.undersampled : found.resolved) += within;
     }
   }
-  found.pixels_seen = marked + found.of_unmarked;
-  found.marked /= std::max(marked, 1.0);
-  found.unmarked /= std::max(found.of_unmarked, 1.0);
+  found.all_pixels = undersampled + found.resolved_pixels;
+  found.undersampled /= std::max(undersampled, 1.0);
+  found.resolved /= std::max(found.resolved_pixels, 1.0);
   return found;
 }
 
 }  // namespace
 
-TEST_CASE("pixels that a few paths light are marked, and their errors are upper bounds") {
+TEST_CASE("pixels of few paths: undersampled, with errors that are upper bounds") {
   const auto uneven = [](std::size_t i) { return Expected{0.5 + static_cast<double>(i % 7), 0}; };
   const Coverage few = coverage(uneven, 40);
-  CHECK(few.of_unmarked == 0);
-  CHECK(few.marked > 0.95);
+  CHECK(few.resolved_pixels == 0);
+  CHECK(few.undersampled > 0.95);
 }
 
-TEST_CASE("what rare strong paths find in some pixels is not believed to be missing in others") {
-  // a strong one lights every fifth pixel: the others are far too dark, and look sure of it
+TEST_CASE("pixels beside rare strong paths: undersampled, with errors that are upper bounds") {
+  // every fifth pixel has a strong contribution; the others are far too dark, with small errors
   const auto even = [](std::size_t) { return Expected{100, 0.2}; };
   const Coverage strong_ones = coverage(even, 40);
-  CHECK(strong_ones.marked > 0.95);
-  CHECK(strong_ones.of_unmarked < 0.1 * strong_ones.pixels_seen);
+  CHECK(strong_ones.undersampled > 0.95);
+  CHECK(strong_ones.resolved_pixels < 0.1 * strong_ones.all_pixels);
 }
 
-TEST_CASE("strong paths that light all pixels alike are known together") {
-  // one pixel alone tells too little of them
+TEST_CASE("strong paths over all pixels: resolved from the pixels together") {
+  // a single pixel has too few of them
   const auto even = [](std::size_t) { return Expected{100, 20}; };
   const Coverage shared = coverage(even, 40);
-  CHECK(shared.of_unmarked > 0.9 * shared.pixels_seen);
-  CHECK(shared.unmarked > 0.92);
+  CHECK(shared.resolved_pixels > 0.9 * shared.all_pixels);
+  CHECK(shared.resolved > 0.92);
 }
 
-TEST_CASE("where many paths have been errors stay as they are") {
+TEST_CASE("pixels of many paths: errors are unchanged") {
   const Coverage many = coverage([](std::size_t) { return Expected{2e5, 0}; }, 10);
-  CHECK(many.of_unmarked == many.pixels_seen);
-  CHECK(many.unmarked > 0.93);
-  CHECK(many.unmarked < 0.98);
+  CHECK(many.resolved_pixels == many.all_pixels);
+  CHECK(many.resolved > 0.93);
+  CHECK(many.resolved < 0.98);
 }
 
 }  // namespace flatspeckle::grin::tests::test_picture_errors

@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Sums over paths that each fall into one pixel or none.
+/// Means over paths, each of which contributes to one pixel or none.
 class PixelMeans {
  public:
   explicit PixelMeans(const SensorEnd& sensor)
@@ -39,7 +39,7 @@ class PixelMeans {
       CHECK(std::abs(mean(pixel) - expected(pixel)) <= 4 * std::sqrt(variance(pixel)) + 1e-12);
     }
   }
-  /// Pixel by pixel, and not dark.
+  /// Checks that all pixels agree and are not all dark.
   void check_like(const PixelMeans& other) const {
     CHECK(std::accumulate(sum_.begin(), sum_.end(), 0.0) > 0);
     for (int pixel = 0; pixel < pixels(); ++pixel) {
@@ -67,7 +67,7 @@ struct Pair {
   std::shared_ptr<const Space> field = {};
 
   double index(const PathPoint& p) const { return field ? field->index(p) : n; }
-  /// Where light leaves the stage, and along what.
+  /// Returns the position and direction at which light leaves the stage.
   std::pair<Vec3, Vec3> leave(const PathPoint& from, const Vec3& d, RandomStream& random) const {
     if (!field) return {exit_point(boundary, from.x, d), d};
     const Flight flight = field->fly(from, d, random);
@@ -80,8 +80,8 @@ struct Pair {
   SensorEnd end() const { return {sensor, empty_stage(boundary)}; }
 };
 
-/// From the sensor to where the light is hit.
-PixelMeans seen_from_sensor(const Pair& pair, std::uint64_t seed) {
+/// Traces paths from the sensor that hit the light.
+PixelMeans traced_from_sensor(const Pair& pair, std::uint64_t seed) {
   const StageLights lights = pair.lights();
   const SensorEnd sensor = pair.end();
   PixelMeans picture(sensor);
@@ -98,8 +98,8 @@ PixelMeans seen_from_sensor(const Pair& pair, std::uint64_t seed) {
   return picture;
 }
 
-/// From the light to where the sensor is hit.
-PixelMeans thrown_by_light(const Pair& pair, std::uint64_t seed) {
+/// Traces paths from the light that hit the sensor.
+PixelMeans traced_from_light(const Pair& pair, std::uint64_t seed) {
   const StageLights lights = pair.lights();
   const SensorEnd sensor = pair.end();
   PixelMeans picture(sensor);
@@ -116,8 +116,8 @@ PixelMeans thrown_by_light(const Pair& pair, std::uint64_t seed) {
   return picture;
 }
 
-/// A place on each, joined by a straight line: |J| = r^2.
-PixelMeans joined(const Pair& pair, std::uint64_t seed) {
+/// Connects positions on the light and the sensor by straight lines: |J| = r^2.
+PixelMeans connected(const Pair& pair, std::uint64_t seed) {
   const StageLights lights = pair.lights();
   const SensorEnd sensor = pair.end();
   PixelMeans picture(sensor);
@@ -146,16 +146,16 @@ FaceLight cap_light() {
   return {test_sphere.centre + test_sphere.radius * Vec3(1, 0, 0), 1.5, 0.8};
 }
 
-/// By both ways that meet the environment.
+/// Checks the picture by paths from the sensor and, with `hit`, from the environment.
 template <class Expected>
 void check_in_environment(const Surface& boundary, const Sensor& sensor, bool hit,
                           const Expected& expected, std::uint64_t seed) {
   const Pair pair{boundary, environment(), sensor};
-  seen_from_sensor(pair, seed).check(expected);
-  if (hit) thrown_by_light(pair, seed).check(expected);
+  traced_from_sensor(pair, seed).check(expected);
+  if (hit) traced_from_light(pair, seed).check(expected);
 }
 
-/// Mean over a pixel of f(u, v).
+/// Returns the mean of f(u, v) over a pixel.
 template <class F>
 double pixel_mean(const PixelGrid& grid, int pixel, double half_width, double half_height, F f) {
   constexpr int parts = 40;
@@ -169,7 +169,7 @@ double pixel_mean(const PixelGrid& grid, int pixel, double half_width, double ha
 
 }  // namespace
 
-TEST_CASE("under a uniform environment: cameras read L/n^2, detectors pi n^2 sin^2(acceptance)") {
+TEST_CASE("uniform environment: cameras measure L/n^2, detectors pi n^2 sin^2(acceptance)") {
   const double n = 1.3;
   const auto one = [](int) { return 1.0; };
   check_in_environment(test_box, pinhole(), false, one, 1);
@@ -187,7 +187,7 @@ TEST_CASE("under a uniform environment: cameras read L/n^2, detectors pi n^2 sin
   }
 }
 
-TEST_CASE("under a uniform environment the directional detector reads n^2 times the shadow") {
+TEST_CASE("uniform environment: the directional detector measures n^2 times the projected area") {
   const double n = 1.3;
   for (const double half_angle : {0.6, pi / 2}) {
     const DirectionalDetector detector = directional(half_angle);
@@ -211,11 +211,11 @@ TEST_CASE("under a uniform environment the directional detector reads n^2 times 
   }
 }
 
-TEST_CASE("form factors: a disk over a rectangle, and any two parts of a sphere") {
+TEST_CASE("form factors of disk and rectangle and of sphere caps: agree with the closed form") {
   const double n = 1.3, h = 2.5, a = 0.9;
   const Vec3 up = Vec3(0.3, 1, 0).normalized(), right = Vec3::UnitZ().cross(up);
   const Vec3 between = area_on_box().centre - disk_light().centre;
-  // of a Lambertian disk on a parallel element at distance d from its axis
+  // from a Lambertian disk on a parallel surface element beside its axis
   const auto irradiance = [&](double u, double v) {
     const Vec3 r = between + u * right + v * up;
     const double squared = r.x() * r.x() + r.y() * r.y();
@@ -226,33 +226,33 @@ TEST_CASE("form factors: a disk over a rectangle, and any two parts of a sphere"
     return pixel_mean(area_on_box().pixels, pixel, 0.8, 0.6, irradiance);
   };
   const Pair over{test_box, disk_light(), area_on_box()};
-  seen_from_sensor(over, 1).check(on_box);
-  thrown_by_light(over, 2).check(on_box);
-  joined(over, 3).check(on_box);
+  traced_from_sensor(over, 1).check(on_box);
+  traced_from_light(over, 2).check(on_box);
+  connected(over, 3).check(on_box);
 
   const auto on_sphere = [&](int) { return n * n * 0.8 * pi * 1.5 * 1.5 / (4 * 1.7 * 1.7); };
   const Pair inside{test_sphere, cap_light(), area_on_sphere()};
-  seen_from_sensor(inside, 4).check(on_sphere);
-  thrown_by_light(inside, 5).check(on_sphere);
-  joined(inside, 6).check(on_sphere);
+  traced_from_sensor(inside, 4).check(on_sphere);
+  traced_from_light(inside, 5).check(on_sphere);
+  connected(inside, 6).check(on_sphere);
 }
 
-TEST_CASE("a point's light by direction is its power over 4 pi, by hits and by joins") {
+TEST_CASE("point light by direction: power over 4 pi, by hits and by connections") {
   const auto expected = [](int) { return 3 / (4 * pi); };
   for (const Sensor& sensor : {Sensor{directional(0.7)}, Sensor{polar(pi)}}) {
     const Pair pair{test_box, PointLight{Vec3(0.7, -1, 1.1), 3}, sensor};
-    thrown_by_light(pair, 1).check(expected);
-    joined(pair, 2).check(expected);
+    traced_from_light(pair, 1).check(expected);
+    connected(pair, 2).check(expected);
   }
 }
 
-TEST_CASE("a beam falls on the pixels in front of it with its power over its area") {
+TEST_CASE("beam on an area detector: irradiance is power over area") {
   AreaDetector detector = area_on_box(0.1);
   const Pair pair{test_box, BeamLight{Vec3(0.6, -0.4, 1), Vec3(0, 0, 2), 1.05, 7}, detector};
-  thrown_by_light(pair, 1).check([](int) { return 7 / (pi * 1.05 * 1.05); });
+  traced_from_light(pair, 1).check([](int) { return 7 / (pi * 1.05 * 1.05); });
 }
 
-TEST_CASE("a Gaussian beam's irradiance on pixels in front of it") {
+TEST_CASE("Gaussian beam on an area detector: irradiance agrees with the closed form") {
   constexpr double radius = 0.49;
   const AreaDetector detector = area_on_box(0.1);
   const Vec3 right = Vec3(0, 0, 1).cross(detector.up.normalized()).normalized();
@@ -263,14 +263,14 @@ TEST_CASE("a Gaussian beam's irradiance on pixels in front of it") {
   const Pair pair{test_box,
                   BeamLight{Vec3(0.6, -0.4, 1) + off, Vec3(0, 0, 1), radius, 7, Spread::gaussian},
                   detector};
-  thrown_by_light(pair, 1).check([&](int pixel) {
+  traced_from_light(pair, 1).check([&](int pixel) {
     const double u = 0.4 * (pixel % 4) - 0.8 - off.dot(right),
                  v = 0.6 - 0.4 * (pixel / 4) - off.dot(up);
     return 7 / (0.4 * 0.4) * within(u, u + 0.4) * within(v - 0.4, v);
   });
 }
 
-TEST_CASE("a fibre's far pattern, and what an aperture accepts of it") {
+TEST_CASE("fibre: far field and accepted irradiance agree with the closed form") {
   constexpr double n = 1.3, aperture = 0.5, radius = 0.05;
   const Vec3 axis = directional(0.5).forward.normalized();
   for (const Spread spread : {Spread::even, Spread::gaussian}) {
@@ -291,8 +291,8 @@ TEST_CASE("a fibre's far pattern, and what an aperture accepts of it") {
         return 3 * std::sqrt(std::max(0.0, 1 - u * u - v * v)) * per_sines(u, v);
       });
     };
-    thrown_by_light(far, 1).check(pattern);
-    joined(far, 2).check(pattern);
+    traced_from_light(far, 1).check(pattern);
+    connected(far, 2).check(pattern);
 
     const double accepted = 0.2;  // rad
     const FibreLight up{Vec3(0.6, -0.4, 2.4), Vec3::UnitZ(), radius, aperture, 3, spread};
@@ -301,18 +301,18 @@ TEST_CASE("a fibre's far pattern, and what an aperture accepts of it") {
     const double ratio = std::sin(accepted) / sine;
     const double caught =
         3 * (spread == Spread::even ? ratio * ratio : -std::expm1(-2 * ratio * ratio) / share);
-    thrown_by_light(near, 3).check([&](int) { return caught; });
-    joined(near, 4).check([&](int) { return caught; });
+    traced_from_light(near, 3).check([&](int) { return caught; });
+    connected(near, 4).check([&](int) { return caught; });
   }
 }
 
-TEST_CASE("lenses: by sensor, by light and by joins the same picture") {
+TEST_CASE("lens cameras: pictures from the sensor, from the light and by connections agree") {
   const auto check = [](const Pair& pair, std::uint64_t seed) {
     CAPTURE(seed);
-    const PixelMeans reference = joined(pair, seed);
-    reference.check_like(thrown_by_light(pair, seed));
+    const PixelMeans reference = connected(pair, seed);
+    reference.check_like(traced_from_light(pair, seed));
     if (!std::holds_alternative<PointLight>(pair.light))
-      reference.check_like(seen_from_sensor(pair, seed));
+      reference.check_like(traced_from_sensor(pair, seed));
   };
   Camera narrow = lens_on_box();
   narrow.field_of_view = 0.5;
@@ -328,26 +328,28 @@ TEST_CASE("lenses: by sensor, by light and by joins the same picture") {
 }
 
 TEST_CASE(
-    "in a field: from the sensor and from the light the same, and n^2 is the one at the end") {
+    "pictures in an index field: from the sensor and from the light agree, with n^2 of the "
+    "endpoint") {
   // bends light by some 15 degrees on its way across
-  const Vec3 slope(0.1, -0.07, 0.05);
+  const Vec3 gradient(0.1, -0.07, 0.05);
   const auto space = [&](const Surface& boundary) -> std::shared_ptr<const Space> {
-    return make_space(LinearRamp{0.4, slope}, empty_stage(boundary), {0.2, 100, Spreading::none});
+    return make_space(LinearRamp{0.4, gradient}, empty_stage(boundary),
+                      {0.2, 100, Spreading::none});
   };
-  const auto n_squared = [&](const Vec3& x) { return std::pow(1.4 + slope.dot(x), 2); };
+  const auto n_squared = [&](const Vec3& x) { return std::pow(1.4 + gradient.dot(x), 2); };
   const AreaDetector area = area_on_box();
   const Vec3 up = area.up.normalized(), right = Vec3::UnitZ().cross(up);
   const Pair box{test_box, environment(), area, 0, space(test_box)};
-  thrown_by_light(box, 1).check([&](int pixel) {
+  traced_from_light(box, 1).check([&](int pixel) {
     return pixel_mean(area.pixels, pixel, 0.8, 0.6, [&](double u, double v) {
       return pi * n_squared(area.centre + u * right + v * up);
     });
   });
   const Pair sphere{test_sphere, environment(), lens_on_sphere(), 0, space(test_sphere)};
-  thrown_by_light(sphere, 2).check([](int) { return 1.0; });
+  traced_from_light(sphere, 2).check([](int) { return 1.0; });
 
   const Pair disk{test_box, disk_light(), area, 0, space(test_box)};
-  seen_from_sensor(disk, 3).check_like(thrown_by_light(disk, 4));
+  traced_from_sensor(disk, 3).check_like(traced_from_light(disk, 4));
 }
 
 }  // namespace flatspeckle::grin::test_pictures

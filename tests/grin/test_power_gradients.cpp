@@ -5,10 +5,10 @@
 
 #include "bench/oracles/peierls_slab.h"
 #include "grin/render/transport/path_score.h"
-#include "tests/grin/analog_powers.h"
+#include "tests/grin/forward_powers.h"
 
 // Derivatives of powers by mu_s, mu_a and g: against closed forms, and against differences of
-// powers that the same random numbers make.
+// powers with the same random numbers.
 
 namespace flatspeckle::grin::tests::test_power_gradients {
 
@@ -20,7 +20,7 @@ struct Tissue {
   double mu_s, mu_a, g;
 };
 
-/// A weak guide of sound in a box under a beam; two disks on the far side.
+/// Returns a weak acoustic guide in a box under a beam, with two disks on the far side.
 RenderScene guide(const Tissue& tissue, double amplitude = 0.01) {
   RenderScene scene;
   scene.field = StandingWave(0.33, amplitude, 0, 3, 6);
@@ -36,13 +36,13 @@ RenderScene guide(const Tissue& tissue, double amplitude = 0.01) {
   return scene;
 }
 
-/// Of the power on the larger disk.
-Slope slope(const Powers& powers, std::size_t parameter) {
+/// Returns the derivative of the power on the larger disk.
+DerivativeEstimate power_derivative(const Powers& powers, std::size_t parameter) {
   const Estimate& within = powers.found.gradients->within;
   return {within.value[2 * parameter + 1].real(), within.error[2 * parameter + 1]};
 }
 
-Slope difference(const Powers& high, const Powers& low, double apart) {
+DerivativeEstimate difference(const Powers& high, const Powers& low, double apart) {
   return difference(high, low, apart, [](std::span<const Complex> sums, std::size_t stride) {
     return pi * sums[0].real() + pi * (2.5 * 2.5 - 1) * sums[stride].real();
   });
@@ -50,7 +50,7 @@ Slope difference(const Powers& high, const Powers& low, double apart) {
 
 }  // namespace
 
-TEST_CASE("by absorption where nothing scatters: Beer and Lambert") {
+TEST_CASE("derivatives by absorption in clear media: agree with Beer and Lambert") {
   const Powers all = powers(guide({0, 0.2, 0}, 1e-9), 2000);
   CHECK(all.found.total->value[0].real() == doctest::Approx(std::exp(-1.2)).epsilon(1e-9));
   CHECK(all.found.gradients->within.value.size() == 2);
@@ -59,28 +59,28 @@ TEST_CASE("by absorption where nothing scatters: Beer and Lambert") {
           doctest::Approx(-6 * std::exp(-1.2)).epsilon(1e-6));
 }
 
-/// -mu_t s of the light that meets no collision; scattered light is far from a small disk.
-TEST_CASE("by scattering of light that hardly scatters") {
+/// The reference is -s times the unscattered light; there is hardly any scattered light.
+TEST_CASE("derivatives by absorption in weak scattering: agree with Beer and Lambert") {
   const Powers all = powers(guide({1e-6, 0.2, 0.5}, 1e-9), 2000);
-  CHECK(slope(all, 1).value == doctest::Approx(-6 * std::exp(-1.2)).epsilon(1e-4));
+  CHECK(power_derivative(all, 1).value == doctest::Approx(-6 * std::exp(-1.2)).epsilon(1e-4));
 }
 
-TEST_CASE("by absorption it is the mean path of the light") {
+TEST_CASE("derivatives by absorption: agree with the mean path of the light") {
   RenderScene scene = guide({0.4, 0.05, 0.7}, 1e-9);
   scene.bins.moments = true;
   const Powers all = powers(scene, 20000);
   const double path = all.found.paths.value[0].real() / 1.33;
-  CHECK(slope(all, 1).value ==
+  CHECK(power_derivative(all, 1).value ==
         doctest::Approx(-path * all.found.total->value[0].real()).epsilon(1e-6));
 }
 
-TEST_CASE("derivatives are those of differences of the same paths") {
+TEST_CASE("derivatives by mu_s, mu_a and g: agree with differences of the same paths") {
   const double samples = is_night ? 400000 : 60000;
   const Tissue tissue{0.4, 0.05, 0.7};
   const Powers all = powers(guide(tissue), samples);
   const double by[] = {0.04, 0.02, 0.03};
   for (std::size_t parameter = 0; parameter < 3; ++parameter) {
-    if (!is_night && parameter == 1) continue;  // by absorption it is the mean path, as above
+    if (!is_night && parameter == 1) continue;  // by absorption it is the mean path, tested above
     CAPTURE(parameter);
     const auto moved = [&](double share) {
       Tissue there = tissue;
@@ -88,8 +88,8 @@ TEST_CASE("derivatives are those of differences of the same paths") {
       *all_of_them[parameter] += share * by[parameter];
       return powers(guide(there), samples);
     };
-    const Slope one = slope(all, parameter),
-                other = difference(moved(1), moved(-1), 2 * by[parameter]);
+    const DerivativeEstimate one = power_derivative(all, parameter),
+                             other = difference(moved(1), moved(-1), 2 * by[parameter]);
     CAPTURE(one.value);
     CAPTURE(one.error);
     CAPTURE(other.value);
@@ -99,8 +99,8 @@ TEST_CASE("derivatives are those of differences of the same paths") {
   }
 }
 
-/// What comes through, by differences of a solution of Peierls' equation.
-TEST_CASE("derivatives of a slab's transmittance are those of transport theory") {
+/// The reference is differences of the transmittance by Peierls' equation.
+TEST_CASE("derivatives of a slab's transmittance: agree with transport theory") {
   RenderScene scene;
   scene.step = 1;
   scene.max_length = 1e9;
@@ -125,7 +125,7 @@ TEST_CASE("derivatives of a slab's transmittance are those of transport theory")
   }
 }
 
-TEST_CASE("totals have the derivatives of all rings, and a picture's of each") {
+TEST_CASE("derivatives of totals and disks: agree with the rings of the picture") {
   const Powers all = powers(guide({0.4, 0.05, 0.7}), 4000);
   const PowerGradients& gradients = *all.found.gradients;
   REQUIRE(gradients.image.value.size() == 6);
@@ -138,7 +138,7 @@ TEST_CASE("totals have the derivatives of all rings, and a picture's of each") {
   }
 }
 
-TEST_CASE("derivatives are of analog light") {
+TEST_CASE("derivatives: other methods than forward tracing are rejected") {
   CHECK_THROWS_AS(check(guide({0.4, 0.05, 0.7}), {RenderMethod::light}), InputError);
 }
 

@@ -7,7 +7,7 @@
 #include "bench/oracles/peierls_slab.h"
 #include "tests/grin/render_tests.h"
 
-// Light by optical path.
+// Light resolved by optical path.
 
 namespace flatspeckle::grin::tests::test_pulses {
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Mean optical path: linear splatting keeps it.
+/// Returns the mean optical path, which linear splatting keeps.
 double mean_path(const RenderScene& scene, const RenderedPicture& picture) {
   const double width = (scene.bins.last - scene.bins.first) / scene.bins.count;
   double sum = 0, first = 0;
@@ -29,14 +29,14 @@ double mean_path(const RenderScene& scene, const RenderedPicture& picture) {
   return first / sum;
 }
 
-/// Bins that hold anything.
+/// Returns the number of bins that are not empty.
 int lit_bins(const RenderedPicture& picture) {
   int lit = 0;
   for (const Complex& value : picture.bins.value) lit += value.real() > 1e-9;
   return lit;
 }
 
-/// Light that all arrives together, in the two bins whose centres are next to its path.
+/// Checks that all light arrives in the two bins whose centres are nearest to its optical path.
 void check_ballistic(RenderScene scene, double path, double tolerance) {
   scene.bins = {path - 0.5, path + 0.5, 100};
   for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {
@@ -69,8 +69,8 @@ AreaDetector spot(const Vec3& centre, const Vec3& up, double width) {
 
 }  // namespace
 
-TEST_CASE("a pulse through a Luneburg ball arrives at its focus after pi/2 + 1") {
-  // The wall is a hair behind the focus.
+TEST_CASE("pulse through a Luneburg ball: optical path pi/2 + 1 to the focus") {
+  // The wall is slightly behind the focus.
   const double gap = 1e-6;
   check_ballistic({.field = Luneburg({}),
                    .step = 0.02,
@@ -81,7 +81,7 @@ TEST_CASE("a pulse through a Luneburg ball arrives at its focus after pi/2 + 1")
                   pi / 2 + 1, 2e-5);
 }
 
-TEST_CASE("a pulse in a fisheye arrives at the image after pi n0 a / 2") {
+TEST_CASE("pulse in a fisheye: optical path pi n0 a / 2 to the image") {
   const double n0 = 1.6, a = 1.3;
   const Vec3 light(0, 0.4, -1.1);
   const Vec3 image = -a * a / light.squaredNorm() * light;
@@ -94,7 +94,7 @@ TEST_CASE("a pulse in a fisheye arrives at the image after pi n0 a / 2") {
                   pi * n0 * a / 2, 2e-5);
 }
 
-TEST_CASE("a pulse in a parabolic guide needs (n0^2 + beta^2) / (2 beta) a length") {
+TEST_CASE("pulse in a parabolic guide: optical path (n0^2 + beta^2) / (2 beta) per length") {
   const double n0 = 1.5, alpha = 0.7, angle = 0.3;
   const double beta = n0 * std::cos(angle), length = 3 * pi * beta / alpha;  // half periods
   check_ballistic({.field = ParabolicGuide({n0 - 1, alpha}),
@@ -106,7 +106,7 @@ TEST_CASE("a pulse in a parabolic guide needs (n0^2 + beta^2) / (2 beta) a lengt
                   (n0 * n0 + beta * beta) / (2 * beta) * length, 2e-5);
 }
 
-TEST_CASE("bins add up to the steady picture, path by path") {
+TEST_CASE("time bins: sums agree with the steady picture of the same paths") {
   RenderScene scene{.field = Luneburg({}),
                     .step = 0.1,
                     .max_length = 100,
@@ -117,7 +117,7 @@ TEST_CASE("bins add up to the steady picture, path by path") {
        {RenderMethod::path, RenderMethod::light, RenderMethod::bidirectional}) {
     scene.bins = {};
     const RenderJob steady = render_job(scene, {method}, 5);
-    scene.bins = {3, 9, 30};  // not all of it: the rest is in the outer bins
+    scene.bins = {3, 9, 30};  // the rest of the light is in the outer bins
     const RenderJob timed = render_job(scene, {method}, 5);
     // same batches, same paths
     if (steady.batches.samples_per_batch != timed.batches.samples_per_batch) continue;
@@ -132,7 +132,7 @@ TEST_CASE("bins add up to the steady picture, path by path") {
   }
 }
 
-TEST_CASE("late light of a slab decays as transport and, nearly, as diffusion has it") {
+TEST_CASE("late light of a slab: decay rate agrees with transport theory, nearly with diffusion") {
   const double length = 4, mu_a = 0.02;
   RenderScene scene{.field = Homogeneous{},
                     .step = 1,
@@ -147,7 +147,7 @@ TEST_CASE("late light of a slab decays as transport and, nearly, as diffusion ha
   const double diffusion = diffusion_decay_rate(length, 1, mu_a);
   const RenderJob job = render_job(scene, {RenderMethod::light}, 3);
   const RunState state = run_render(job, is_night ? 400000 : 150000);
-  // two windows; the outer bins hold what does not belong to them
+  // two windows of bins, apart from the outer ones, which hold the rest of the light
   const int from = 10, width = 5, later = 10;
   const Estimate rate = jackknife(state.sums, [&](double, std::span<const Complex> sums) {
     double early = 0, late = 0;

@@ -11,7 +11,7 @@
 #include "grin/rays/marching/ray_lanes.h"
 #include "grin/trace/trace_scene.h"
 
-// Rays side by side in lanes, against the same rays one by one.
+// Rays in SIMD lanes, against the same rays one by one.
 
 namespace flatspeckle::grin::test_ray_lanes {
 
@@ -46,7 +46,7 @@ SplineField grid() {
   return SplineField(where, values);
 }
 
-/// Calls check(name, field) for each kind that has lanes.
+/// Calls check(name, field) for each kind of field that has lanes.
 template <class Check>
 void for_each_field(const Check& check) {
   check("J_0", StandingWave(0.33, 0.02, 0, 7, 4));
@@ -102,7 +102,7 @@ void check_steps(Integrator by, const F& field) {
   std::vector<RayState> rays = bundle(field);
   RayLanes all = in_lanes(rays);
   make_steps(by, field, all, steps);
-  look_for_mismatch(field, all);
+  check_for_mismatch(field, all);
   double worst = 0, mismatch_apart = 0;
   for (int lane = 0; lane < lanes; ++lane) {
     RayState ray = rays[static_cast<std::size_t>(lane)];
@@ -118,7 +118,7 @@ void check_steps(Integrator by, const F& field) {
 
 }  // namespace
 
-TEST_CASE("functions without a branch are those of the library") {
+TEST_CASE("branch-free functions: agree with the standard library") {
   RandomStream random(1, 0, 0);
   double off_exp = 0, off_sine = 0, off_cosine = 0;
   for (int i = 0; i < 100'000; ++i) {
@@ -138,7 +138,7 @@ TEST_CASE("functions without a branch are those of the library") {
   CHECK(std::isnan(wide_exp(std::nan(""))));
 }
 
-TEST_CASE("gradients in lanes are those of one place after the other") {
+TEST_CASE("gradients in lanes: agree with single points") {
   for_each_field([](const char* name, const auto& field) {
     CAPTURE(std::string(name));
     const std::vector<RayState> rays = bundle(field);
@@ -152,7 +152,7 @@ TEST_CASE("gradients in lanes are those of one place after the other") {
   });
 }
 
-TEST_CASE("sound in lanes is no number where its table ends") {
+TEST_CASE("sound in lanes: NaN beyond its table") {
   const StandingWave field(0.33, 0.02, 0, 7, 0.3);
   const std::vector<RayState> rays = bundle(field);
   LaneGradients found;
@@ -161,7 +161,7 @@ TEST_CASE("sound in lanes is no number where its table ends") {
   for (int lane = 0; lane < lanes; ++lane) {
     const Vec3& x = rays[static_cast<std::size_t>(lane)].x;
     const double rho = std::hypot(x[0], x[1]);
-    if (std::abs(rho - 0.3) < 0.125 / 7) continue;  // the table's last cell is whole
+    if (std::abs(rho - 0.3) < 0.125 / 7) continue;  // the last cell of the table is complete
     CHECK(std::isnan(found.excess[lane]) == (rho > 0.3));
     CHECK(std::isnan(found.gradient.x[lane]) == (rho > 0.3));
     beyond += rho > 0.3;
@@ -170,7 +170,7 @@ TEST_CASE("sound in lanes is no number where its table ends") {
   CHECK(beyond < lanes - 2);
 }
 
-TEST_CASE("steps in lanes are those of one ray after the other") {
+TEST_CASE("steps in lanes: agree with single rays") {
   for_each_field([](const char* name, const auto& field) {
     CAPTURE(std::string(name));
     check_steps(Leapfrog(), field);
@@ -179,7 +179,7 @@ TEST_CASE("steps in lanes are those of one ray after the other") {
   });
 }
 
-TEST_CASE("what becomes of a ray depends neither on its lane nor on its neighbours") {
+TEST_CASE("steps in lanes: independent of the lane and of other rays, bit for bit") {
   for_each_field([](const char* name, const auto& field) {
     CAPTURE(std::string(name));
     std::vector<RayState> rays = bundle(field), turned = rays;
@@ -198,7 +198,7 @@ TEST_CASE("what becomes of a ray depends neither on its lane nor on its neighbou
 
 namespace {
 
-/// Rays that end on a sphere, on a plane and at their full length.
+/// Returns rays that end on a sphere, on a plane and at their full length.
 TraceValues rays_through_sound(const char* integrator) {
   TraceValues values;
   values.field.field = {"ultrasound"};
@@ -217,7 +217,7 @@ TraceValues rays_through_sound(const char* integrator) {
   return values;
 }
 
-/// Of which most leave the table of the wave, which ends at 1000 in k rho.
+/// Returns rays of which most leave the table of the wave, which ends at k rho = 1000.
 TraceValues rays_past_the_table() {
   TraceValues values = rays_through_sound("leapfrog");
   auto& sound = values.field.of<UltrasoundValues>();
@@ -239,7 +239,7 @@ TraceValues rays_through_lens() {
   return values;
 }
 
-/// With a path to be kept they go one by one.
+/// Compares with rays that are traced one by one, because their paths are kept.
 void check_same_rays(TraceValues values, double limit) {
   const auto together = trace_rays(make_trace_scene(values));
   values.path_points = 2;
@@ -257,17 +257,17 @@ void check_same_rays(TraceValues values, double limit) {
 
 }  // namespace
 
-TEST_CASE("rays that are traced in lanes end where those do that go one by one") {
+TEST_CASE("traces in lanes: ends and statistics agree with single rays") {
   for (const char* integrator : {"leapfrog", "yoshida4", "sharma"})
     check_same_rays(rays_through_sound(integrator), 1e-12);
   check_same_rays(rays_past_the_table(), 1e-12);
   check_same_rays(rays_through_lens(), 1e-9);  // the rim is located to 1e-10
 }
 
-TEST_CASE("a transducer is the focused sound that it is") {
+TEST_CASE("one transducer: agrees with focused sound") {
   const Transducers one(0.33, {{0.02, 7, 0.4, {0.1, 0, 0.2}, Vec3::UnitZ(), 0.5}}, 8);
   const FocusedSound same(0.33, 0.02, 7, cap_directions(8, 0.5), {0.1, 0, 0.2}, 0.4);
-  // about its axis the spiral of directions may be turned
+  // on the axis only, as the spiral of directions may be rotated about it
   for (const double z : {-0.3, 0.0, 0.2, 1.0}) {
     const Vec3 x(0.1, 0, z);
     CHECK(std::abs(one.excess(x) - same.excess(x)) < 1e-15);
@@ -275,23 +275,23 @@ TEST_CASE("a transducer is the focused sound that it is") {
   }
 }
 
-TEST_CASE("transducers have the derivatives of their sum") {
+TEST_CASE("transducers: derivatives agree with differences") {
   const Transducers field = transducers();
   const Vec3 x(0.2, -0.1, 0.4);
   const IndexHessian at = field.hessian(x);
   constexpr double h = 1e-5;
   for (int i = 0; i < 3; ++i) {
     const Vec3 d = h * Vec3::Unit(i);
-    const double slope = (field.excess(x + d) - field.excess(x - d)) / (2 * h);
-    CHECK(std::abs(slope - at.gradient[i]) < 1e-9);
+    const double derivative = (field.excess(x + d) - field.excess(x - d)) / (2 * h);
+    CHECK(std::abs(derivative - at.gradient[i]) < 1e-9);
     const Vec3 bend = (field.gradient(x + d).gradient - field.gradient(x - d).gradient) / (2 * h);
     CHECK((bend - at.hessian.col(i)).norm() < 1e-8);
   }
 }
 
-/// A plane wave of a frequency keeps its own phase; the mean over phases of two is the background,
-/// and that of their product is 0 where their frequencies differ, not where they are the same.
-TEST_CASE("transducers meet light at all phases of their frequencies") {
+/// The mean over phases of two plane waves is the background. The mean of their product is 0 if
+/// their frequencies differ, but not if they are equal.
+TEST_CASE("transducers: means over phases agree with independent frequencies") {
   const auto product_at_origin = [](double second) {
     const Vec3 origin = Vec3::Zero(), along = Vec3::UnitX();
     const Transducers both(0, {{1, 7, 0, origin, along, 0}, {1, second, 0, origin, along, 0}}, 1);

@@ -40,7 +40,8 @@ Eigen::Array4d luneburg_errors(int steps) {
   return errors.abs();
 }
 
-/// Of the end's position and direction, by three components of v0, from ever finer differences.
+/// Checks the derivatives of the final position and ray vector by v0 against extrapolated
+/// differences.
 template <class Integrator, IndexField F>
 void check_tangent(const F& field, const RayState& start, double sigma, int steps) {
   RayState ray = start;
@@ -67,7 +68,8 @@ void check_tangent(const F& field, const RayState& start, double sigma, int step
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("Steps are of their order, with all that they accumulate", I, INTEGRATORS) {
+TEST_CASE_TEMPLATE("ray steps: all that they accumulate converges with their order", I,
+                   INTEGRATORS) {
   const auto coarse = luneburg_errors<I>(64), fine = luneburg_errors<I>(128);
   for (int i = 0; i < 4; ++i) {
     CAPTURE(i);
@@ -76,7 +78,8 @@ TEST_CASE_TEMPLATE("Steps are of their order, with all that they accumulate", I,
   }
 }
 
-TEST_CASE_TEMPLATE("The tangent is the exact derivative of the discrete ray", I, INTEGRATORS) {
+TEST_CASE_TEMPLATE("ray steps: the tangent agrees with the derivative of the discrete ray", I,
+                   INTEGRATORS) {
   // Steps so coarse that the discrete ray is far from the continuous one.
   check_tangent<I>(lens, start_ray(lens, inside, {0.8, 0.5, -0.3}), 1.1, 4);
   const Fisheye eye(FisheyeProfile{1, 1});
@@ -91,7 +94,7 @@ TEST_CASE_TEMPLATE("The tangent is the exact derivative of the discrete ray", I,
   check_tangent<I>(plain, start_ray(plain, inside, {0.3, -0.2, 1}), 1, 3);
 }
 
-TEST_CASE_TEMPLATE("A homogeneous medium has straight rays", I, INTEGRATORS) {
+TEST_CASE_TEMPLATE("ray steps: straight in a homogeneous medium", I, INTEGRATORS) {
   const Homogeneous plain{0.5};
   RayState ray = start_ray(plain, {1, 2, 3}, {0, 3, 4});
   I::step(plain, ray, 2);
@@ -101,7 +104,7 @@ TEST_CASE_TEMPLATE("A homogeneous medium has straight rays", I, INTEGRATORS) {
   CHECK(ray.optical_path == doctest::Approx(4.5));
 }
 
-TEST_CASE_TEMPLATE("Symplectic steps run backwards", I, Leapfrog, Yoshida4) {
+TEST_CASE_TEMPLATE("symplectic steps: reversible", I, Leapfrog, Yoshida4) {
   const RayState start = start_ray(lens, inside, {0.8, 0.5, -0.3});
   RayState ray = start;
   go<I>(lens, 1, 20, ray);
@@ -111,7 +114,7 @@ TEST_CASE_TEMPLATE("Symplectic steps run backwards", I, Leapfrog, Yoshida4) {
   CHECK(std::abs(ray.optical_path) < 1e-14);
 }
 
-TEST_CASE("A collimated beam meets at the far rim of a Luneburg lens, all in phase") {
+TEST_CASE("Luneburg lens: a collimated beam is focused on the far rim, in phase") {
   for (const double height : {0.0, 0.3, 0.9, 0.999}) {
     const Vec3 x(-std::sqrt(1 - height * height), height * 0.6, height * 0.8);
     RayState ray = start_ray(lens, x, Vec3::UnitX());
@@ -123,7 +126,7 @@ TEST_CASE("A collimated beam meets at the far rim of a Luneburg lens, all in pha
   }
 }
 
-TEST_CASE("A parabolic guide: sinusoids in sigma, and its invariants") {
+TEST_CASE("parabolic guide: rays agree with sinusoids in sigma and keep their invariants") {
   const double n0 = 1.5, alpha = 0.7;
   const ParabolicGuide guide(ParabolicProfile{n0 - 1, alpha});
   RayState ray = start_ray(guide, {0.4, -0.2, 0}, {0.2, 0.3, 1});
@@ -139,7 +142,7 @@ TEST_CASE("A parabolic guide: sinusoids in sigma, and its invariants") {
   CHECK(std::abs(last.index_mismatch) < 1e-10);
 }
 
-TEST_CASE("1000 periods of a guide at 40 steps each") {
+TEST_CASE("parabolic guide: errors stay bounded over 1000 periods of 40 steps") {
   const ParabolicGuide guide(ParabolicProfile{0.5, 1});
   const auto mismatch = []<class I>(const ParabolicGuide& field, I, int periods) {
     RayState ray = start_ray(field, {0.5, 0, 0}, {0.1, 0.3, 1});
@@ -158,7 +161,7 @@ TEST_CASE("1000 periods of a guide at 40 steps each") {
   CHECK(mismatch(guide, Yoshida4{}, 10000) < 2e-5);  // it does not grow
 }
 
-TEST_CASE("An index of 1 + 1e-6 guides as it should") {
+TEST_CASE("parabolic guide of index 1 + 1e-6: rays agree with the closed form") {
   // Period 2 pi beta / alpha = 2 pi 1e4; amplitude 0.3. The optical path beyond the length is 1e-7
   // of it.
   const ParabolicGuide guide(ParabolicProfile{1e-6, 1e-4});
@@ -173,7 +176,7 @@ TEST_CASE("An index of 1 + 1e-6 guides as it should") {
         doctest::Approx(z * (n0 * n0 + beta * beta) / (2 * beta)).epsilon(1e-14));
 }
 
-TEST_CASE_TEMPLATE("Layers: n sin of the angle to their normal stays", I, INTEGRATORS) {
+TEST_CASE_TEMPLATE("layers: n sin(angle to the normal) is constant", I, INTEGRATORS) {
   const TanhRamp ramp{0.5, 0.1, 0.3};
   RayState ray = start_ray(ramp, {0, 0, -2}, {1, 0.5, 2});
   const Vec3 first = ray_invariants(ramp, ray).transverse;

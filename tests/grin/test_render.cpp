@@ -13,17 +13,17 @@ const Camera camera{Vec3(0, 0.2, -0.7), Vec3::UnitZ(), Vec3::UnitY(), 1.0, {2, 2
 const AreaDetector detector{Vec3::UnitZ(), Vec3::UnitY(), 1, 1, {2, 1}, right_angle};
 const Fisheye fisheye({.centre_excess = 0.7, .radius = 2});
 
-bool is_sound(const Rendered& result) {
-  bool sound = result.counts.lost_values == 0;
+bool is_valid(const Rendered& result) {
+  bool valid = result.counts.lost_values == 0;
   for (std::size_t i = 0; i < result.picture.steady.value.size(); ++i)
-    sound = sound && std::isfinite(result.value(i)) && result.value(i) >= 0 &&
+    valid = valid && std::isfinite(result.value(i)) && result.value(i) >= 0 &&
             std::isfinite(result.error(i));
-  return sound;
+  return valid;
 }
 
 }  // namespace
 
-TEST_CASE("a render depends on seed and batches, not on threads") {
+TEST_CASE("render: depends on the seed, not on the number of threads") {
   for (const AnyIndexField& field : {AnyIndexField(fisheye), AnyIndexField(Homogeneous{0.2})}) {
     const RenderScene scene = scene_in(field, {unit_box(), fog(1, 0.1, 0.5)}, point, camera);
     const auto sums = [&](std::uint64_t seed, int threads) {
@@ -35,7 +35,7 @@ TEST_CASE("a render depends on seed and batches, not on threads") {
   }
 }
 
-TEST_CASE("the sum over bins of optical path is the steady picture") {
+TEST_CASE("render: sums over bins of optical path agree with the steady picture") {
   for (const AnyIndexField& field : {AnyIndexField(fisheye), AnyIndexField(Homogeneous{0.2})}) {
     RenderScene scene = scene_in(field, {unit_box(), fog(1, 0.1, 0.5)}, point, camera);
     const Rendered steady = rendered(scene, RenderMethod::bidirectional, 2000);
@@ -56,7 +56,7 @@ TEST_CASE("the sum over bins of optical path is the steady picture") {
   }
 }
 
-TEST_CASE("light and sensor exchanged read the same, where n differs between them") {
+TEST_CASE("render: reciprocal under exchange of light and sensor in a varying index") {
   // a disk and a square of the same area: a difference of 1e-3 at the most
   constexpr double radius = 0.15;
   const double side = radius * std::sqrt(std::numbers::pi);
@@ -67,13 +67,13 @@ TEST_CASE("light and sensor exchanged read the same, where n differs between the
     return AreaDetector{x, Vec3::UnitY(), side, side, {1, 1}, right_angle};
   };
   for (const RenderMethod method : unbiased_methods) {
-    // by day the one whose error is 2 %: the others need ten times the paths
+    // by day only the method whose error is 2 %: the others need ten times the paths
     if (!is_night && method != RenderMethod::bidirectional) continue;
     const double samples = is_night ? 1e4 : 4e3;
     const Rendered forth =
         rendered(scene_in(field, stage, FaceLight{a, radius, 1}, detector_at(b)), method, samples);
-    const Rendered back =
-        rendered(scene_in(field, stage, FaceLight{b, radius, 1}, detector_at(a)), method, samples, 2);
+    const Rendered back = rendered(scene_in(field, stage, FaceLight{b, radius, 1}, detector_at(a)),
+                                   method, samples, 2);
     CAPTURE(name(method));
     CAPTURE(forth.error() / forth.value());
     CHECK(std::abs(forth.value() - back.value()) <
@@ -81,7 +81,7 @@ TEST_CASE("light and sensor exchanged read the same, where n differs between the
   }
 }
 
-TEST_CASE("without absorption all of a light's power leaves through the boundary") {
+TEST_CASE("render without absorption: all power leaves through the boundary") {
   const Stage stage{unit_box(), fog(2, 0, 0.5)};
   for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {
     double power = 0, variance = 0;
@@ -100,7 +100,7 @@ TEST_CASE("without absorption all of a light's power leaves through the boundary
   }
 }
 
-TEST_CASE("nothing that is not a number comes from extreme scenes") {
+TEST_CASE("render of extreme scenes: values are finite and not negative") {
   struct Extreme {
     const char* name;
     RenderScene scene;
@@ -130,12 +130,12 @@ TEST_CASE("nothing that is not a number comes from extreme scenes") {
     CAPTURE(extreme.name);
     for (const RenderMethod method : unbiased_methods) {
       CAPTURE(name(method));
-      CHECK(is_sound(rendered(extreme.scene, method, is_night ? 300 : 100)));
+      CHECK(is_valid(rendered(extreme.scene, method, is_night ? 300 : 100)));
     }
   }
 }
 
-TEST_CASE("what a plan leaves out changes no bit of a picture") {
+TEST_CASE("render plans: simplifications do not change pictures") {
   const RenderScene least = scene_in(Homogeneous{0.2}, {unit_box(), fog(1, 0, 0.5)}, point, camera);
   RenderScene more = least;
   // a body that light hardly ever meets
@@ -150,7 +150,7 @@ TEST_CASE("what a plan leaves out changes no bit of a picture") {
     CHECK(a.value(pixel) == doctest::Approx(b.value(pixel)).epsilon(1e-12));
 }
 
-TEST_CASE("neither the pilot nor a batch takes long where paths are") {
+TEST_CASE("render of long paths: short pilot run, batches of one sample") {
   const RenderScene scene =
       scene_in(Homogeneous{}, {unit_box(), fog(5000, 0, 0.9)}, point, whole_face());
   const double start = thread_cpu_seconds();
@@ -159,13 +159,13 @@ TEST_CASE("neither the pilot nor a batch takes long where paths are") {
   CHECK(job.batches.samples_per_batch == 1);
 }
 
-TEST_CASE("bad requests are refused") {
+TEST_CASE("render: bad requests are rejected") {
   const RenderScene scene = scene_in(fisheye, {unit_box(), {}}, point, camera);
   const RenderScene dense = scene_in(Homogeneous{}, {unit_box(), fog(1e7, 0, 0.9)}, point, camera);
   CHECK_THROWS_AS(render_job(dense, {}, 1), InputError);
   const RenderRequest short_paths{.method = RenderMethod::light, .max_scatterings = 20};
   CHECK_NOTHROW(render_job(dense, short_paths, 1));
-  // so many tentative collisions beside a small grid that no flight would end
+  // no flight would end, for so many tentative collisions around a small grid
   RenderScene speck = dense;
   const FieldGrid small{Vec3::Zero(), Vec3::Constant(1e-3), {2, 2, 2}};
   speck.stage.medium.density = std::make_shared<DensityGrid>(small, std::vector(8, 1.0));

@@ -10,7 +10,8 @@ namespace {
 const Light point = PointLight{Vec3(0.3, -0.2, 0.5)};
 const Camera camera{Vec3(0, 0.2, -0.7), Vec3::UnitZ(), Vec3::UnitY(), 1.0, {2, 2}};
 
-/// Scenes that no single one of the estimators finds easy. By day those where few paths suffice.
+/// Returns scenes that are difficult for each of the estimators; by day those where few paths
+/// suffice.
 std::vector<NamedRender> scenes() {
   const Stage foggy{unit_box(), fog(1.5, 0.1, 0.6)};
   std::vector<NamedRender> all{
@@ -43,7 +44,7 @@ std::vector<NamedRender> scenes() {
 
 }  // namespace
 
-TEST_CASE("path tracing, light tracing and bidirectional agree") {
+TEST_CASE("path tracing, light tracing and bidirectional tracing agree") {
   for (const NamedRender& named : scenes()) {
     CAPTURE(named.name);
     const double samples = is_night && named.name.starts_with("face") ? 5e4 : agreement_samples;
@@ -53,7 +54,7 @@ TEST_CASE("path tracing, light tracing and bidirectional agree") {
   }
 }
 
-TEST_CASE("light tracing and bidirectional agree under a beam") {
+TEST_CASE("light tracing and bidirectional tracing agree under a beam") {
   for (const NamedRender& named : beam_scenes()) {
     CAPTURE(named.name);
     check_agreement(named.scene, bidirectional_mean(named.scene), RenderMethod::light,
@@ -61,9 +62,9 @@ TEST_CASE("light tracing and bidirectional agree under a beam") {
   }
 }
 
-// Path tracing joins to where a beam scatters by 1/r^2 alone: rare paths carry much, so that it
-// needs many.
-TEST_CASE("nightly: path tracing and bidirectional agree under a beam") {
+// Path tracing connects to the collisions of a beam by 1/r^2 alone: rare paths carry much of the
+// light, so that it needs many paths.
+TEST_CASE("nightly: path tracing and bidirectional tracing agree under a beam") {
   for (const NamedRender& named : beam_scenes()) {
     CAPTURE(named.name);
     check_agreement(named.scene, bidirectional_mean(named.scene), RenderMethod::path,

@@ -4,31 +4,33 @@
 
 namespace flatspeckle::grin::tests::test_render_furnace {
 
-// The white furnace (conventions, C24), shortly; test_render_furnace_full.cpp is for errors of
-// 0.1 %.
+// The white furnace (conventions, C24) in short runs; nightly tests below have errors of 0.1 %.
 
 namespace {
 
-/// Rays through many blobs and a spline cost ten times as much.
+/// Returns fewer samples for blobs and a spline, whose rays are ten times as expensive.
 double affordable(const NamedRender& named, double samples) {
   return named.name == "blobs and spline" ? samples / 4 : samples;
 }
 
 const Vec3 furnace_camera(0.2, -0.1, -0.8);
 
-/// Paths for errors of about 1 % by day; light tracing finds faces rarely and cameras hardly ever.
-double some(RenderMethod method) {
+/// Returns the paths for errors of about 1 % by day; light tracing hits faces rarely and cameras
+/// hardly ever.
+double sample_count(RenderMethod method) {
   return is_night || method == RenderMethod::light ? 10000 : 2500;
 }
 
 }  // namespace
 
-TEST_CASE("light stays uniform without scattering, in every field and by every estimator") {
+TEST_CASE(
+    "white furnace without scattering: uniform radiance, in every field and by every estimator") {
   for (const NamedRender& named : furnaces({})) {
     CAPTURE(named.name);
     for (const RenderMethod method : unbiased_methods) {
-      CHECK(check_furnace_face(named.scene, method, affordable(named, some(method))) < 0.05);
-      // what is near a pinhole is seen by light tracing but seldom, and then brightly
+      CHECK(check_furnace_face(named.scene, method, affordable(named, sample_count(method))) <
+            0.05);
+      // light tracing rarely samples collisions near a pinhole, and then with high weights
       if (method != RenderMethod::light) {
         // rays that are reflected many times are rare, and carry less than 1e-3
         CHECK(check_furnace_camera(named.scene, method, affordable(named, is_night ? 20000 : 4000),
@@ -38,28 +40,31 @@ TEST_CASE("light stays uniform without scattering, in every field and by every e
   }
 }
 
-TEST_CASE("light stays uniform where it scatters, in every field and by every estimator") {
+TEST_CASE(
+    "white furnace with scattering: uniform radiance, in every field and by every estimator") {
   for (const NamedRender& named : furnaces(fog(1, 0, 0.85))) {
     CAPTURE(named.name);
     for (const RenderMethod method : unbiased_methods) {
-      CHECK(check_furnace_face(named.scene, method, affordable(named, some(method))) < 0.06);
+      CHECK(check_furnace_face(named.scene, method, affordable(named, sample_count(method))) <
+            0.06);
       if (method != RenderMethod::light) {
-        CHECK(check_furnace_camera(named.scene, method, affordable(named, is_night ? 8000 : 4000)) < 0.06);
+        CHECK(check_furnace_camera(named.scene, method, affordable(named, is_night ? 8000 : 4000)) <
+              0.06);
       }
     }
   }
 }
 
-TEST_CASE("light stays uniform where bodies lie in each other, side by side, and touch") {
+TEST_CASE("white furnace with nested, adjacent and touching bodies: uniform radiance") {
   for (const ScatteringMedium& medium : {ScatteringMedium(), fog(1, 0, 0.85)})
     for (const NamedRender& named : furnaces_of_bodies(medium)) {
       CAPTURE(named.name);
       for (const RenderMethod method : unbiased_methods)
-        CHECK(check_furnace_face(named.scene, method, some(method)) < 0.1);
+        CHECK(check_furnace_face(named.scene, method, sample_count(method)) < 0.1);
     }
 }
 
-TEST_CASE("light is uniform for a camera inside a body, too") {
+TEST_CASE("white furnace with a camera in a body: uniform radiance") {
   const Vec3 inner(0.15, 0.05, 0.12), outer(-0.1, 0.2, -0.1);
   for (const NamedRender& named : furnaces_of_bodies(fog(1, 0, 0.85))) {
     CAPTURE(named.name);
@@ -70,13 +75,13 @@ TEST_CASE("light is uniform for a camera inside a body, too") {
   }
 }
 
-// The white furnace to an error of 0.1 %: about an hour of a processor.
+// The white furnace to an error of 0.1 %: about an hour of CPU time.
 
 namespace {
 
 constexpr double wanted = 1e-3;
 
-/// To an error of what is wanted; each run tells how many samples the next takes.
+/// Repeats a check until its error is the wanted one; each run determines the samples of the next.
 template <class Check>
 void check_to_error(const Check& check, double samples) {
   constexpr double margin = 1.2;
@@ -85,7 +90,7 @@ void check_to_error(const Check& check, double samples) {
     if (missing <= 1) return;
     samples *= margin * missing * missing;
   }
-  FAIL_CHECK("the error does not fall as the samples say");
+  FAIL_CHECK("the error does not fall with the number of samples");
 }
 
 void check_furnaces(const ScatteringMedium& medium) {
@@ -104,11 +109,11 @@ void check_furnaces(const ScatteringMedium& medium) {
 
 }  // namespace
 
-TEST_CASE("nightly: light stays uniform to 0.1 % without scattering") {
+TEST_CASE("nightly: white furnace without scattering: uniform radiance to 0.1 %") {
   check_furnaces({});
 }
 
-TEST_CASE("nightly: light stays uniform to 0.1 % where it scatters") {
+TEST_CASE("nightly: white furnace with scattering: uniform radiance to 0.1 %") {
   check_furnaces(fog(1, 0, 0.85));
 }
 

@@ -24,7 +24,7 @@ namespace flatspeckle::grin::test_scattering_medium {
 namespace {
 
 using std::numbers::pi;
-/// A file that is there as long as this is.
+/// A temporary file with the lifetime of the object.
 class TableFile {
  public:
   explicit TableFile(const std::string& text)
@@ -43,7 +43,7 @@ TablePhase table_phase(const std::string& text) {
   return TablePhase(AngleTable("phase_table", TableFile(text).path()));
 }
 
-/// Denser where that bends.
+/// Returns a table of Henyey-Greenstein, denser near the forward peak.
 std::string table_text(double g, int intervals) {
   std::ostringstream text;
   text.precision(17);
@@ -75,14 +75,14 @@ const SpacePhaseFunction phases[] = {
 const Vec3 axes[] = {Vec3::UnitZ(), -Vec3::UnitZ(), Vec3(0.6, 0, -0.8), Vec3(-2, 3, 1).normalized(),
                      Vec3(0.8, -0.6, 0)};
 
-/// Bins in the angle, finer towards 0 for forward phase functions.
+/// Returns an edge of the bins in the angle, finer towards 0 for forward phase functions.
 double angle_at(double t, double g) {
   return g > 0.9 ? 0.02 * (std::pow(pi / 0.02 + 1, t) - 1) : pi * t;
 }
 
 }  // namespace
 
-TEST_CASE("phase functions integrate to 1, and their mean cosine is g") {
+TEST_CASE("phase functions: normalised, mean cosines agree with g") {
   for (const SpacePhaseFunction& phase : phases) {
     const auto moment = [&](int power) {
       return flatspeckle::tests::integral(
@@ -97,7 +97,7 @@ TEST_CASE("phase functions integrate to 1, and their mean cosine is g") {
   }
 }
 
-TEST_CASE("scattered directions follow the phase function in angle and azimuth") {
+TEST_CASE("scattered directions: angles and azimuths agree with the phase function") {
   std::uint64_t seed = 0;
   const int polar = 25, azimuths = 8, samples = flatspeckle::tests::is_night ? 200000 : 50000;
   for (const SpacePhaseFunction& phase : phases) {
@@ -126,7 +126,7 @@ TEST_CASE("scattered directions follow the phase function in angle and azimuth")
   }
 }
 
-TEST_CASE("two terms of which one has no share, or that are equal, are henyey_greenstein") {
+TEST_CASE("two-term phase function: equal terms and weights 0 and 1 agree with henyey_greenstein") {
   const HgPhase hg{0.6};
   for (const TwoTermPhase& phase : {TwoTermPhase{{0.6}, {-0.3}, 1}, TwoTermPhase{{0.2}, {0.6}, 0},
                                     TwoTermPhase{{0.6}, {0.6}, 0.4}})
@@ -134,7 +134,7 @@ TEST_CASE("two terms of which one has no share, or that are equal, are henyey_gr
       CHECK(phase.density(cosine) == doctest::Approx(hg.density(cosine)).epsilon(1e-14));
 }
 
-TEST_CASE("a table of henyey_greenstein is that, in any unit") {
+TEST_CASE("table of henyey_greenstein: agrees with it, in any unit") {
   const HgPhase hg{0.8};
   const TablePhase table = table_phase(table_text(hg.g, 2000));
   CHECK(table.mean_cosine() == doctest::Approx(hg.g).epsilon(1e-5));
@@ -142,7 +142,7 @@ TEST_CASE("a table of henyey_greenstein is that, in any unit") {
     CHECK(table.density(cosine) == doctest::Approx(hg.density(cosine)).epsilon(1e-5));
 }
 
-TEST_CASE("tables that are none are refused by their key") {
+TEST_CASE("phase tables: invalid ones are rejected by their key") {
   const auto refusal = [](const std::string& text) {
     const TableFile file(text);
     Keys keys;
@@ -166,7 +166,7 @@ TEST_CASE("tables that are none are refused by their key") {
   }
 }
 
-TEST_CASE("directions stay of length 1 over long walks, also about the poles of the frame") {
+TEST_CASE("scattered directions: length 1 over long walks, also near the poles of the frame") {
   const SpacePhaseFunction phase{HgPhase{0.999}};
   for (Vec3 d : axes) {
     RandomStream random(1, 82, 0);
@@ -175,7 +175,7 @@ TEST_CASE("directions stay of length 1 over long walks, also about the poles of 
   }
 }
 
-TEST_CASE("a density grid is trilinear, 0 outside, and refuses what is none") {
+TEST_CASE("density grid: trilinear, 0 outside, invalid grids are rejected") {
   const FieldGrid grid{Vec3(1, 2, 3), Vec3(0.5, 0.25, 1), {3, 4, 2}};
   const auto affine = [](const Vec3& x) { return 1 + 0.3 * x[0] + 2 * x[1] * x[2]; };
   std::vector<double> values;
@@ -200,7 +200,7 @@ TEST_CASE("a density grid is trilinear, 0 outside, and refuses what is none") {
                   InputError);
 }
 
-TEST_CASE("a density grid from a file; errors name the file") {
+TEST_CASE("density grid from a file: agrees with the grid, errors name the file") {
   const auto path = std::filesystem::temp_directory_path() /
                     ("flatspeckle-density-" + std::to_string(::getpid()) + ".h5");
   const FieldGrid grid{Vec3(-1, 2, 0.5), Vec3(0.3, 0.2, 0.1), {2, 3, 4}};
@@ -230,7 +230,7 @@ TEST_CASE("a density grid from a file; errors name the file") {
   std::filesystem::remove(path);
 }
 
-TEST_CASE("stages refuse what cannot be") {
+TEST_CASE("stages: invalid ones are rejected") {
   const auto refuses = [](Stage stage, const std::string& word) {
     try {
       check(stage);

@@ -8,8 +8,7 @@
 #include "grin/render/values/render_values.h"
 #include "grin/trace/trace_scene.h"
 
-// Scenes made of plain structs, without a command line: what they come to, and what is refused by
-// the names of keys.
+// Scenes from plain structs, without a command line: their contents, and errors that name keys.
 
 namespace flatspeckle::grin::test_scene_values {
 
@@ -17,7 +16,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// What make() is refused with; "" where it is not.
+/// Returns the message with which make() is rejected, "" if it is not.
 template <class Make>
 std::string refusal(const Make& make) {
   try {
@@ -43,7 +42,7 @@ SceneField field_of(const IndexFieldValues& values) {
   });
 }
 
-/// Of these kinds, each by its word.
+/// Returns values of these kinds of fields, each by its word.
 template <class... Kind>
 IndexFieldValues fields(const Kind&... kind) {
   IndexFieldValues values;
@@ -52,7 +51,7 @@ IndexFieldValues fields(const Kind&... kind) {
   return values;
 }
 
-/// A file that is there as long as this.
+/// A temporary file with the lifetime of the object.
 struct TemporaryFile {
   explicit TemporaryFile(const std::string& text)
       : path((std::filesystem::temp_directory_path() /
@@ -75,7 +74,7 @@ void refuse_trace(const TraceValues& values, const std::string& words) {
       values, [](const TraceValues& all) { make_trace_scene(all); }, words);
 }
 
-/// A beam through fog in a box, onto an area.
+/// Returns a beam through fog in a box onto an area detector.
 RenderValues render_values() {
   RenderValues values;
   values.stage.stage_box = {-1, -1, 0, 1, 1, 4};
@@ -94,7 +93,7 @@ void refuse_render(const RenderValues& values, const std::string& words) {
 
 }  // namespace
 
-TEST_CASE("each kind of field from values, and what its use must know") {
+TEST_CASE("fields from values: index, scale and symmetry of each kind") {
   const Vec3 x(0.1, 0.2, 0.3);
   const SceneField glass = field_of(fields(HomogeneousValues{.index = 1.5}));
   CHECK(index_at(glass, x) == 1.5);
@@ -127,7 +126,7 @@ TEST_CASE("each kind of field from values, and what its use must know") {
   CHECK(cloud.scale == 0.25);
 }
 
-TEST_CASE("fields add up to one medium, or to a background") {
+TEST_CASE("fields from values: sums with one medium or a background") {
   const TanhValues step{.index_low = 1.1, .index_high = 1.4};
   const LinearValues ramp{.slope = {0, 0, 0.1}};
   const SceneField both = field_of(fields(HomogeneousValues{.index = 1.3}, step));
@@ -141,15 +140,16 @@ TEST_CASE("fields add up to one medium, or to a background") {
   CHECK(ball.symmetry == Symmetry::none);
 }
 
-TEST_CASE("fields that cannot be are refused by their keys") {
+TEST_CASE("fields from values: invalid ones are rejected by their keys") {
   const auto refused = [](const IndexFieldValues& values, const std::string& words) {
     check_refused(values, field_of, words);
   };
   IndexFieldValues glass;
   glass.field = {"glass"};
   refused(glass, "field = glass: must be one of homogeneous luneburg");
-  refused(fields(LuneburgValues{}, FisheyeValues{}), "field = luneburg fisheye: only one medium");
-  refused(fields(LinearValues{}, LinearValues{}), "field = linear: must not be there twice");
+  refused(fields(LuneburgValues{}, FisheyeValues{}),
+          "field = luneburg fisheye: must have at most one medium");
+  refused(fields(LinearValues{}, LinearValues{}), "field = linear: must not be given twice");
   refused(fields(HomogeneousValues{.index = 0}), "index = 0: must be positive");
   refused(fields(LuneburgValues{.radius = -1}), "radius = -1: must be positive");
   refused(fields(LuneburgValues{.centre = {0, 1}}), "centre = 0 1: must be three numbers");
@@ -166,7 +166,7 @@ TEST_CASE("fields that cannot be are refused by their keys") {
   refused(sum, "index = 1.3: is a key of");
 }
 
-TEST_CASE("rays of values: the focus of a Luneburg ball") {
+TEST_CASE("rays from values: agree with the focus of a Luneburg ball") {
   TraceValues values = trace_values();
   values.field = fields(LuneburgValues{});
   values.starts.origin = {0, 0, -1};
@@ -183,7 +183,7 @@ TEST_CASE("rays of values: the focus of a Luneburg ball") {
   CHECK(describe(scene.steps) == "sharma, tolerance 1e-10, steps up to 0.3125");
 }
 
-TEST_CASE("every light of rays, and every integrator") {
+TEST_CASE("rays from values: every light with every integrator") {
   for (const char* light : {"line", "square", "disk", "beam", "fan", "cone"})
     for (const char* integrator : {"sharma", "yoshida4", "leapfrog"}) {
       TraceValues values = trace_values();
@@ -204,7 +204,7 @@ TEST_CASE("every light of rays, and every integrator") {
     }
 }
 
-TEST_CASE("curves of values: both ways round in a fisheye") {
+TEST_CASE("curves from values: both arcs in a fisheye") {
   TraceValues values = trace_values();
   values.stops.max_length = 8;
   values.field = fields(FisheyeValues{});
@@ -218,7 +218,7 @@ TEST_CASE("curves of values: both ways round in a fisheye") {
   CHECK((rays[1].end.x - Vec3(-0.2, 0.7, 0.9)).norm() < 1e-6);
 }
 
-TEST_CASE("rays that cannot be are refused by their keys") {
+TEST_CASE("rays from values: invalid ones are rejected by their keys") {
   TraceValues values;
   refuse_trace(values, "max_length is not given");
   values = trace_values();
@@ -233,7 +233,7 @@ TEST_CASE("rays that cannot be are refused by their keys") {
   refuse_trace(values, "half_angle = 4: must be in (0, 3.14159");
   values = trace_values();
   values.starts.across = {0, 0, 1};
-  refuse_trace(values, "across = 0 0 1: must not be along the direction");
+  refuse_trace(values, "across = 0 0 1: must not be parallel to the direction");
   values = trace_values();
   values.stops.stop_sphere = {0, 0, 1, -1};
   refuse_trace(values, "stop_sphere, radius = -1: must be positive");
@@ -257,7 +257,7 @@ TEST_CASE("rays that cannot be are refused by their keys") {
   refuse_trace(values, "direction of ray 0");
 }
 
-TEST_CASE("a picture of values is the picture of the scene by hand") {
+TEST_CASE("pictures from values: agree with the scene by hand") {
   const RenderScene made = make_render_scene(render_values());
   const Stage stage{.boundary = Box{{-1, -1, 0}, {1, 1, 4}}, .medium = {.mu_s = 0.4, .mu_a = 0.1}};
   const AreaDetector area{{0, 0, 4}, {0, 1, 0}, 1, 0.8, {4, 3}, pi / 2};
@@ -276,7 +276,7 @@ TEST_CASE("a picture of values is the picture of the scene by hand") {
   CHECK(sums[0] == sums[1]);
 }
 
-TEST_CASE("stages of values: bodies, silence and steps") {
+TEST_CASE("stages from values: bodies, a silent wave and steps") {
   RenderValues values = render_values();
   values.field = fields(LuneburgValues{.radius = 0.5, .centre = {0, 0, 2}});
   values.stage.index_around = 1.2;
@@ -305,7 +305,7 @@ TEST_CASE("stages of values: bodies, silence and steps") {
   CHECK(std::get<Homogeneous>(silent.field).n_excess == doctest::Approx(0.33));
 }
 
-TEST_CASE("pictures that cannot be are refused by their keys") {
+TEST_CASE("pictures from values: invalid ones are rejected by their keys") {
   const auto refused = [](const auto& change, const std::string& words) {
     RenderValues values = render_values();
     change(values);
@@ -344,8 +344,8 @@ TEST_CASE("pictures that cannot be are refused by their keys") {
       },
       "too dense");
   refused([](auto& v) { v.max_length = 9; }, "max_length = 9: is a key of a field that bends rays");
-  refused([](auto& v) { v.random_phase = true; }, "random_phase: needs the field ultrasound");
-  refused([](auto& v) { v.path_bins = {2, 1, 5}; }, "path_bins = 2 1 5: must go from a length");
+  refused([](auto& v) { v.random_phase = true; }, "random_phase: requires field = ultrasound");
+  refused([](auto& v) { v.path_bins = {2, 1, 5}; }, "path_bins = 2 1 5: must have a first length");
   refused([](auto& v) { v.path_bins = {1, 2, 1.5}; }, "path_bins = 1 2 1.5: must have a whole");
   refused(
       [](auto& v) {
@@ -362,7 +362,7 @@ TEST_CASE("pictures that cannot be are refused by their keys") {
   refused([](auto& v) { v.lights.environment = 0; }, "environment = 0: must be positive");
 }
 
-TEST_CASE("sensors that cannot be are refused by their keys") {
+TEST_CASE("sensors from values: invalid ones are rejected by their keys") {
   const auto refused = [](const auto& change, const std::string& words) {
     RenderValues values = render_values();
     change(values.sensors);
@@ -399,13 +399,13 @@ TEST_CASE("sensors that cannot be are refused by their keys") {
         faces(s).acceptance = {1, 1, 1};
       },
       "acceptance: must have one value for all sensors, or one for each of the 2");
-  refused([&](auto& s) { faces(s), s.sensor_name = {"a"}; }, "must be one for each sensor");
-  refused([&](auto& s) { faces(s), s.sensor_name = {"a", "a"}; }, "must not be there twice");
-  refused([&](auto& s) { faces(s), s.sensor_name = {"a", "b/c"}; }, "sensor_name = b/c: must be");
+  refused([&](auto& s) { faces(s), s.sensor_name = {"a"}; }, "must have one name for each sensor");
+  refused([&](auto& s) { faces(s), s.sensor_name = {"a", "a"}; }, "must not be repeated");
+  refused([&](auto& s) { faces(s), s.sensor_name = {"a", "b/c"}; }, "sensor_name = b/c: must consist");
   refused([](auto& s) { s.sensor_name = {"a"}; }, "sensor_name = a: is a key of several sensors");
 }
 
-TEST_CASE("several sensors share values of keys, or have their own") {
+TEST_CASE("sensors from values: shared and separate values of keys") {
   RenderValues values = render_values();
   values.sensors = {.sensor = {AreaValues::word, CameraValues::word, AreaValues::word},
                     .sensor_name = {"back", "eye", "front"},
@@ -427,7 +427,7 @@ TEST_CASE("several sensors share values of keys, or have their own") {
   CHECK(sensor_name(scene, 1) == "eye");
 }
 
-TEST_CASE("methods of pictures") {
+TEST_CASE("methods from values: invalid ones are rejected by their keys") {
   CHECK(make_render_request({.method = "light"}).method == RenderMethod::light);
   const auto refused = [](const RenderRequestValues& values, const std::string& words) {
     check_refused(

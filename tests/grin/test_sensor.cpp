@@ -15,7 +15,7 @@ using std::numbers::pi;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-std::string complaint(const Stage& stage, const Sensor& sensor) {
+std::string error_message(const Stage& stage, const Sensor& sensor) {
   try {
     const SensorEnd end(sensor, stage);
   } catch (const InputError& error) {
@@ -26,7 +26,7 @@ std::string complaint(const Stage& stage, const Sensor& sensor) {
 
 }  // namespace
 
-TEST_CASE("sensors sample directions by their density") {
+TEST_CASE("sensors: sampled directions agree with their density") {
   const auto check = [](const Surface& boundary, const Sensor& sensor, const Vec3& axis,
                         std::uint64_t seed) {
     CAPTURE(seed);
@@ -51,7 +51,9 @@ TEST_CASE("sensors sample directions by their density") {
   check(test_sphere, polar(pi), polar(pi).axis, 12);
 }
 
-TEST_CASE("a directional detector up to the horizon samples by its density what it sees") {
+TEST_CASE(
+    "directional detector up to the horizon: detected fraction of samples agrees with the "
+    "density") {
   const SensorEnd end(directional(pi / 2), empty_stage(test_sphere));
   const Vec3 inward = -Vec3(0.2, -0.4, 1).normalized();
   const EndPosition at{{test_sphere.centre - test_sphere.radius * inward}, inward};
@@ -66,7 +68,7 @@ TEST_CASE("a directional detector up to the horizon samples by its density what 
   CHECK(integral / 1e5 == doctest::Approx(pi / 4).epsilon(0.02));
 }
 
-TEST_CASE("sensors sample points of the boundary by their density") {
+TEST_CASE("sensors: sampled positions agree with their density") {
   const auto check = [](const Surface& boundary, const Sensor& sensor, std::uint64_t seed) {
     CAPTURE(seed);
     const SensorEnd end(sensor, empty_stage(boundary));
@@ -95,7 +97,7 @@ TEST_CASE("sensors sample points of the boundary by their density") {
   lens.forward = -Vec3::UnitZ();
   check(test_box, lens, 1);
   lens = lens_on_sphere();
-  lens.field_of_view = 2;  // so that light along the normals is seen all over it
+  lens.field_of_view = 2;  // so that light along the normals is detected on all of it
   check(test_sphere, lens, 2);
   check(test_box, area_on_box(), 3);
   check(test_sphere, area_on_sphere(), 4);
@@ -103,7 +105,7 @@ TEST_CASE("sensors sample points of the boundary by their density") {
   check(test_sphere, radial_on_sphere(), 6);
 }
 
-TEST_CASE("a sensor that is hit is the sensor that is sampled") {
+TEST_CASE("sensors: hits agree with samples") {
   const auto check = [](const Surface& boundary, const Sensor& sensor, std::uint64_t seed) {
     CAPTURE(seed);
     check_hits(SensorEnd(sensor, empty_stage(boundary)), TiltedSpace{}, seed);
@@ -121,7 +123,8 @@ TEST_CASE("a sensor that is hit is the sensor that is sampled") {
   check(test_sphere, polar(1.4), 11);
 }
 
-TEST_CASE("rays to a point in the plane of focus are one pixel's, from anywhere on the lens") {
+TEST_CASE(
+    "lens camera: rays to a point in the plane of focus share a pixel, from all of the lens") {
   const Camera camera = lens_on_sphere();
   const SensorEnd end(camera, empty_stage(test_sphere));
   const Vec3 forward = camera.forward.normalized();
@@ -139,7 +142,7 @@ TEST_CASE("rays to a point in the plane of focus are one pixel's, from anywhere 
   }
 }
 
-TEST_CASE("row 0 is on top and columns run along forward x up") {
+TEST_CASE("pixels: row 0 is on top, columns run along forward x up") {
   const SensorEnd camera(Camera{Vec3(0, 0, 1), Vec3(0, 0, 1), Vec3(0, 1, 0), 1.5, {3, 3}},
                          empty_stage(test_box));
   const EndPosition eye{{Vec3(0, 0, 1)}, Vec3::Zero(), 1, 1, 0, -1, true};
@@ -169,7 +172,7 @@ TEST_CASE("row 0 is on top and columns run along forward x up") {
   CHECK(pixel_hit(by_direction, Vec3(1, 0, 0.5), Vec3(0, 0, -1)) == -1);
 }
 
-TEST_CASE("even strata give every pixel the same number of paths") {
+TEST_CASE("pixels: even strata give each the same number of paths") {
   const auto counts = [](const Surface& boundary, const Sensor& sensor) {
     const SensorEnd end(sensor, empty_stage(boundary));
     const int pixels = end.pixels().count(), samples = 7 * pixels;
@@ -187,7 +190,7 @@ TEST_CASE("even strata give every pixel the same number of paths") {
   for (const int count : counts(test_sphere, area_on_sphere())) CHECK(count == 7);
 }
 
-TEST_CASE("where the body reaches through the boundary, hits and positions are in the body") {
+TEST_CASE("sensors: positions where a body crosses the boundary are in the body") {
   Stage stage = empty_stage(test_box);
   stage.bodies.push_back({Box{Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 4)}});
   const SensorEnd end(directional(0.5), stage);
@@ -203,13 +206,13 @@ TEST_CASE("where the body reaches through the boundary, hits and positions are i
   CHECK(inside > 10);
 }
 
-TEST_CASE("sensors that cannot be are refused by the keys of the scene") {
+TEST_CASE("sensors: invalid ones are rejected by the keys of the scene") {
   const double nan = std::nan("");
   const Stage box = empty_stage(test_box), sphere = empty_stage(test_sphere);
   Stage filled = box;
   filled.bodies.push_back({Sphere{Vec3(0.4, -0.6, 1.4), 0.2}});
   const auto refused = [](const Stage& stage, const Sensor& sensor, const std::string& words) {
-    const std::string line = complaint(stage, sensor);
+    const std::string line = error_message(stage, sensor);
     CAPTURE(line);
     CAPTURE(words);
     CHECK(line.find(words) != std::string::npos);
@@ -219,12 +222,12 @@ TEST_CASE("sensors that cannot be are refused by the keys of the scene") {
     sensor.*member = value;
     return sensor;
   };
-  CHECK(complaint(box, pinhole()).empty());
-  CHECK(complaint(box, lens_on_box()).empty());
-  CHECK(complaint(box, area_on_box()).empty());
-  CHECK(complaint(filled, pinhole()).empty());
+  CHECK(error_message(box, pinhole()).empty());
+  CHECK(error_message(box, lens_on_box()).empty());
+  CHECK(error_message(box, area_on_box()).empty());
+  CHECK(error_message(filled, pinhole()).empty());
   refused(box, with(pinhole(), &Camera::x, Vec3(0, 0, 0.4)), "must be inside the stage");
-  CHECK(complaint(box, with(pinhole(), &Camera::x, Vec3(0, 0, 0.5))).empty());
+  CHECK(error_message(box, with(pinhole(), &Camera::x, Vec3(0, 0, 0.5))).empty());
   refused(box, with(pinhole(), &Camera::x, Vec3(0, nan, 1)), "sensor_at");
   refused(box, with(pinhole(), &Camera::forward, Vec3(0, 0, 0)), "sensor_direction = 0 0 0: ");
   refused(box, with(pinhole(), &Camera::up, Vec3(0, 0, 0)), "sensor_up");
@@ -242,7 +245,7 @@ TEST_CASE("sensors that cannot be are refused by the keys of the scene") {
     refused(box, with(area_on_box(), &AreaDetector::width, width), "sensor_size");
   refused(sphere, with(area_on_sphere(), &AreaDetector::width, 3.3), "sensor_size");
   refused(empty_stage(Plane{Vec3::Zero(), Vec3::UnitZ()}), directional(1),
-          "needs a sphere or a box");
+          "requires a sphere or a box");
 }
 
 }  // namespace flatspeckle::grin::test_sensor

@@ -7,13 +7,13 @@
 #include "grin/render/pictures/render_datasets.h"
 #include "tests/grin/slab_renders.h"
 
-// Reflectance and transmittance of a slab in one run, and media that are described in two ways.
+// Reflectance and transmittance of a slab in one run, and media with two descriptions.
 
 namespace flatspeckle::grin::tests::test_several_sensors {
 
 namespace {
 
-/// Both faces, and all that leaves backwards by direction.
+/// Returns a slab with detectors on both faces and of backward light by direction.
 RenderScene both_faces(const ScatteringMedium& medium) {
   RenderScene scene = slab(medium, 2, 100, Face::reflected);
   scene.sensors.push_back(slab(medium, 2, 100, Face::transmitted).sensors[0]);
@@ -30,7 +30,7 @@ ScatteringMedium medium_of(const SpacePhaseFunction& phase, double albedo) {
 void check_agree(double a, double error_a, double b, double error_b) {
   CAPTURE(a);
   CAPTURE(b);
-  CHECK(std::abs(a - b) <= 4 * std::hypot(error_a, error_b));  // both dark, or by chance
+  CHECK(std::abs(a - b) <= 4 * std::hypot(error_a, error_b));  // both may be dark
 }
 
 RenderResult result_of(const RenderScene& scene, RenderMethod method, double samples) {
@@ -38,7 +38,7 @@ RenderResult result_of(const RenderScene& scene, RenderMethod method, double sam
   return render_result(scene, job, run_render(job, samples).sums);
 }
 
-/// R and T of a slab.
+/// Returns the reflectance and the transmittance of a slab.
 std::pair<Estimate, Estimate> shares(const SpacePhaseFunction& phase, std::uint64_t seed) {
   const RenderScene scene = both_faces(medium_of(phase, 0.95));
   const RenderJob job = render_job(scene, {RenderMethod::light}, seed);
@@ -58,7 +58,7 @@ void check_same(const SpacePhaseFunction& a, const SpacePhaseFunction& b) {
 
 }  // namespace
 
-TEST_CASE("several sensors of one run see what each sees alone") {
+TEST_CASE("several sensors of one run: agree with each sensor alone") {
   const RenderScene scene = both_faces(medium_of({HgPhase{0.5}}, 0.9));
   const double samples = is_night ? 50000 : 20000;
   for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {
@@ -77,7 +77,7 @@ TEST_CASE("several sensors of one run see what each sees alone") {
   }
 }
 
-TEST_CASE("what a lossless slab reflects and transmits is all") {
+TEST_CASE("lossless slab: reflectance and transmittance add up to 1") {
   for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {
     const RenderScene scene = both_faces(medium_of({TwoTermPhase{{0.9}, {-0.3}, 0.8}}, 1));
     const RenderJob job = render_job(scene, {method}, 3);
@@ -91,7 +91,7 @@ TEST_CASE("what a lossless slab reflects and transmits is all") {
   }
 }
 
-TEST_CASE("the plan names all sensors") {
+TEST_CASE("plan of several sensors: names all of them") {
   RenderScene scene = both_faces(isotropic(0.9));
   CHECK(render_job(scene, {}, 1).plan.find("; sensors 1 (area), 2 (area), 3 (directional)") !=
         std::string::npos);
@@ -99,7 +99,7 @@ TEST_CASE("the plan names all sensors") {
   CHECK(render_job(scene, {}, 1).plan.find("front (area)") != std::string::npos);
 }
 
-TEST_CASE("a slab of two equal terms, or of a table, is that of henyey_greenstein") {
+TEST_CASE("slabs of two equal terms or of a table: agree with henyey_greenstein") {
   check_same({HgPhase{0.7}}, {TwoTermPhase{{0.7}, {0.7}, 0.4}});
   check_same({HgPhase{0.7}}, {TwoTermPhase{{0.7}, {-0.5}, 1}});
   const auto path = std::filesystem::temp_directory_path() /

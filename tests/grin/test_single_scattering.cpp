@@ -17,7 +17,7 @@ double henyey_greenstein(double g, double cosine) {
   return (1 - g * g) / (4 * std::numbers::pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
 }
 
-/// Arc length along a circle up to `angle`; -1 where it leaves the ball.
+/// Returns the arc length along a circle up to `angle`, -1 if it leaves the ball.
 double arc_length(const FisheyeCurves& curves, const FisheyeCurves::Circle& circle, double angle,
                   double ball) {
   constexpr int nodes = 60;
@@ -30,14 +30,14 @@ double arc_length(const FisheyeCurves& curves, const FisheyeCurves::Circle& circ
   return length;
 }
 
-/// L/n^2 that light of power 1 at `light_at`, scattered once at x, sends along `onwards`, per
-/// scattering coefficient: over both ways round, C25 and C27 by hand.
+/// Returns the L/n^2 that light of power 1 at `light_at`, scattered once at x, sends along
+/// `onwards`, per scattering coefficient: the sum over both arcs, from C25 and C27 by hand.
 double scattered_at(const FisheyeCurves& curves, const ScatteringMedium& medium, double ball,
                     const Vec3& x, const Vec3& onwards) {
   double angle, sum = 0;
   FisheyeCurves::Circle circle = curves.circle_between(light_at, x, angle);
-  for (const bool short_way : {true, false}) {
-    if (!short_way) {
+  for (const bool short_path : {true, false}) {
+    if (!short_path) {
       circle.tangent = -circle.tangent;
       angle = 2 * std::numbers::pi - angle;
     }
@@ -55,7 +55,7 @@ double scattered_at(const FisheyeCurves& curves, const ScatteringMedium& medium,
 double along_ray(const FisheyeCurves& curves, const ScatteringMedium& medium, double ball,
                  const Vec3& direction) {
   const auto ray = curves.circle(camera_at, direction);
-  const double step = std::min(0.005, 0.02 / curves.radius());  // of the angle
+  const double step = std::min(0.005, 0.02 / curves.radius());  // step of the angle
   double sum = 0, length = 0;
   for (double alpha = step / 2; alpha < 2 * std::numbers::pi; alpha += step) {
     const Vec3 x = curves.point(ray.at(alpha));
@@ -69,7 +69,7 @@ double along_ray(const FisheyeCurves& curves, const ScatteringMedium& medium, do
   return sum;
 }
 
-/// Mean over the camera's one pixel, which looks along z with y up.
+/// Returns the mean over the only pixel of the camera, which faces +z with y up.
 double single_scattering(const FisheyeCurves& curves, const ScatteringMedium& medium, double ball) {
   constexpr int nodes = 8;
   const double half = std::tan(field_of_view / 2);
@@ -101,21 +101,21 @@ void check_single(const RenderScene& scene, double expected, double samples) {
 
 }  // namespace
 
-TEST_CASE("light scattered once agrees with quadrature where rays are straight") {
+TEST_CASE("single scattering along straight rays: agrees with quadrature") {
   const ScatteringMedium medium = fog(0.6, 0.2, 0.5);
   // a fisheye so wide that it is homogeneous, to 1e-4
   const double expected = single_scattering({n0, 150}, medium, 1.5);
   check_single(scene(Homogeneous{n0 - 1}, medium, 1.5), expected, 1e5);
 }
 
-TEST_CASE("light scattered once agrees with quadrature in a fisheye") {
+TEST_CASE("single scattering in a fisheye: agrees with quadrature") {
   const ScatteringMedium medium = fog(0.6, 0.2, 0.5);
   const double a = 2;
   const double expected = single_scattering({n0, a}, medium, 1.2);
   check_single(scene(Fisheye({.centre_excess = n0 - 1, .radius = a}), medium, 1.2), expected, 1e5);
 }
 
-TEST_CASE("light scattered once agrees with quadrature where two curves join many points") {
+TEST_CASE("single scattering with two curves between many points: agrees with quadrature") {
   const ScatteringMedium medium = fog(0.2, 0.05, 0.3);
   const double a = 1, ball = 1.5;
   const double expected = single_scattering({n0, a}, medium, ball);
@@ -130,7 +130,7 @@ TEST_CASE("light scattered once agrees with quadrature where two curves join man
                  is_night ? 1e5 : 6e3);
     CAPTURE(result.error() / expected);
     CHECK(std::abs(result.value() - expected) < 4 * result.error());
-    CHECK((result.counts.connections.mean_refind() > 1.05) == is_searched);
+    CHECK((result.counts.connections.mean_trials() > 1.05) == is_searched);
   }
 }
 

@@ -9,21 +9,21 @@ namespace flatspeckle::grin::tests::test_slab_render {
 
 using namespace oracles;
 
-/// check_share of a long run, shorter by day.
+/// Checks the share by a long run, shorter by day.
 void check_long_share(const RenderScene& scene, RenderMethod method, double samples,
                       double expected, double largest_error) {
   const flatspeckle::tests::Effort effort = flatspeckle::tests::effort();
   check_share(scene, method, effort.samples * samples, expected, effort.errors * largest_error);
 }
 
-TEST_CASE("van de Hulst's slab by light and bidirectional tracing") {
+TEST_CASE("van de Hulst's slab: light and bidirectional tracing agree with published values") {
   for (const RenderMethod method : {RenderMethod::light, RenderMethod::bidirectional}) {
     check_long_share(van_de_hulst(Face::reflected), method, 200000, 0.09739, 1e-3);
     check_long_share(van_de_hulst(Face::transmitted), method, 200000, 0.66096, 1.5e-3);
   }
 }
 
-TEST_CASE("isotropic slabs against Peierls' equation") {
+TEST_CASE("isotropic slabs: reflectance and transmittance agree with Peierls' equation") {
   for (const double albedo : {0.5, 0.95}) {
     const ScatteringMedium medium = isotropic(albedo);
     const SlabShares exact = isotropic_slab(2, albedo);
@@ -36,14 +36,14 @@ TEST_CASE("isotropic slabs against Peierls' equation") {
   }
 }
 
-TEST_CASE("a half-space against Chandrasekhar's H function") {
+TEST_CASE("half-space: reflectance agrees with Chandrasekhar's H function") {
   const double albedo = 0.9;
   const ScatteringMedium medium = isotropic(albedo);
   check_long_share(slab(medium, 40, 100, Face::reflected), RenderMethod::bidirectional, 200000,
                    isotropic_half_space(albedo), 2e-3);
 }
 
-TEST_CASE("the errors of short runs in a thick slab hold") {
+TEST_CASE("short runs in a thick slab: errors agree with a long run") {
   ScatteringMedium medium;
   medium.mu_s = 10;
   medium.mu_a = 0.01;

@@ -8,13 +8,13 @@
 #include "grin/media/scattering/free_flight.h"
 #include "grin/media/scattering/phase_function.h"
 
-// The slow mode and stretched flights: what is worth something on average and what is not.
+// The discrete (Case) eigenmode and biased free flights: both conserve means.
 
 namespace flatspeckle::grin::test_slow_mode {
 
 namespace {
 
-/// The mean of f(u) over the unit interval, at midpoints.
+/// Returns the mean of f(u) over the unit interval, by the midpoint rule.
 template <class Function>
 double mean(int points, const Function& f) {
   double sum = 0;
@@ -24,12 +24,12 @@ double mean(int points, const Function& f) {
 
 }  // namespace
 
-TEST_CASE("a turn leaves the slow mode as it is, on average") {
+TEST_CASE("Case eigenmode: scattering conserves its mean") {
   for (const double albedo : {0.6, 0.9, 0.9999, 1.0})
     for (const double g : {-0.3, 0.0, 0.5, 0.9}) {
       CAPTURE(albedo);
       CAPTURE(g);
-      const SlowMode mode(albedo, g);
+      const CaseMode mode(albedo, g);
       const double growth = 1.7;
       for (const double mu : {-0.9, 0.1, 0.7}) {
         const double after = mean(2000, [&](double u) {
@@ -45,10 +45,10 @@ TEST_CASE("a turn leaves the slow mode as it is, on average") {
     }
 }
 
-TEST_CASE("and so does a flight, cut short or not") {
+TEST_CASE("Case eigenmode: free flights conserve its mean, also bounded ones") {
   const double longest = 3;
   for (const double albedo : {0.6, 0.99, 1.0}) {
-    const SlowMode mode(albedo, 0.7);
+    const CaseMode mode(albedo, 0.7);
     for (const double mu : {-1.0, -0.2, 0.4, 1.0}) {
       CAPTURE(albedo);
       CAPTURE(mu);
@@ -62,11 +62,11 @@ TEST_CASE("and so does a flight, cut short or not") {
   }
 }
 
-TEST_CASE("stretched flights weigh as much as plain ones") {
+TEST_CASE("biased free flights: weighted means agree with unbiased flights") {
   const double mu_t = 1.3, longest = 2;
-  for (const double pull : {0.1, 0.7, 0.95}) {
-    CAPTURE(pull);
-    const StretchedFlight flight(mu_t, pull);
+  for (const double bias : {0.1, 0.7, 0.95}) {
+    CAPTURE(bias);
+    const BiasedFlight flight(mu_t, bias);
     double beyond = 0, square = 0;
     const int points = 1'000'000;
     for (int i = 0; i < points; ++i) {

@@ -47,7 +47,7 @@ double worst_error(int nodes, bool at_the_edge) {
 
 }  // namespace
 
-TEST_CASE("A spline field goes through its samples and is of fourth order up to the edge") {
+TEST_CASE("spline field: interpolates its samples, with an error of fourth order up to the edge") {
   const FieldGrid grid{{-1, 2, 0.5}, {0.3, 0.2, 0.1}, {4, 6, 9}};
   const auto values = samples(grid, wavy);
   const SplineField field(grid, values);
@@ -62,7 +62,7 @@ TEST_CASE("A spline field goes through its samples and is of fourth order up to 
           doctest::Approx(4).epsilon(0.1));
 }
 
-TEST_CASE("A spline field reproduces cubics and their derivatives") {
+TEST_CASE("spline field: reproduces cubics and their derivatives") {
   const FieldGrid grid{{-1, -1, -1}, {0.5, 0.4, 0.3}, {5, 6, 8}};
   const auto cubic = [](const Vec3& x) {
     return 0.1 * x[0] * x[0] * x[1] - 0.05 * x[2] * x[2] * x[2] + 0.02 * x[0] * x[1] * x[2] + 0.1;
@@ -82,7 +82,7 @@ TEST_CASE("A spline field reproduces cubics and their derivatives") {
   }
 }
 
-TEST_CASE("A spline field: derivatives within a cell, and the same from both sides of a node") {
+TEST_CASE("spline field: derivatives agree with differences and are continuous at nodes") {
   const FieldGrid grid{{0, 0, 0}, {0.5, 0.5, 0.5}, {5, 5, 5}};
   const SplineField field(grid, samples(grid, [](const Vec3& x) {
                             return 0.3 * std::sin(7 * x[0] + 5 * x[1] * x[1] + 3 * x[2]);
@@ -95,7 +95,7 @@ TEST_CASE("A spline field: derivatives within a cell, and the same from both sid
   CHECK((below.hessian - above.hessian).norm() < 1e-10);
 }
 
-TEST_CASE("One cell beyond its grid a spline field is smooth, farther out it stays constant") {
+TEST_CASE("spline field: smooth for one cell beyond its grid, constant farther out") {
   const FieldGrid grid = unit_grid(6);
   const SplineField field(grid, samples(grid, wavy));
   const Vec3 edge(1, 0.3, 0.4), cell(0.2, 0, 0);
@@ -110,7 +110,7 @@ TEST_CASE("One cell beyond its grid a spline field is smooth, farther out it sta
   CHECK(field.gradient(edge + 2 * cell).gradient[0] == 0);
 }
 
-TEST_CASE("Bad grids are refused") {
+TEST_CASE("spline field: bad grids are rejected") {
   const FieldGrid grid = unit_grid(4);
   std::vector<double> values(64, 0.1);
   CHECK_NOTHROW(SplineField(grid, values));
@@ -126,7 +126,7 @@ TEST_CASE("Bad grids are refused") {
   CHECK_THROWS_AS(SplineField(grid, values), InputError);
 }
 
-TEST_CASE("A spline field from a file") {
+TEST_CASE("spline field from a file: agrees with the field, bad files are rejected") {
   const auto path = std::filesystem::temp_directory_path() /
                     ("flatspeckle-field-" + std::to_string(::getpid()) + ".h5");
   const FieldGrid grid{{-1, 2, 0.5}, {0.3, 0.2, 0.1}, {4, 6, 9}};

@@ -41,7 +41,7 @@ Traced traced(const F& field, RayState ray, double sigma, int steps) {
   return {ray, signed_spreading(tangent, n_start, start.v, ray.v), caustics.count()};
 }
 
-/// Signed J of C27: n0^2 sin^2 sigma (v0hat . vfhat).
+/// Returns the signed J of C27: n0^2 sin^2 sigma (v0hat . vfhat).
 double harmonic_spreading(const Vec3& x0, const Vec3& v0, double sigma) {
   const Vec3 v = -std::sin(sigma) * x0 + std::cos(sigma) * v0;
   return v0.squaredNorm() * std::pow(std::sin(sigma), 2) * v0.normalized().dot(v.normalized());
@@ -58,13 +58,13 @@ void check_harmonic(int steps, double tolerance) {
     const Traced ray = traced<Step>(field, start, sigma, steps);
     CAPTURE(sigma);
     CAPTURE(exact);
-    // relative, but where the beam is a caustic's
+    // relative, except near caustics
     const double scale = std::max(std::abs(exact), 1e-2 * start.v.squaredNorm());
     CHECK(std::abs(ray.spreading - exact) <= tolerance * scale);
   }
 }
 
-/// There, and back from where that ended, at the speed of the index there.
+/// Checks reciprocity between a ray and the one back from its end, whose speed is the index there.
 template <IndexField F>
 void check_reciprocal(const F& field, RandomStream& random, int steps) {
   const RayState start = start_ray(field, random_point(random, 0.5), random_direction(random));
@@ -79,13 +79,13 @@ void check_reciprocal(const F& field, RandomStream& random, int steps) {
 
 }  // namespace
 
-TEST_CASE("spreading in Luneburg's ball is the closed form, through and past the caustics") {
+TEST_CASE("spreading in Luneburg's ball: agrees with the closed form, through caustics") {
   check_harmonic<Sharma>(1200, 1e-6);
   check_harmonic<Yoshida4>(2400, 1e-6);
   check_harmonic<Leapfrog>(12000, 1e-4);
 }
 
-TEST_CASE("spreading in the fisheye is the closed form, through and past the focus") {
+TEST_CASE("spreading in a fisheye: agrees with the closed form, through foci") {
   const Fisheye field({.centre_excess = 0.7, .radius = 0.8});
   const double radius = 1.7 * 0.8 / 2;
   RandomStream random(62, 0, 0);
@@ -102,7 +102,7 @@ TEST_CASE("spreading in the fisheye is the closed form, through and past the foc
   }
 }
 
-TEST_CASE("a quarter pitch down a guide the spreading is (2/pi)^2 of the length squared") {
+TEST_CASE("spreading after a quarter pitch of a guide: (2/pi)^2 times the length squared") {
   const ParabolicGuide guide({.axis_excess = 0.5, .alpha = 0.3});
   const RayState start = start_ray(guide, Vec3::Zero(), Vec3::UnitZ());
   const Traced ray = traced<Sharma>(guide, start, pi / (2 * 0.3), 200);
@@ -110,7 +110,7 @@ TEST_CASE("a quarter pitch down a guide the spreading is (2/pi)^2 of the length 
   CHECK(ray.spreading == doctest::Approx(std::pow(2 / pi * ray.end.arc_length, 2)).epsilon(1e-6));
 }
 
-TEST_CASE("caustics in Luneburg's ball: line foci once, point foci twice") {
+TEST_CASE("caustics in Luneburg's ball: line foci count once, point foci twice") {
   const HarmonicBall field{{}};
   RandomStream random(63, 0, 0);
   for (int i = 0; i < 200; ++i) {
@@ -132,7 +132,7 @@ TEST_CASE("caustics in Luneburg's ball: line foci once, point foci twice") {
   }
 }
 
-TEST_CASE("spreading there and back is one: n_P^2 / |J_PQ| = n_Q^2 / |J_QP|") {
+TEST_CASE("spreading: reciprocal, n_P^2 / |J_PQ| = n_Q^2 / |J_QP|") {
   for (int i = 0; i < 50; ++i) {
     RandomStream random(64, 0, i);
     check_reciprocal(bench::random_blobs(random, 0.3), random, 400);
@@ -140,7 +140,7 @@ TEST_CASE("spreading there and back is one: n_P^2 / |J_PQ| = n_Q^2 / |J_QP|") {
   }
 }
 
-TEST_CASE("start directions follow their density") {
+TEST_CASE("start directions: samples agree with their density") {
   const StartDirections start{.chord_share = 0.4, .cosine = 0.8};
   const Vec3 chord = Vec3(1, -2, 0.5).normalized();
   RandomStream random(65, 0, 0);

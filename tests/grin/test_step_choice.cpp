@@ -19,7 +19,7 @@ struct Errors {
   double worst = 0, mean = 0;
 };
 
-/// Of where rays end, by the length of their way, beside what `exact` says: end(start, sigma).
+/// Returns the errors of end points of rays relative to their lengths, against exact(start, sigma).
 template <IndexField F, class Exact>
 Errors end_errors(const F& field, const Surface& region, double step, double sigma,
                   const Exact& exact, bool leapfrogs = false) {
@@ -47,7 +47,7 @@ Errors end_errors(const F& field, const Surface& region, double step, double sig
   return errors;
 }
 
-/// At the chosen step; three times the step is too coarse.
+/// Checks the errors at the chosen step; three times the step is too coarse.
 template <class Measure>
 void check_tolerance(const Measure& errors, double step) {
   const Errors at = errors(step), coarse = errors(3 * step);
@@ -56,7 +56,7 @@ void check_tolerance(const Measure& errors, double step) {
   CHECK(coarse.worst > 2 * step_tolerance);
 }
 
-/// By steps far below those that are chosen.
+/// Returns end points by steps far below the chosen ones.
 template <IndexField F>
 auto fine(const F& field, double step) {
   return [&field, step](RayState ray, double sigma) {
@@ -68,7 +68,7 @@ auto fine(const F& field, double step) {
 
 }  // namespace
 
-TEST_CASE("a chosen step holds rays to its tolerance: closed forms") {
+TEST_CASE("chosen step: errors from closed forms are within its tolerance") {
   const Sphere ball{Vec3::Zero(), 1};
   const Luneburg luneburg({1, LuneburgProfile::for_stops});
   const auto ellipse = [](const RayState& ray, double sigma) -> Vec3 {
@@ -88,7 +88,8 @@ TEST_CASE("a chosen step holds rays to its tolerance: closed forms") {
                   chosen_step(scene_of(guide), {.boundary = fibre}, false));
 }
 
-TEST_CASE("a chosen step holds rays to its tolerance: sound and narrow ramps") {
+TEST_CASE(
+    "chosen step in sound and narrow ramps: errors from fine steps are within its tolerance") {
   const Box tank{{-5, -5, 0}, {5, 5, 10}};
   const StandingWave strong(0.33, 0.02, 0, 8.4, 10);
   check_tolerance(
@@ -103,7 +104,7 @@ TEST_CASE("a chosen step holds rays to its tolerance: sound and narrow ramps") {
   CHECK(at.mean < step_tolerance / 3);
 }
 
-TEST_CASE("weak sound goes by leapfrog, to the same tolerance") {
+TEST_CASE("chosen step in weak sound: leapfrog, within the same tolerance") {
   const Box tank{{-15, -15, 0}, {15, 15, 30}};
   const StandingWave weak(0.33, 1e-3, 0, 3.4, 22);
   const StepChoice chosen = chosen_steps(scene_of(weak), {.boundary = tank}, false);
@@ -122,7 +123,7 @@ TEST_CASE("weak sound goes by leapfrog, to the same tolerance") {
   CHECK(of_fisheye.step == chosen_step(scene_of(fisheye), {.boundary = ball}, false));
 }
 
-TEST_CASE("steps follow how strong a field is, not its scale alone") {
+TEST_CASE("chosen step: decreases with the strength of a field") {
   const Box tank{{-5, -5, 0}, {5, 5, 10}};
   const auto step = [&](double amplitude, bool any_phase = false) {
     return chosen_step(scene_of(StandingWave(0.33, amplitude, 0, 8.4, 10)), {.boundary = tank},
@@ -138,7 +139,7 @@ TEST_CASE("steps follow how strong a field is, not its scale alone") {
   CHECK(step(1e-2) == step(1e-2));
 }
 
-TEST_CASE("steps are of the scene, in whatever unit of length") {
+TEST_CASE("chosen step: proportional to the unit of length") {
   const auto step = [](double unit) {
     const Sphere ball{Vec3::Zero(), unit};
     return chosen_step(scene_of(Fisheye({1.6, unit})), {.boundary = ball}, false) / unit;
@@ -147,7 +148,7 @@ TEST_CASE("steps are of the scene, in whatever unit of length") {
   CHECK(step(1e6) == doctest::Approx(step(1)).epsilon(0.03));
 }
 
-TEST_CASE("a narrow blob in a wide stage is not jumped over") {
+TEST_CASE("chosen step: resolves a narrow blob in a wide stage") {
   const Box wide{{-50, -50, -50}, {50, 50, 50}};
   const GaussianBlobs blobs({{{3, -7, 11}, 0.2, 0.3}});
   const double step = chosen_step(scene_of(blobs), {.boundary = wide}, false);

@@ -29,7 +29,7 @@ ControlledSteps<Integrator> controlled(double tolerance, double longest = 1) {
   return {tolerance, 0.01, longest};
 }
 
-/// Its gradient is too large by a share `wrong`.
+/// A Luneburg lens whose gradient is too large by the fraction `wrong`.
 struct WrongGradient {
   double wrong;
 
@@ -43,7 +43,7 @@ struct WrongGradient {
 
 }  // namespace
 
-TEST_CASE("Straight rays meet spheres, planes and boxes") {
+TEST_CASE("trace: straight rays stop at spheres, planes and boxes") {
   const Homogeneous plain{0.5};
   FixedSteps<Leapfrog> steps{0.1};
   const std::vector<Surface> surfaces{Sphere{{0, 0, 5}, 1}, Plane{{0, 0, 20}, Vec3::UnitZ()},
@@ -69,7 +69,7 @@ TEST_CASE("Straight rays meet spheres, planes and boxes") {
   CHECK_THROWS_AS(trace(plain, std::vector<Surface>(65), far, steps, up), InputError);
 }
 
-TEST_CASE("Box: distance and normal") {
+TEST_CASE("box: distance and normal agree with the closed form") {
   const Box box{{-1, -2, -3}, {1, 2, 3}};
   CHECK(box.distance({0, 0, 0}) == -1);
   CHECK(box.distance({0.5, 1.8, 0}) == doctest::Approx(-0.2));
@@ -78,7 +78,7 @@ TEST_CASE("Box: distance and normal") {
   CHECK(box.normal({0.3, 0.1, -3}) == Vec3(0, 0, -1));
 }
 
-TEST_CASE_TEMPLATE("A Luneburg lens in air, from the plane of a beam to its focus", I, Leapfrog,
+TEST_CASE_TEMPLATE("trace through a Luneburg lens in air: agrees with its focus", I, Leapfrog,
                    Yoshida4, Sharma) {
   const std::vector<Surface> rim{Sphere{}};
   auto steps = controlled<I>(I::order == 2 ? 1e-7 : 1e-12);
@@ -95,7 +95,7 @@ TEST_CASE_TEMPLATE("A Luneburg lens in air, from the plane of a beam to its focu
   }
 }
 
-TEST_CASE("Controlled steps: the error follows the tolerance") {
+TEST_CASE("controlled steps: errors follow the tolerance") {
   const tests::LuneburgRay exact{{-0.6, 0.3, 0.2}, start_ray(lens, {-0.6, 0.3, 0.2}, {1, 1, 0}).v};
   const auto speed = [&](double s) { return index(lens, exact.x(s)); };
   double sigma = 1;  // where the arc is 1
@@ -115,7 +115,7 @@ TEST_CASE("Controlled steps: the error follows the tolerance") {
   }
 }
 
-TEST_CASE("Controlled steps tell how far they leave |v| = n before they restore it") {
+TEST_CASE("controlled steps: report the deviation from |v| = n before they correct it") {
   constexpr double tolerance = 1e-9;
   for (const double wrong : {0.0, 0.01}) {
     const WrongGradient field{wrong};
@@ -130,7 +130,7 @@ TEST_CASE("Controlled steps tell how far they leave |v| = n before they restore 
   }
 }
 
-TEST_CASE("Controlled steps far from the origin: what is below rounding is no error") {
+TEST_CASE("controlled steps far from the origin: rounding is not counted as an error") {
   const ParabolicGuide guide(ParabolicProfile{0.5, 1});
   for (const double start : {1e3, 1e6, 1e8}) {
     CAPTURE(start);
@@ -144,7 +144,7 @@ TEST_CASE("Controlled steps far from the origin: what is below rounding is no er
   }
 }
 
-TEST_CASE("Controlled steps are no longer than they may be, whatever the index") {
+TEST_CASE("controlled steps: at most the longest step, at any index") {
   for (const double background : {0.0, 99.0}) {
     CAPTURE(background);
     const double height = 0.1 * (1 + background);
@@ -159,7 +159,8 @@ TEST_CASE("Controlled steps are no longer than they may be, whatever the index")
   }
 }
 
-TEST_CASE("A fisheye images every point, also by way of regions where n is nearly 0") {
+TEST_CASE(
+    "trace in a fisheye: agrees with the image point, also through regions where n is nearly 0") {
   const Fisheye eye(FisheyeProfile{0.5, 1});
   auto steps = controlled<Sharma>(1e-12, 1e9);
   const Vec3 start = Vec3(1, 2, 2) / 3, across = Vec3(2, 1, -2) / 3;
@@ -180,15 +181,15 @@ TEST_CASE("A fisheye images every point, also by way of regions where n is nearl
   }
 }
 
-TEST_CASE("Modal dispersion over a guide: none in sech, that of C27 in the parabolic one") {
+TEST_CASE("modal dispersion in guides: none in sech, agrees with C27 in the parabolic one") {
   const double n0 = 1.5, alpha = 0.6;
   const SechGuide sech(SechProfile{n0 - 1, alpha});
   const ParabolicGuide parabolic(ParabolicProfile{n0 - 1, alpha});
   auto steps = controlled<Yoshida4>(1e-12);
-  for (const double slope : {0.0, 0.05, 0.3, 0.8}) {
-    const Vec3 direction(slope * 0.6, slope * 0.8, 1);
+  for (const double tangent : {0.0, 0.05, 0.3, 0.8}) {
+    const Vec3 direction(tangent * 0.6, tangent * 0.8, 1);
     for (const bool quadratic : {false, true}) {
-      CAPTURE(slope);
+      CAPTURE(tangent);
       CAPTURE(quadratic);
       RayState ray = start_ray(Homogeneous{n0 - 1}, Vec3::Zero(), direction);
       const double beta = ray.v[2];
@@ -205,7 +206,7 @@ TEST_CASE("Modal dispersion over a guide: none in sech, that of C27 in the parab
   }
 }
 
-TEST_CASE("A steep ramp turns rays beyond Snell's critical angle, and only those") {
+TEST_CASE("trace in a steep ramp: reflects rays beyond Snell's critical angle, and only those") {
   const double n1 = 1.5, n2 = 1.2;
   for (const double width : {0.1, 1e-3}) {
     const TanhRamp ramp{n1 - 1, n2 - 1, width};
@@ -228,7 +229,7 @@ TEST_CASE("A steep ramp turns rays beyond Snell's critical angle, and only those
   }
 }
 
-TEST_CASE("A step that dips behind a surface and comes back ends at the first crossing") {
+TEST_CASE("trace: a step that crosses a surface twice ends at the first crossing") {
   const ParabolicGuide guide(ParabolicProfile{0.5, 1});
   const RayState start = start_ray(guide, {0, 0, 0}, {0.3, 0, 1});
   // The turn at sigma = pi/2 is in the middle of a step, at whose ends x is 3e-3 lower.
@@ -248,7 +249,7 @@ TEST_CASE("A step that dips behind a surface and comes back ends at the first cr
   CHECK(trace(guide, beyond, {100, 1e-11}, steps, ray).stop == Stop::length);
 }
 
-TEST_CASE("A step through two surfaces ends at the first") {
+TEST_CASE("trace: a step through two surfaces ends at the first") {
   const ParabolicGuide guide(ParabolicProfile{0.5, 1});
   const std::vector<Surface> plate_and_plane{Plane{{0, 0, 0.42}, Vec3::UnitZ()},
                                              Box{{-1, -1, 0.32}, {1, 1, 0.33}}};
@@ -260,7 +261,7 @@ TEST_CASE("A step through two surfaces ends at the first") {
   }
 }
 
-TEST_CASE("Far from a surface it is not looked at") {
+TEST_CASE("trace: distances to far surfaces are rarely evaluated") {
   const ParabolicGuide guide(ParabolicProfile{0.5, 1});
   const std::vector<Surface> far_wall{Plane{{0, 0, 1000}, Vec3::UnitZ()}};
   FixedSteps<Leapfrog> steps{0.1};
@@ -268,10 +269,10 @@ TEST_CASE("Far from a surface it is not looked at") {
   const TraceEnd end = trace(guide, far_wall, {1e4, 1e-9}, steps, ray);
   CHECK(end.stop == Stop::surface);
   CHECK(end.steps > 6000);
-  CHECK(end.looks < 100);
+  CHECK(end.distance_evaluations < 100);
 }
 
-TEST_CASE("Straight rays go beside a face, however close, and along it") {
+TEST_CASE("trace: straight rays run beside a face at any distance, and along it") {
   const std::vector<Surface> faces{Plane{{0, 0, 1}, Vec3::UnitZ()}, Box{{-2, -2, -2}, {2, 2, 1}}};
   FixedSteps<Leapfrog> steps{1};
   for (const double off : {0.0, 1e-12, 1e-7, 1e-3}) {
@@ -282,10 +283,11 @@ TEST_CASE("Straight rays go beside a face, however close, and along it") {
   }
 }
 
-TEST_CASE("Rays are lost, not bent, where there is no index") {
+TEST_CASE("trace: rays are lost where the index is not defined") {
   const LinearRamp ramp{0, {0, 0, -1}};  // n = 1 - z
   FixedSteps<Leapfrog> fixed{0.05};
-  // Straight up it creeps towards z = 1 and never gets there; across, a step jumps over it.
+  // A long step jumps over z = 1, where n = 0; with controlled steps the ray approaches it and
+  // never arrives.
   RayState ray = start_ray(ramp, {0, 0, 0.99}, Vec3::UnitZ());
   fixed.h = 10;
   CHECK(trace(ramp, std::vector<Surface>{}, far, fixed, ray).stop == Stop::lost);
@@ -296,7 +298,7 @@ TEST_CASE("Rays are lost, not bent, where there is no index") {
   FixedSteps<Sharma> wide{2};
   RayState out{{1, 0, 0}, {3, 0, 1}};
   CHECK(trace(guide, std::vector<Surface>{}, far, wide, out).stop == Stop::lost);
-  // A wall before that point stops the ray all the same.
+  // A wall before that point still stops the ray.
   const std::vector<Surface> wall{Plane{{1.2, 0, 0}, Vec3::UnitX()}};
   RayState stopped{{1, 0, 0}, {3, 0, 1}};
   CHECK(trace(guide, wall, far, wide, stopped).surface == 0);

@@ -15,7 +15,7 @@ inline constexpr double pi = std::numbers::pi;
 using flatspeckle::tests::effort;
 using flatspeckle::tests::is_night;
 
-/// Henyey-Greenstein bulk; `request` replaces lights, views and entries.
+/// Henyey-Greenstein bulk medium. `request` below replaces lights, views and entries.
 struct HgBulk {
   double mean_free_path = 1, g = 0, albedo = 1;
 };
@@ -32,34 +32,34 @@ Scene layered(const std::vector<Layer>& layers, const CovarianceRequest& request
 
 std::vector<View> far_views(const std::vector<double>& angles);
 
-/// What a run left behind: entries with errors, or any function of them.
+/// Result of a run: entries with errors, or any function of them.
 struct Run {
   FieldJob job;
   GroupedSums sums;
 
   Estimate entries() const { return jackknife(sums, job.covariance); }
-  /// sum of weight x Re(entry) over the entries, and its error.
+  /// Returns the sum of weight x Re(entry) over the entries, and its error.
   Estimate weighted_sum(const std::vector<double>& weights) const;
 };
 
-/// The sums of so many samples, on two threads.
+/// Runs `samples` samples on two threads and returns their sums.
 GroupedSums summed(const BatchJob& job, std::uint64_t samples);
 
-/// How many of these paths tests take: by day a quarter where there are more than 40,000 (Effort).
+/// Returns the number of paths that a test runs: by day fewer of more than 40,000 (Effort).
 std::uint64_t shortened(std::uint64_t paths);
 
-/// Deterministic: two threads or not. Takes `shortened` paths.
+/// Runs `shortened(paths)` paths; results do not depend on the number of threads.
 Run run(const Scene& scene, const Plan& plan, std::uint64_t paths, std::uint64_t seed);
-/// By the plan of the scene. paths_per_batch = 0 keeps the plan's.
+/// Runs the scene's default plan; paths_per_batch = 0 keeps the plan's value.
 Run run(const Scene& scene, ReversedPaths reversed, std::uint64_t paths, std::uint64_t seed,
         std::uint64_t paths_per_batch = 0);
 
-/// Within four standard errors, plus a bias that the caller can account for.
-#define CHECK_WITHIN_4_SIGMA(found, error, expected, bias)                            \
-  do {                                                                                \
-    INFO("found ", flatspeckle::mc::tests::text(found), " +- ", error, ", expected ", \
-         flatspeckle::mc::tests::text(expected));                                     \
-    CHECK(std::abs((found) - (expected)) < 4 * (error) + (bias));                     \
+/// Checks agreement within four standard errors plus a bias that the caller can account for.
+#define CHECK_WITHIN_4_SIGMA(found, error, expected, bias)                               \
+  do {                                                                                   \
+    INFO("estimate ", flatspeckle::mc::tests::text(found), " +- ", error, ", expected ", \
+         flatspeckle::mc::tests::text(expected));                                        \
+    CHECK(std::abs((found) - (expected)) < 4 * (error) + (bias));                        \
   } while (false)
 
 std::string text(Complex value);

@@ -39,12 +39,12 @@ inline Scene lit_slab(double optical_depth, double albedo, double g,
 }
 
 inline void check_share(const Estimate& found, std::size_t light, double expected) {
-  constexpr double accuracy = 1e-5;  // of the theory, relative
+  constexpr double accuracy = 1e-5;  // relative, of the theory
   CHECK_WITHIN_4_SIGMA(found.value[light], found.error[light], expected, accuracy * expected);
 }
 
-/// Normal and oblique light on a slab, to a relative error of each share, against discrete
-/// ordinates.
+/// Compares the flux of a slab at normal and oblique incidence with discrete ordinates;
+/// `precision` is the relative error of each share.
 inline void check_slab(double optical_depth, double albedo, double g, double precision,
                        std::uint64_t seed) {
   CAPTURE(optical_depth);

@@ -43,8 +43,8 @@ CovarianceRequest intensities() {
   return intensity_request(lights, tests::far_views(views));
 }
 
-/// A medium in which every scattering loses what a delay takes from it: p exp(-2 t (1 - cos)) is
-/// again a phase function times a factor. Isotropic p only: exp(t cos) = sum I_n(t) cos(n theta).
+/// Returns a static medium whose scattering loses what a delay takes from it: p exp(-2 t (1 - cos))
+/// is a phase function times a factor. Isotropic p only: exp(t cos) = sum I_n(t) cos(n theta).
 Scene with_losses(Scene scene, double delay) {
   BulkMedium& medium = scene.medium;
   medium.t_matrix.clear();
@@ -62,7 +62,7 @@ Scene with_losses(Scene scene, double delay) {
 
 }  // namespace
 
-TEST_CASE("without delay nothing decays, and the intensity is that of still scatterers") {
+TEST_CASE("temporal correlation: 1 at zero delay, intensities equal those of static scatterers") {
   for (const auto reversed : {ReversedPaths::yes, ReversedPaths::no}) {
     for (const double albedo : {1.0, 0.8}) {
       const Scene scene = tests::hg_box(20, 10, {4, 0.5, albedo}, intensities());
@@ -79,7 +79,7 @@ TEST_CASE("without delay nothing decays, and the intensity is that of still scat
   }
 }
 
-TEST_CASE("a thin medium decays by exp(-q^2 D tau) of one scattering") {
+TEST_CASE("temporal correlation of a thin medium: agrees with exp(-q^2 D tau)") {
   const std::vector<double> delays = {0.1, 1, 4};
   for (const double g : {0.0, 0.6}) {
     const Scene scene = tests::hg_box(20, 10, {1e8, g}, intensities());
@@ -101,7 +101,7 @@ TEST_CASE("a thin medium decays by exp(-q^2 D tau) of one scattering") {
   }
 }
 
-TEST_CASE("single scattering by paths decays as in closed form") {
+TEST_CASE("temporal correlation: sampled single scattering agrees with the closed form") {
   const Scene scene = tests::hg_box(20, 10, {8, 0.3, 0.5}, intensities());
   Plan plan = make_plan(scene, ReversedPaths::yes);
   REQUIRE_FALSE(plan.sampled_single);
@@ -113,7 +113,7 @@ TEST_CASE("single scattering by paths decays as in closed form") {
                          exact.value[i], 0);
 }
 
-TEST_CASE("isotropic scatterers that move are still ones that lose and turn light") {
+TEST_CASE("temporal correlation: diffusing isotropic scatterers equal static ones with losses") {
   const double delay = 0.25;
   for (const auto reversed : {ReversedPaths::no, ReversedPaths::yes}) {
     for (const double albedo : {1.0, 0.9}) {
@@ -130,7 +130,7 @@ TEST_CASE("isotropic scatterers that move are still ones that lose and turn ligh
   }
 }
 
-TEST_CASE("a thick slab decays as diffusion theory says, about") {
+TEST_CASE("temporal correlation of a thick slab: agrees with diffusion theory to 5 %") {
   const double depth = 40;
   for (const double g : {0.0, 0.6}) {
     CAPTURE(g);
@@ -151,7 +151,7 @@ TEST_CASE("a thick slab decays as diffusion theory says, about") {
   }
 }
 
-TEST_CASE("delays are refused where they make no sense") {
+TEST_CASE("delays: negative and NaN delays and full covariances are rejected") {
   const auto refused = [](const CovarianceRequest& request, double delay) {
     const Scene scene = tests::hg_box(20, 10, {4}, request);
     CHECK_THROWS_AS(delay_job(scene, make_plan(scene, ReversedPaths::no), {delay}, 1), InputError);
@@ -161,13 +161,13 @@ TEST_CASE("delays are refused where they make no sense") {
   refused(full_request({0}, tests::far_views(views)), 0.1);
 }
 
-TEST_CASE("scatterers at correlated positions are refused") {
+TEST_CASE("delays: scatterers at correlated positions are rejected") {
   Scene scene = tests::hg_box(20, 10, {4}, intensities());
   scene.medium.structure = StructureTable("test", {0, 1}, {0.5, 1});
   CHECK_THROWS_AS(delay_job(scene, make_plan(scene, ReversedPaths::no), {0.1}, 1), InputError);
 }
 
-TEST_CASE("what does not scatter has no correlation") {
+TEST_CASE("temporal correlation: zero without scattering") {
   const Scene scene = tests::hg_box(20, 10, {4, 0, 0}, intensities());
   const auto run = diffuse(scene, ReversedPaths::no, {0.1}, 1000, 8);
   for (const Complex value : run.correlation().value) CHECK(value == 0.0);

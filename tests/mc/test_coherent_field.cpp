@@ -22,7 +22,7 @@ Scene box_of_points(double phase_shift, const CovarianceRequest& request) {
   return scene;
 }
 
-/// C15 by the midpoint rule in the plane: rho A int exp(i k (w_i - w_v).x + i (k_eff - k) d).
+/// Evaluates C15 by the midpoint rule: rho A int exp(i k (w_i - w_v).x + i (k_eff - k) d).
 Complex plane_quadrature(const Scene& scene, double light, double view) {
   constexpr int nx = 480, nz = 320;
   const Domain& box = scene.domain;
@@ -43,7 +43,7 @@ Complex plane_quadrature(const Scene& scene, double light, double view) {
 
 }  // namespace
 
-TEST_CASE("the coherent field is C15, for light and views from all sides") {
+TEST_CASE("coherent field: agrees with C15 for light and views from all sides") {
   const std::vector<double> lights = {0, 0.5, -0.9, 1.5, pi / 2, -pi / 2, 1.7, 2.6, -2.2, pi};
   const std::vector<double> views = {0, 0.5, 0.45, -1.2, pi / 2, 2.6, pi, -2.5};
   for (const double phase_shift : {pi / 2, 0.7}) {
@@ -63,7 +63,7 @@ TEST_CASE("the coherent field is C15, for light and views from all sides") {
   }
 }
 
-TEST_CASE("the coherent field without extinction is the transform of the box") {
+TEST_CASE("coherent field without extinction: equals the Fourier transform of the box") {
   Scene scene =
       box_of_points(1e-4, intensity_request({0.3}, tests::far_views({0.3, 0.35, 1.0, -2})));
   const auto field = coherent_field(scene);
@@ -80,8 +80,8 @@ TEST_CASE("the coherent field without extinction is the transform of the box") {
   }
 }
 
-TEST_CASE("the coherent field keeps its accuracy in a large box") {
-  // light along z: x by hand, z by hand
+TEST_CASE("coherent field: accurate in a large box") {
+  // light along z: closed forms of the integrals over x and z
   SceneSpec spec;
   spec.width = 2000;
   spec.depth = 1000;
@@ -101,7 +101,7 @@ TEST_CASE("the coherent field keeps its accuracy in a large box") {
   }
 }
 
-TEST_CASE("there is a coherent field for scatterers in a box seen from afar, and only there") {
+TEST_CASE("coherent field: exists only for single scatterers in a box with far views") {
   const auto far = intensity_request({0}, {far_view(0)});
   CHECK(has_coherent_field(box_of_points(1, far)));
   CHECK_FALSE(has_coherent_field(box_of_points(1, intensity_request({0}, {near_sensor({0, 9})}))));

@@ -38,7 +38,7 @@ std::vector<double> circle(int number) {
   return angles;
 }
 
-/// Of a Hermitian matrix, row by row.
+/// Returns the eigenvalues of a Hermitian matrix stored row by row.
 std::vector<double> eigenvalues(std::vector<Complex> matrix) {
   const auto n = static_cast<lapack_int>(std::lround(std::sqrt(matrix.size())));
   std::vector<double> values(n);
@@ -48,7 +48,7 @@ std::vector<double> eigenvalues(std::vector<Complex> matrix) {
 
 }  // namespace
 
-TEST_CASE("hardly visible disks: the covariance is that of N scatterers, times S") {
+TEST_CASE("correlated disks of low contrast: intensity is N times that of one disk times S(q)") {
   const Scene scene = make_scene(disks("1.0001", {0.1, 0.7, 1.8, 2.6, -pi}));
   const auto found = tests::run(scene, ReversedPaths::no, 20000, 1).entries();
   const double contact = (2 + 1e-3) / k;
@@ -61,7 +61,7 @@ TEST_CASE("hardly visible disks: the covariance is that of N scatterers, times S
   }
 }
 
-TEST_CASE("what correlated disks take from the coherent beam is what they scatter") {
+TEST_CASE("correlated disks: scattered power equals the extinction of the coherent beam") {
   SceneSpec spec = disks("1.2", circle(96));
   const Scene scene = make_scene(spec);
   CHECK(scene.medium.albedo == doctest::Approx(1).epsilon(1e-12));
@@ -70,12 +70,12 @@ TEST_CASE("what correlated disks take from the coherent beam is what they scatte
                              .weighted_sum(std::vector<double>(96, 2 * pi / 96));
   CHECK_WITHIN_4_SIGMA(scattered.value[0].real(), scattered.error[0], lost, 1e-3 * lost);
   CHECK(scattered.error[0] < 0.02 * lost);
-  // and it is less than independent disks would
+  // less than the extinction by independent disks
   spec.structure = "none";
   CHECK(lost < 0.9 * 12 * (1 - std::exp(-make_scene(spec).medium.mu_t * 8)));
 }
 
-TEST_CASE("the covariance of correlated disks is positive semidefinite") {
+TEST_CASE("correlated disks: the covariance is positive semidefinite") {
   SceneSpec spec = disks("1.2", circle(24));
   spec.light_angles = {0, 0.3};
   spec.covariance = "full";

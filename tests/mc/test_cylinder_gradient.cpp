@@ -14,7 +14,7 @@ struct Cylinders {
   double radius = 0.3, index = 1.5;
 };
 
-/// Of cylinders in a slab, or in a box of the same depth.
+/// Returns a scene of cylinders in a slab, or in a box of the same depth.
 Scene cylinders(const std::string& domain, const Cylinders& of) {
   SceneSpec spec;
   spec.domain = domain;
@@ -28,7 +28,7 @@ Scene cylinders(const std::string& domain, const Cylinders& of) {
   return make_scene(spec);
 }
 
-/// Derivatives by radius, then by index, of each view's intensity.
+/// Returns the derivatives of each view's intensity by radius, then by index.
 Estimate derivatives(const Scene& scene, std::uint64_t paths) {
   const GradientJob job = gradient_job(scene, gradient_plan(scene, ReversedPaths::no), 3);
   REQUIRE(job.parameters[1] == "radius");
@@ -40,7 +40,7 @@ Estimate derivatives(const Scene& scene, std::uint64_t paths) {
 
 }  // namespace
 
-TEST_CASE("cylinders in a slab: derivatives of paths by radius and index are those of transport") {
+TEST_CASE("cylinders in a slab: derivatives by radius and index agree with transport") {
   const Scene scene = cylinders("slab", {});
   const auto found = derivatives(scene, 400000);
   const auto exact =
@@ -54,7 +54,7 @@ TEST_CASE("cylinders in a slab: derivatives of paths by radius and index are tho
 }
 
 TEST_CASE(
-    "nightly: cylinders in a box: derivatives are differences of runs with common random numbers") {
+    "nightly: cylinders in a box: derivatives agree with differences at common random numbers") {
   const auto found = derivatives(cylinders("box", {}), 400000);
   const auto entries = [](double radius, double index) {
     return tests::run(cylinders("box", {radius, index}), ReversedPaths::no, 1600000, 5).entries();
@@ -62,11 +62,12 @@ TEST_CASE(
   const auto check = [&](const Estimate& above, const Estimate& below, double step,
                          std::size_t first) {
     for (std::size_t e = 0; e < above.value.size(); ++e) {
-      const Complex slope = (above.value[e] - below.value[e]) / step;
+      const Complex finite_difference = (above.value[e] - below.value[e]) / step;
       const double error =
           std::hypot(std::hypot(above.error[e], below.error[e]) / step, found.error[first + e]);
-      CAPTURE(error / std::abs(slope));
-      CHECK_WITHIN_4_SIGMA(found.value[first + e], error, slope, 0.01 * std::abs(slope));
+      CAPTURE(error / std::abs(finite_difference));
+      CHECK_WITHIN_4_SIGMA(found.value[first + e], error, finite_difference,
+                           0.01 * std::abs(finite_difference));
     }
   };
   check(entries(0.306, 1.5), entries(0.294, 1.5), 0.012, 0);

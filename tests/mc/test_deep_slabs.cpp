@@ -11,8 +11,8 @@ namespace {
 
 using tests::pi;
 
-/// Intensities of a slab in transmission and reflection against discrete ordinates. nodes: of
-/// those; largest_error: relative, of the intensities.
+/// Compares intensities of a slab in transmission and reflection with discrete ordinates at `nodes`
+/// nodes; largest_error is the relative error allowed.
 void check_slab(double optical_depth, double g, double albedo, int nodes, std::uint64_t paths,
                 double largest_error) {
   const std::vector<double> lights = {0, 0.7}, views = {0.1, -1, pi - 0.2, 2.2};
@@ -40,26 +40,29 @@ void check_slab(double optical_depth, double g, double albedo, int nodes, std::u
 
 }  // namespace
 
-TEST_CASE("thin slabs") {
+TEST_CASE("thin slabs: intensities agree with discrete ordinates") {
   for (const double g : {0.0, 0.9}) check_slab(1e-3, g, 1, 80, 40000, 0.02);
 }
 
-TEST_CASE("forward-peaked slabs") {
+TEST_CASE("forward-peaked slabs: intensities agree with discrete ordinates") {
   check_slab(10, 0.9, 1, 80, 400000, 0.02);
   check_slab(10, 0.9, 0.9, 80, 400000, 0.02);
 }
 
-TEST_CASE("a hundred turns, by day thirty, in one transport mean free path") {
+TEST_CASE("deep slabs, g = 0.99 (by day 0.97): intensities agree with discrete ordinates") {
   tests::is_night ? check_slab(100, 0.99, 1, 300, 100000, 0.1)
                   : check_slab(30, 0.97, 1, 150, 200000, 0.03);
 }
 
-TEST_CASE("what crosses deep slabs that absorb strongly: one part in 1e9 and less") {
+TEST_CASE(
+    "deep absorbing slabs transmitting 1e-9 and less: intensities agree with discrete ordinates") {
   check_slab(30, 0, 0.7, 60, 200000, 0.05);
   check_slab(40, 0.3, 0.6, 60, 200000, 0.05);
 }
 
-TEST_CASE("optical depth 100, by day 30, isotropic, albedo 1") {
+TEST_CASE(
+    "lossless isotropic slab of optical depth 100 (by day 30): intensities agree with discrete "
+    "ordinates") {
   check_slab(tests::is_night ? 100 : 30, 0, 1, 40, 100000, tests::is_night ? 0.1 : 0.04);
 }
 

@@ -16,8 +16,8 @@ using tests::pi;
 
 constexpr double oblique = pi / 3;
 
-/// What a slab does to light from two angles, one number after the other.
-std::vector<double> answers(double optical_depth, double albedo, double g, int nodes) {
+/// Returns reflectance, transmittance and three intensities of a slab for light from two angles.
+std::vector<double> slab_values(double optical_depth, double albedo, double g, int nodes) {
   const SlabTransport slab({optical_depth, albedo, henyey_greenstein(g)},
                            {0, oblique, 0.5, 1.4, pi - 0.2}, nodes);
   std::vector<double> found;
@@ -38,8 +38,8 @@ void check_convergence(double g, int nodes, double tolerance) {
       CAPTURE(g);
       CAPTURE(optical_depth);
       CAPTURE(albedo);
-      const auto coarse = answers(optical_depth, albedo, g, nodes);
-      const auto fine = answers(optical_depth, albedo, g, 3 * nodes / 2);
+      const auto coarse = slab_values(optical_depth, albedo, g, nodes);
+      const auto fine = slab_values(optical_depth, albedo, g, 3 * nodes / 2);
       for (std::size_t i = 0; i < fine.size(); ++i)
         CHECK(coarse[i] == doctest::Approx(fine[i]).epsilon(tolerance));
     }
@@ -48,14 +48,14 @@ void check_convergence(double g, int nodes, double tolerance) {
 
 }  // namespace
 
-TEST_CASE("discrete ordinates converge with the number of nodes") {
+TEST_CASE("discrete ordinates: converge with the number of nodes") {
   check_convergence(0, 24, 1e-7);
   check_convergence(0.5, 24, 1e-6);
   check_convergence(-0.5, 24, 1e-6);
   check_convergence(0.9, 80, 1e-5);
 }
 
-TEST_CASE("discrete ordinates conserve power without absorption") {
+TEST_CASE("discrete ordinates: conserve power without absorption") {
   for (const double g : {0.0, 0.9, -0.5}) {
     for (const double optical_depth : {0.01, 1.0, 100.0}) {
       for (const double light : {0.0, oblique, 1.55}) {
@@ -68,7 +68,7 @@ TEST_CASE("discrete ordinates conserve power without absorption") {
   }
 }
 
-TEST_CASE("discrete ordinates agree with the integral equation of isotropic scattering") {
+TEST_CASE("discrete ordinates: agree with the integral equation of isotropic scattering") {
   for (const double albedo : {1.0, 0.8}) {
     for (const double optical_depth : {0.3, 5.0}) {
       const std::vector<double> views = {0, 0.5, -1.3, pi - 0.4, pi + 1.2};
@@ -80,13 +80,13 @@ TEST_CASE("discrete ordinates agree with the integral equation of isotropic scat
         for (const double view : views)
           CHECK(slab.covariance_without_reversed(light, view) ==
                 doctest::Approx(integral.without_reversed({light, view}, {light, view}).real())
-                    .epsilon(2e-4));  // of the integral equation's cells
+                    .epsilon(2e-4));  // discretisation of the integral equation
       }
     }
   }
 }
 
-TEST_CASE("a thin slab scatters once") {
+TEST_CASE("discrete ordinates: a thin slab agrees with single scattering") {
   const double optical_depth = 1e-5, g = 0.7, light = 0.4;
   const std::vector<double> views = {0.1, -0.4, 1.2, pi - 0.3, pi + 1};
   std::vector<double> angles = views;
@@ -97,7 +97,7 @@ TEST_CASE("a thin slab scatters once") {
           doctest::Approx(0.9 * optical_depth * henyey_greenstein(g)(view - light)).epsilon(1e-4));
 }
 
-TEST_CASE("discrete ordinates are reciprocal") {
+TEST_CASE("discrete ordinates: reciprocal") {
   const SlabTransport slab({3, 0.9, henyey_greenstein(0.6)}, {0.3, 1.0}, 40);
   for (const double sign : {1.0, -1.0})
     CHECK(slab.covariance_without_reversed(0.3, sign * 1.0) ==

@@ -18,7 +18,7 @@ oracles::GaussPanels all_views() {
   return views;
 }
 
-/// Intensity of light 0 integrated over all views.
+/// Returns the intensity of light 0 integrated over all views.
 Estimate scattered_power(const std::function<Scene(const CovarianceRequest&)>& scene, double light,
                          std::uint64_t paths, std::uint64_t seed) {
   const auto views = all_views();
@@ -26,8 +26,8 @@ Estimate scattered_power(const std::function<Scene(const CovarianceRequest&)>& s
   return tests::run(full, ReversedPaths::no, paths, seed).weighted_sum(views.weight);
 }
 
-/// Power taken out of the beam in a box: 1 - exp(-mu_t chord) over the outline that the light
-/// meets, weighted with the flux through it.
+/// Returns the power that a box removes from the beam: 1 - exp(-mu_t chord) over the illuminated
+/// outline, weighted with the flux through it.
 double extinguished_by_box(const Domain& box, double mu_t, double light) {
   const Vec2 w = direction(light);
   constexpr int points = 4000;
@@ -45,8 +45,8 @@ double extinguished_by_box(const Domain& box, double mu_t, double light) {
   return power;
 }
 
-/// An analog simulation that shares nothing with the estimator but its random numbers: photons, not
-/// paths, counted where they leave. Shares of the photons that meet the medium.
+/// Counts of an analog simulation that shares only the random numbers with the estimator: photons,
+/// not paths, counted where they leave. Shares of the photons that enter the medium.
 struct PhotonCount {
   double unscattered = 0, forward = 0, backward = 0, absorbed = 0;
 };
@@ -85,7 +85,7 @@ PhotonCount count_photons(const Scene& scene, double light, int photons, std::ui
 }
 
 void check_against_photons(const std::function<Scene(const CovarianceRequest&)>& make, double light,
-                           double met_power, std::uint64_t seed) {
+                           double incident_power, std::uint64_t seed) {
   const auto views = all_views();
   const Scene scene = make(intensity_request({light}, tests::far_views(views.node)));
   const auto result = tests::run(scene, ReversedPaths::no, 30000, seed);
@@ -97,8 +97,8 @@ void check_against_photons(const std::function<Scene(const CovarianceRequest&)>&
   const auto compare = [&](const std::vector<double>& weights, double share) {
     const auto power = result.weighted_sum(weights);
     const double photon_error = std::sqrt(share * (1 - share) / photons);
-    CHECK_WITHIN_4_SIGMA(power.value[0] / met_power,
-                         std::hypot(power.error[0] / met_power, photon_error), share, 0);
+    CHECK_WITHIN_4_SIGMA(power.value[0] / incident_power,
+                         std::hypot(power.error[0] / incident_power, photon_error), share, 0);
   };
   compare(forward, count.forward);
   compare(backward, count.backward);
@@ -106,7 +106,7 @@ void check_against_photons(const std::function<Scene(const CovarianceRequest&)>&
 
 }  // namespace
 
-TEST_CASE("a lossless slab scatters all that it takes out of the beam") {
+TEST_CASE("lossless slab: scattered power equals the extinction of the beam") {
   std::uint64_t seed = 0;
   for (const double light : {0.0, 0.9}) {
     for (const double g : {0.0, 0.9}) {
@@ -126,7 +126,7 @@ TEST_CASE("a lossless slab scatters all that it takes out of the beam") {
   }
 }
 
-TEST_CASE("a lossless box scatters all that it takes out of the beam, lit from any side") {
+TEST_CASE("lossless box: scattered power equals the extinction of the beam from any side") {
   std::uint64_t seed = 20;
   for (const double light : {0.0, 0.6, -pi / 2, 2.4}) {
     for (const double g : {0.0, 0.9}) {
@@ -147,7 +147,7 @@ TEST_CASE("a lossless box scatters all that it takes out of the beam, lit from a
   }
 }
 
-TEST_CASE("an absorbing slab keeps the share that the integral equation says") {
+TEST_CASE("absorbing slab: scattered power agrees with the integral equation") {
   std::uint64_t seed = 40;
   for (const double light : {0.0, 0.9}) {
     for (const double albedo : {0.99, 0.5}) {
@@ -164,7 +164,8 @@ TEST_CASE("an absorbing slab keeps the share that the integral equation says") {
   }
 }
 
-TEST_CASE("transmitted and reflected power agree with counted photons, anisotropic and absorbing") {
+TEST_CASE(
+    "anisotropic absorbing media: transmitted and reflected power agree with counted photons") {
   const double light = 0.7;
   check_against_photons(
       [](const CovarianceRequest& request) {

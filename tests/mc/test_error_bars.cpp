@@ -27,8 +27,8 @@ Scene box_points(const CovarianceRequest& request) {
   return scene;
 }
 
-/// Root-mean-square spread of what `estimate_of` makes of many seeds, over the reported error, per
-/// value. That of 200 normal numbers is known to 5 %.
+/// Returns, per value, the root-mean-square spread of `estimate_of` over many seeds divided by the
+/// reported error. The spread of 200 normal numbers is accurate to 5 %.
 std::vector<double> spread_over_error(const std::function<Estimate(std::uint64_t)>& estimate_of) {
   constexpr int runs = 200;
   std::vector<Estimate> estimates;
@@ -49,9 +49,9 @@ std::vector<double> spread_over_error(const std::function<Estimate(std::uint64_t
 
 }  // namespace
 
-TEST_CASE("error bars are honest: estimates of many seeds spread as they say") {
+TEST_CASE("error bars: agree with the spread of estimates over seeds") {
   const Scene resonant = box_points(memory_effect_request(2 * pi, 0, {0.1, pi}, {0.04}));
-  // peaked scattering seen backwards, and a sensor a twentieth of a wavelength off the edge
+  // peaked scattering in backscattering, and a sensor a twentieth of a wavelength off the edge
   const Scene peaked = tests::hg_box(
       20, 10, {4, 0.9, 0.9}, full_request({0, 0.5}, {far_view(pi), near_sensor({1, 10.05})}));
   for (const Scene& scene : {resonant, peaked}) {
@@ -62,8 +62,8 @@ TEST_CASE("error bars are honest: estimates of many seeds spread as they say") {
   }
 }
 
-TEST_CASE("error bars are honest behind deep slabs that absorb strongly") {
-  // Where rare paths carry the result, most runs miss them: too low, and too sure.
+TEST_CASE("error bars: cover the exact value behind deep absorbing slabs") {
+  // If rare paths dominate, most runs miss them: values and errors are too small.
   const double optical_depth = 30, albedo = 0.6;
   const Scene scene =
       tests::hg_slab(10, {10 / optical_depth, 0, albedo}, intensity_request({0}, {far_view(0)}));
@@ -84,7 +84,7 @@ TEST_CASE("error bars are honest behind deep slabs that absorb strongly") {
   CHECK(sum == doctest::Approx(expected).epsilon(0.02));
 }
 
-TEST_CASE("error bars of the modulus of a complex correlation are honest") {
+TEST_CASE("error bars of the modulus of a complex correlation: agree with the spread over seeds") {
   // Shear turns the phase; the error of the complex correlation is up to twice that of its modulus.
   const Scene scene =
       tests::hg_slab(50, {10, 0.6}, intensity_request({0}, tests::far_views({0.2, pi - 0.5})));
@@ -103,7 +103,7 @@ TEST_CASE("error bars of the modulus of a complex correlation are honest") {
   for (const double ratio : ratios) CHECK(ratio == doctest::Approx(1).epsilon(0.15));
 }
 
-TEST_CASE("error bars of the memory effect and its range are honest") {
+TEST_CASE("error bars of the memory effect and its range: agree with the spread over seeds") {
   const auto request =
       memory_effect_request(2 * pi, 0, {0, 0.3}, {0.005, 0.01, 0.02, 0.03, 0.04, 0.06});
   const Scene scene = tests::hg_slab(10, {2, 0.5}, request);

@@ -30,7 +30,7 @@ Scene points_in_box(const CovarianceRequest& request) {
   return scene;
 }
 
-/// Entry by entry, relative to the largest.
+/// Checks each entry, with a tolerance relative to the largest.
 void check_same(const std::vector<Complex>& found, const std::vector<Complex>& expected,
                 double tolerance) {
   REQUIRE(found.size() == expected.size());
@@ -62,8 +62,8 @@ std::vector<double> eigenvalues(const std::vector<Complex>& lower_rows, int n) {
   return values;
 }
 
-/// With every path sampled and scored, so that scenes that differ in lights, views or entries alone
-/// see the same ones.
+/// Samples and scores every path, so that scenes that differ only in lights, views or entries use
+/// the same paths.
 Estimate estimate(const Scene& scene, ReversedPaths reversed, std::uint64_t paths,
                   std::uint64_t seed) {
   Plan plan = make_plan(scene, reversed);
@@ -74,7 +74,7 @@ Estimate estimate(const Scene& scene, ReversedPaths reversed, std::uint64_t path
 
 }  // namespace
 
-TEST_CASE("the full covariance holds the entries that lists give, and is positive semidefinite") {
+TEST_CASE("full covariance: equals listed entries and is positive semidefinite") {
   const auto full = full_request(lights, tests::far_views(views));
   auto listed = full;  // the same entries by the other accumulator, on the same paths
   listed.kind = Kind::pairs;
@@ -93,7 +93,8 @@ TEST_CASE("the full covariance holds the entries that lists give, and is positiv
   }
 }
 
-TEST_CASE("a full covariance of many channels agrees with its list on the same small batches") {
+TEST_CASE(
+    "full covariance of many channels: agrees with listed entries on the same small batches") {
   std::vector<double> many;
   for (int v = 0; v < 70; ++v) many.push_back(-pi + 0.09 * v);
   const auto full = full_request(lights, tests::far_views(many));
@@ -107,7 +108,7 @@ TEST_CASE("a full covariance of many channels agrees with its list on the same s
   check_same(found.entries().value, expected.entries().value, 1e-12);
 }
 
-TEST_CASE("intensities are the diagonal of the full covariance") {
+TEST_CASE("intensities: equal the diagonal of the full covariance") {
   const auto far = tests::far_views(views);
   const auto full =
       estimate(points_in_box(full_request(lights, far)), ReversedPaths::yes, 10000, 3);
@@ -119,7 +120,7 @@ TEST_CASE("intensities are the diagonal of the full covariance") {
   check_same(diagonal.value, expected, 1e-12);
 }
 
-TEST_CASE("the covariance of a swapped pair is the conjugate") {
+TEST_CASE("covariance: a swapped pair gives the conjugate") {
   auto pairs = full_request(lights, tests::far_views(views));
   pairs.kind = Kind::pairs;
   auto swapped = pairs;
@@ -130,13 +131,13 @@ TEST_CASE("the covariance of a swapped pair is the conjugate") {
   check_same(other.value, one.value, 1e-12);
 }
 
-TEST_CASE("the unit of length does not matter: the covariance scales like a length") {
+TEST_CASE("covariance of a box: scales linearly with the unit of length") {
   const double unit = 7.3;
   auto request = full_request(lights, tests::far_views(views));
   request.views.push_back(near_sensor({1, 12}));
   for (std::uint32_t light = 0; light < lights.size(); ++light)
     request.channels.push_back({light, static_cast<std::uint32_t>(views.size())});
-  request.entries.push_back({12, 12});  // near: |u|^2 falls off like length / r, so does not scale
+  request.entries.push_back({12, 12});  // near: |u|^2 falls off as length / r: does not scale
   request.entries.push_back({14, 13});
   auto scaled = request;
   scaled.views.back() = near_sensor({unit, 12 * unit});
@@ -158,7 +159,7 @@ TEST_CASE("the unit of length does not matter: the covariance scales like a leng
   }
 }
 
-TEST_CASE("per unit length of a slab the unit of length does not matter at all") {
+TEST_CASE("covariance per unit length of a slab: independent of the unit of length") {
   const double unit = 7.3;
   const auto request = memory_effect_request(2 * pi, 0.2, {0.3, pi - 0.2}, {0.01});
   const auto scaled = memory_effect_request(2 * pi / unit, 0.2, {0.3, pi - 0.2}, {0.01});
@@ -168,7 +169,7 @@ TEST_CASE("per unit length of a slab the unit of length does not matter at all")
   check_same(found.value, base.value, 1e-9);
 }
 
-TEST_CASE("mirrored left to right the covariance is the same") {
+TEST_CASE("covariance: invariant under mirroring left to right") {
   const std::vector<AnglePair> pairs = {
       {0.3, 0.1, 0.32, 0.12}, {0.3, 2.9, 0.33, 2.87}, {0.7, -1, 0.7, -1}};
   std::vector<AnglePair> mirrored;
@@ -179,7 +180,7 @@ TEST_CASE("mirrored left to right the covariance is the same") {
       estimate(tests::hg_box(20, 10, bulk, pairs_request(pairs)), ReversedPaths::yes, 100000, 8));
 }
 
-TEST_CASE("mirrored front to back the box covariance picks up the phase of the shifted origin") {
+TEST_CASE("covariance of a box: mirroring front to back adds the phase of the shifted origin") {
   const double depth = 10, k = 2 * pi;
   const std::vector<AnglePair> pairs = {
       {0.3, 0.1, 0.32, 0.12}, {0.3, 2.9, 0.33, 2.87}, {0.7, -1, 0.7, -1}};
@@ -199,7 +200,7 @@ TEST_CASE("mirrored front to back the box covariance picks up the phase of the s
                                 ReversedPaths::yes, 100000, 10));
 }
 
-TEST_CASE("reciprocity: light and view change places") {
+TEST_CASE("reciprocity of a box: exchanged light and view give the same covariance") {
   const std::vector<AnglePair> pairs = {{0.3, 0.1, 0.3, 0.1},
                                         {0.3, 0.1, 0.34, 0.13},
                                         {0.2, 3.3, 0.2, 3.3},
@@ -228,8 +229,8 @@ TEST_CASE(
   check_4_sigma(other, one);
 }
 
-TEST_CASE("in transmission reversed paths change nothing: their weighing is unbiased") {
-  // short waves: what R adds oscillates away
+TEST_CASE("reversed paths: leave transmission unchanged (unbiased weights)") {
+  // short wavelength: the contribution of reversed paths averages to 0
   const auto request = full_request({0, 0.01}, tests::far_views({0.3, 0.31, -0.9}));
   for (const double g : {0.0, 0.8}) {
     const Scene scene = tests::hg_box(20, 10, {10.0 / 3, g}, request, 0.01);
@@ -238,19 +239,19 @@ TEST_CASE("in transmission reversed paths change nothing: their weighing is unbi
   }
 }
 
-TEST_CASE("Henyey-Greenstein with g = 0 is a box of points") {
+TEST_CASE("Henyey-Greenstein with g = 0: equals a box of points") {
   const auto request = full_request(lights, tests::far_views(views));
   const Scene points = points_in_box(request);
   const Scene isotropic = tests::hg_box(20, 10, {1 / points.medium.mu_t, 0, 1}, request);
   check_same(estimate(isotropic, ReversedPaths::yes, 5000, 17).value,
              estimate(points, ReversedPaths::yes, 5000, 17).value, 1e-9);
-  // and g -> 0 is continuous, through the other kernel
+  // g -> 0 is continuous, though it uses the other kernel
   const Scene almost = tests::hg_box(20, 10, {1 / points.medium.mu_t, 1e-12, 1}, request);
   check_same(estimate(almost, ReversedPaths::yes, 5000, 17).value,
              estimate(points, ReversedPaths::yes, 5000, 17).value, 1e-8);
 }
 
-TEST_CASE("thin TM cylinders are isotropic scatterers of their cross-section") {
+TEST_CASE("thin TM cylinders: equal isotropic scatterers of their cross-section") {
   SceneSpec spec;
   spec.width = 20;
   spec.depth = 10;
@@ -260,7 +261,7 @@ TEST_CASE("thin TM cylinders are isotropic scatterers of their cross-section") {
   const auto request = full_request({0, 0.1}, tests::far_views({0.1, 1.0, pi}));
   Scene cylinders = make_scene(spec);
   cylinders.request = request;
-  // more of them than would fit: the Monte Carlo method sees a density only
+  // more of them than would fit: Monte Carlo uses only the density
   const double more = 200;
   cylinders.medium.density *= more;
   cylinders.medium.mu_s *= more;
@@ -270,7 +271,7 @@ TEST_CASE("thin TM cylinders are isotropic scatterers of their cross-section") {
                 estimate(isotropic, ReversedPaths::yes, 50000, 19), 2e-3);
 }
 
-TEST_CASE("a distant near sensor sees the far field over sqrt(r)") {
+TEST_CASE("distant near sensor: agrees with the far field over sqrt(r)") {
   const double r = 1e7;
   const std::vector<double> angles = {0.1, 1.4, -2.8, pi - 0.2};
   std::vector<View> near;
@@ -286,7 +287,7 @@ TEST_CASE("a distant near sensor sees the far field over sqrt(r)") {
   }
 }
 
-TEST_CASE("the plan leaves out what a scene does not need") {
+TEST_CASE("plan: reversed paths and weights only for scenes that need them") {
   const auto plan_of = [](double light, double view, double albedo) {
     return make_plan(
         tests::hg_box(20, 10, {4, 0.5, albedo}, intensity_request({light}, {far_view(view)})),
@@ -296,7 +297,7 @@ TEST_CASE("the plan leaves out what a scene does not need") {
   CHECK(plan_of(0, 3, 1).reversed);
   CHECK(plan_of(3, 0.2, 1).reversed);
   CHECK_FALSE(plan_of(3, 2.9, 1).reversed);
-  // a box is lit and seen from the side as well: exact backscattering, and within the cone
+  // illumination and view from the side of a box: exact backscattering, and within the cone
   CHECK(plan_of(pi / 2, -pi / 2, 1).reversed);
   CHECK(plan_of(1.55, -1.565, 1).reversed);
   CHECK_FALSE(plan_of(0, 0.3, 1).weighted);

@@ -24,7 +24,7 @@ bool all_finite(const Estimate& estimate) {
   return finite;
 }
 
-/// Intensities of an isotropic slab of depth 10 against the integral equation.
+/// Compares intensities of an isotropic slab of depth 10 with the integral equation.
 void check_slab(double optical_depth, double albedo, const std::vector<double>& lights,
                 const std::vector<double>& views, ReversedPaths reversed, std::uint64_t paths,
                 std::uint64_t seed) {
@@ -50,23 +50,23 @@ void check_slab(double optical_depth, double albedo, const std::vector<double>& 
 
 }  // namespace
 
-TEST_CASE("optical depth 1e-3: what is seen is single scattering and a thousandth more") {
+TEST_CASE("optical depth 1e-3: intensities agree with the integral equation") {
   check_slab(1e-3, 1, {0, 0.8}, {0.1, -1, pi, 2.2}, ReversedPaths::yes, 32000, 1);
 }
 
-TEST_CASE("optical depth 100: little comes through, as much as it should") {
+TEST_CASE("optical depth 100: intensities agree with the integral equation") {
   check_slab(100, 1, {0}, {0.1, -1, 2.2}, ReversedPaths::no, 32000, 2);
 }
 
-TEST_CASE("albedo close to 1 is continuous") {
+TEST_CASE("albedo 1 - 1e-9: intensities agree with the integral equation") {
   check_slab(5, 1 - 1e-9, {0}, {0.1, pi}, ReversedPaths::no, 32000, 3);
 }
 
-TEST_CASE("grazing light and grazing views") {
+TEST_CASE("grazing light and views: intensities agree with the integral equation") {
   check_slab(1, 1, {1.5}, {0.1, 1.54, -1.54, 1.61, pi + 1.5}, ReversedPaths::no, 64000, 4);
 }
 
-TEST_CASE("along an infinite slab nothing is seen") {
+TEST_CASE("infinite slab: views along it are 0") {
   const auto request = intensity_request({0, 1.5}, tests::far_views({pi / 2, -pi / 2}));
   for (const auto reversed : {ReversedPaths::yes, ReversedPaths::no}) {
     const auto found = tests::run(tests::hg_slab(10, {5}, request), reversed, 8000, 5).entries();
@@ -74,7 +74,7 @@ TEST_CASE("along an infinite slab nothing is seen") {
   }
 }
 
-TEST_CASE("without scattering there is no covariance, and no NaN") {
+TEST_CASE("no scattering: covariance, correlation and errors are 0") {
   const auto request = memory_effect_request(k, 0, {0.1, pi}, {0.0, 0.01});
   SceneSpec empty;
   empty.width = 20;
@@ -94,7 +94,7 @@ TEST_CASE("without scattering there is no covariance, and no NaN") {
   for (const Complex value : coherent_field(empty_box)) CHECK(value == 0.0);
 }
 
-TEST_CASE("paths of two scatterers are found in the thinnest media") {
+TEST_CASE("thinnest media: double scattering is sampled") {
   const auto request = intensity_request({0}, tests::far_views({0.4, 2}));
   for (const double optical_depth : {1e-12, 1e-9, 1e-6}) {
     CAPTURE(optical_depth);
@@ -107,9 +107,9 @@ TEST_CASE("paths of two scatterers are found in the thinnest media") {
   }
 }
 
-TEST_CASE("extreme asymmetry: finite, and the power adds up") {
+TEST_CASE("extreme asymmetry: intensities are finite and conserve power") {
   for (const double g : {-0.999, 0.999}) {
-    // around the lobe at 0 or pi finely, elsewhere coarsely
+    // fine panels around the lobes at 0 and pi, coarse ones elsewhere
     oracles::GaussPanels views;
     for (const double lobe : {0.0, pi}) {
       double inner = 0;
@@ -133,7 +133,7 @@ TEST_CASE("extreme asymmetry: finite, and the power adds up") {
   }
 }
 
-TEST_CASE("intensities without reversed paths do not know the wavelength") {
+TEST_CASE("intensities without reversed paths: independent of the wavelength") {
   const std::vector<double> views = {0.1, 1.5, pi};
   const auto request = intensity_request({0, -0.7}, tests::far_views(views));
   const tests::HgBulk bulk{4, 0.5, 1};
@@ -146,7 +146,7 @@ TEST_CASE("intensities without reversed paths do not know the wavelength") {
           1e-12 * std::abs(long_waves.value[e]));
 }
 
-TEST_CASE("needles and sheets of a box, lit and seen along their edges: finite") {
+TEST_CASE("needle- and sheet-like boxes: covariances along their edges are finite") {
   const auto request =
       full_request({0, pi / 2, pi, 1.5707}, tests::far_views({0, pi / 2, pi, -pi / 2}));
   for (const auto& [width, depth] : {std::pair{1e-3, 1e3}, {1e3, 1e-3}, {1e-6, 1e-6}}) {

@@ -13,13 +13,14 @@ namespace {
 
 using tests::pi;
 
-/// From the front, both sides, behind; along the axes and oblique; grazing.
+/// Directions from the front, both sides and behind: axial, oblique and grazing.
 const std::vector<double> directions = {0, 0.5, -1.2, pi / 2, -pi / 2, 1.55, 2.5, -2.8, pi};
 
 constexpr double width = 6, depth = 4;
 constexpr int columns = 10, rows = 8;
 
-/// Of first scatterers in a cell: the density on a fine grid of points (it is 1/chord in corners).
+/// Returns the probability of a first scatterer in a cell by the density at a fine grid of points
+/// (it is 1/chord in corners).
 double cell_probability(const FirstScatterer& first, int column, int row) {
   constexpr int grid = 80;
   const double dx = width / (columns * grid), dz = depth / (rows * grid);
@@ -52,7 +53,7 @@ std::vector<double> counts_per_cell(const Scene& scene, const FirstScatterer& fi
 
 }  // namespace
 
-TEST_CASE("box: first scatterers are sampled by the density that the weight uses") {
+TEST_CASE("first scatterers in a box: samples follow the density of the weights") {
   std::uint64_t seed = 0;
   for (const double mean_free_path : {1000.0, 1.5}) {
     for (const double light : directions) {
@@ -70,7 +71,7 @@ TEST_CASE("box: first scatterers are sampled by the density that the weight uses
   }
 }
 
-TEST_CASE("slab: first depths are sampled by the density that the weight uses") {
+TEST_CASE("first scatterers in a slab: sampled depths follow the density of the weights") {
   std::uint64_t seed = 100;
   for (const double light : {0.0, -0.8, 1.5}) {
     for (const double optical_depth : {1e-3, 3.0}) {
@@ -78,7 +79,7 @@ TEST_CASE("slab: first depths are sampled by the density that the weight uses") 
           tests::hg_slab(depth, {depth / optical_depth}, intensity_request({light}, {far_view(0)}));
       const FirstScatterer first(scene);
       RandomStream random(++seed, 79, 0);
-      // of a thick slab only as deep as light gets
+      // in a thick slab only as deep as light penetrates
       constexpr int bins = 20;
       const double seen = std::min(depth, 8 * std::cos(light) * depth / optical_depth);
       std::vector<double> counts(bins), probabilities;
@@ -100,15 +101,15 @@ TEST_CASE("slab: first depths are sampled by the density that the weight uses") 
   }
 }
 
-TEST_CASE("first scatterers that reach deeper are sampled by the density that the weight uses") {
+TEST_CASE("first scatterers guided by importance: samples follow the density of the weights") {
   std::uint64_t seed = 200;
-  for (const double rise : {0.4, -0.4, 3.0}) {
+  for (const double gradient : {0.4, -0.4, 3.0}) {
     for (const double light : {0.3, 2.9}) {
-      CAPTURE(rise);
+      CAPTURE(gradient);
       CAPTURE(light);
       const Scene scene =
           tests::hg_box(width, depth, {1}, intensity_request({light}, {far_view(0)}));
-      const FirstScatterer first(scene, rise);
+      const FirstScatterer first(scene, gradient);
       std::vector<double> probabilities;
       for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column)
@@ -116,14 +117,15 @@ TEST_CASE("first scatterers that reach deeper are sampled by the density that th
       flatspeckle::tests::check_chi_square(counts_per_cell(scene, first, ++seed), probabilities);
     }
   }
-  // towards what is worth more, and not away from it
+  // deeper towards larger importance, unchanged away from it
   const Scene scene = tests::hg_slab(10, {1}, intensity_request({0}, {far_view(0)}));
   const double plain = FirstScatterer(scene).density({0, 8});
   CHECK(FirstScatterer(scene, 0.5).density({0, 8}) > 10 * plain);
   CHECK(FirstScatterer(scene, -0.5).density({0, 8}) == plain);
 }
 
-TEST_CASE("several lights: the mixture and first direction have the density that the weight uses") {
+TEST_CASE(
+    "first scatterers of several lights: position and direction follow the weights' density") {
   const Scene scene = tests::hg_box(width, depth, {1.5, 0.6},
                                     intensity_request({0, 0.05, 0.4, -1.2}, {far_view(0)}));
   CHECK(representative_lights(scene) == Lights{0.0, -1.2, 0.4, 0.05});
@@ -134,7 +136,7 @@ TEST_CASE("several lights: the mixture and first direction have the density that
       probabilities.push_back(cell_probability(first, column, row));
   flatspeckle::tests::check_chi_square(counts_per_cell(scene, first, 500), probabilities);
 
-  // Left in any direction: the density of position and direction integrates to that of position.
+  // The density of position and direction, integrated over directions, is that of position.
   const HenyeyGreensteinScattering scattering{{0.6}};
   const Vec2 x{0.3, 1.1};
   double sum = 0;

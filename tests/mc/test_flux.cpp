@@ -21,7 +21,7 @@ using oracles::SlabTransport;
 using tests::paths;
 using tests::pi;
 
-/// Reflectance, transmittance, side loss and absorptance together, per light.
+/// Returns the sum of reflectance, transmittance, side loss and absorptance, per light.
 Estimate total(const tests::FluxRun& run) {
   return jackknife(run.sums, [&](double samples, std::span<const Complex> all) {
     std::vector<Complex> totals(run.job.lights);
@@ -37,8 +37,8 @@ Scene lit_box(double width, double depth, const tests::HgBulk& bulk,
   return tests::hg_box(width, depth, bulk, intensity_request(lights, tests::far_views({0})));
 }
 
-/// Photons that are counted where they leave a box: nothing shared with the estimator but random
-/// numbers. Reflected, transmitted, through the sides, absorbed; unscattered ones are not counted.
+/// Counts photons where they leave a box, sharing only random numbers with the estimator. Returns
+/// the shares reflected, transmitted, through the sides, absorbed; unscattered ones do not count.
 std::vector<double> count_photons(const Scene& scene, double light, int photons) {
   RandomStream random(7, 80, 0);
   const Domain& box = scene.domain;
@@ -113,7 +113,7 @@ SceneSpec bulk_slab(const std::string& phase) {
   return spec;
 }
 
-/// Flux, and the covariance of the same slab, against theory with the same phase function.
+/// Compares flux and covariance of a slab with theory for the same phase function.
 void check_bulk(const SceneSpec& spec, const std::function<double(double)>& phase) {
   const Scene scene = make_scene(spec);
   const auto flux = tests::run_flux(scene, paths(200000), 1).flux;
@@ -162,7 +162,7 @@ TEST_CASE("slabs with a tabulated phase function agree with discrete ordinates")
   std::filesystem::remove(path);
 }
 
-TEST_CASE("exit angles follow the distribution of discrete ordinates") {
+TEST_CASE("flux of a slab: exit angles follow the distribution of discrete ordinates") {
   const double light = pi / 3, optical_depth = 2, g = 0.5;
   constexpr std::size_t bins = 24;
   constexpr std::uint64_t photons = 400000;
@@ -176,7 +176,7 @@ TEST_CASE("exit angles follow the distribution of discrete ordinates") {
   auto angles = views.node;
   angles.push_back(light);
   const SlabTransport theory({optical_depth, 1, henyey_greenstein(g)}, angles, 40);
-  // Lossless light leaves with the weight with which it starts: the bins hold counts.
+  // Without absorption walks leave with their initial weight, so that bins are counts.
   const double scattered = 1 - theory.direct_transmittance(light);
   double chi_squared = 0, all = 0;
   for (std::size_t bin = 0; bin < bins; ++bin) {
@@ -214,7 +214,7 @@ TEST_CASE("flux of a box agrees with counted photons") {
   }
 }
 
-TEST_CASE("what is reflected, transmitted, lost and absorbed adds up, from every side of a box") {
+TEST_CASE("flux of a box: shares add up to the extinction for light from every side") {
   const std::vector<double> lights = {0, 0.6, -pi / 2, 2.4, pi};
   for (const double albedo : {1.0, 0.9, 0.3}) {
     for (const double g : {0.0, 0.9}) {
@@ -232,7 +232,7 @@ TEST_CASE("what is reflected, transmitted, lost and absorbed adds up, from every
   }
 }
 
-TEST_CASE("without absorption no share is lost in a slab, walk by walk") {
+TEST_CASE("flux of a lossless slab: every walk conserves power") {
   for (const double optical_depth : {1e-3, 3.0, 100.0}) {
     const Scene scene = tests::lit_slab(optical_depth, 1, 0.5, {0, 1.0});
     const Estimate sum = total(tests::run_flux(scene, paths(4000), 6));
@@ -243,7 +243,7 @@ TEST_CASE("without absorption no share is lost in a slab, walk by walk") {
   }
 }
 
-TEST_CASE("a box is its mirror image and its quarter turn") {
+TEST_CASE("flux of a box: invariant under mirroring and quarter turns") {
   const tests::HgBulk bulk{1, 0.6, 0.95};
   const auto tall = tests::run_flux(lit_box(4, 9, bulk, {0.5, -0.5, pi - 0.5}), paths(40000), 8);
   const auto wide = tests::run_flux(lit_box(9, 4, bulk, {pi / 2 - 0.5}), paths(40000), 9);
@@ -262,7 +262,7 @@ TEST_CASE("a box is its mirror image and its quarter turn") {
   CHECK_WITHIN_4_SIGMA(faces(wide.flux), error, tall.flux.side_loss.value[0], 0);
 }
 
-TEST_CASE("direct transmittance of a box is the mean over its chords") {
+TEST_CASE("direct transmittance of a box: equals the mean over its chords") {
   for (const double light : {0.0, 0.3, 1.2, -pi / 2, 2.0, pi}) {
     const Scene scene = lit_box(7, 3, {2}, {light});
     const Vec2 w = direction(light);
@@ -280,7 +280,7 @@ TEST_CASE("direct transmittance of a box is the mean over its chords") {
   }
 }
 
-TEST_CASE("a share of the light that no path has reached meets no target error") {
+TEST_CASE("flux: a share that no path has reached does not meet a target error") {
   const auto request = intensity_request({0}, tests::far_views({0}));
   StopRule stop;
   stop.target_error = 0.05;
@@ -290,7 +290,7 @@ TEST_CASE("a share of the light that no path has reached meets no target error")
   CHECK(std::isinf(dark.job.batches.relative_error(dark.sums)));
 }
 
-TEST_CASE("flux in the extremes: almost nothing there, nothing scattered, hardly absorbed") {
+TEST_CASE("flux of extreme slabs: thin, without scattering, almost lossless") {
   const auto thin = tests::run_flux(tests::lit_slab(1e-3, 0.7, 0.5, {0.4}), paths(50000), 11).flux;
   const SlabTransport theory({1e-3, 0.7, henyey_greenstein(0.5)}, {0.4}, 30);
   tests::check_share(thin.reflectance, 0, theory.reflectance(0.4));
@@ -309,7 +309,7 @@ TEST_CASE("flux in the extremes: almost nothing there, nothing scattered, hardly
   CHECK(nearly.absorptance.value[0].real() < 1e-7);
 }
 
-TEST_CASE("flux does not depend on the threads or on the unit of length") {
+TEST_CASE("flux: independent of the threads and of the unit of length") {
   const auto in_units = [](double unit, int threads) {
     const auto request = intensity_request({0.3}, tests::far_views({0}));
     const Scene scene = tests::hg_slab(10 * unit, {2 * unit, 0.5, 0.9}, request, unit);

@@ -11,7 +11,7 @@ using tests::pi;
 
 }  // namespace
 
-TEST_CASE("flux through optical depth 100, by day 15, absorbing or not") {
+TEST_CASE("flux at optical depth 100 (by day 15): agrees with discrete ordinates") {
   const double optical_depth = is_night ? 100 : 15;
   std::uint64_t seed = 100;
   for (const double g : {0.0, 0.9})
@@ -21,7 +21,7 @@ TEST_CASE("flux through optical depth 100, by day 15, absorbing or not") {
   tests::check_slab(100, 0.01, 0, is_night ? 0.03 : 0.06, ++seed);
 }
 
-TEST_CASE("transmittance of a thick lossless slab has the limit of diffusion theory") {
+TEST_CASE("flux of a thick lossless slab: transmittance agrees with diffusion theory") {
   // (l* + z0) / (L + 2 z0), z0 = 0.818 l* (C20)
   for (const double g : {0.0, 0.8}) {
     const double reach = 1 / (1 - g);
@@ -33,10 +33,10 @@ TEST_CASE("transmittance of a thick lossless slab has the limit of diffusion the
   }
 }
 
-TEST_CASE("forward-peaked scattering, g = 0.99, at optical depth 100") {
+TEST_CASE("flux at optical depth 100, g = 0.99: reflectance agrees with discrete ordinates") {
   const Scene scene = tests::lit_slab(100, 1, 0.99, {0});
   const auto flux = tests::run_flux(scene, tests::paths(40000), 120).flux;
-  // discrete ordinates with 800 nodes a quadrant; with 400, 0.31908
+  // discrete ordinates with 800 nodes per quadrant; 400 nodes give 0.31908
   const double expected = 0.31914;
   CHECK_WITHIN_4_SIGMA(flux.reflectance.value[0], flux.reflectance.error[0], expected, 1e-5);
   CHECK(flux.reflectance.error[0] < 0.01 * expected);

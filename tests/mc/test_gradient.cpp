@@ -6,7 +6,7 @@
 #include "bench/oracles/quadrature.h"
 #include "bench/oracles/slab_theory.h"
 #include "core/error.h"
-#include "mc/paths/endpoint_factors/end_factors.h"
+#include "mc/paths/endpoint_factors/endpoint_factors.h"
 #include "mc/paths/estimators/gradient.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/theory/memory_effect.h"
@@ -24,7 +24,7 @@ constexpr double k = 2 * pi;
 
 Channel angles(const Scene& scene, std::uint32_t channel) {
   const auto [i, v] = scene.request.channels[channel];
-  return {angle_of(-light_ends(scene)[i].towards), angle_of(view_ends(scene)[v].towards)};
+  return {angle_of(-light_endpoints(scene)[i].towards), angle_of(view_endpoints(scene)[v].towards)};
 }
 
 struct GradientRun {
@@ -33,7 +33,7 @@ struct GradientRun {
   std::size_t entries;
 
   Estimate covariance() const { return jackknife(sums, job.field.covariance); }
-  /// Of one parameter, by entry.
+  /// Returns the derivatives of all entries by one parameter.
   Estimate gradient(const std::string& parameter) const {
     const std::size_t p = static_cast<std::size_t>(
         std::find(job.parameters.begin(), job.parameters.end(), parameter) -
@@ -59,7 +59,7 @@ GradientRun differentiate(const Scene& scene, ReversedPaths reversed, std::uint6
   return differentiate(scene, gradient_plan(scene, reversed), paths, seed);
 }
 
-/// Of fourth order.
+/// Returns the central difference of fourth order.
 template <typename F>
 auto derivative(const F& f, double at, double step) -> decltype(f(at)) {
   return (8.0 * (f(at + step) - f(at - step)) - (f(at + 2 * step) - f(at - 2 * step))) /
@@ -72,11 +72,11 @@ void check_entries(const Estimate& found, const std::function<Complex(std::size_
     CAPTURE(e);
     const Complex value = expected(e);
     CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], value, bias * std::abs(value));
-    CHECK(found.error[e] < 0.2 * std::abs(value));  // else the check says nothing
+    CHECK(found.error[e] < 0.2 * std::abs(value));  // so that the check is significant
   }
 }
 
-/// The integral equation differentiated by its own finite differences, g = 0.
+/// Compares derivatives with finite differences of the integral equation, g = 0.
 void check_against_slab_theory(const HgBulk& bulk, double depth, const CovarianceRequest& request,
                                ReversedPaths reversed, std::uint64_t paths, std::uint64_t seed) {
   const Scene scene = tests::hg_slab(depth, bulk, request);
@@ -103,7 +103,7 @@ void check_against_slab_theory(const HgBulk& bulk, double depth, const Covarianc
 
 }  // namespace
 
-TEST_CASE("gradients come with the covariance of the same paths") {
+TEST_CASE("gradients: their covariance equals that of the same paths without derivatives") {
   const auto request = memory_effect_request(k, 0.2, {0.1, 0.5}, {0.01, -0.05});
   for (const auto reversed : {ReversedPaths::yes, ReversedPaths::no}) {
     const Scene scene = tests::hg_box(20, 10, {4, 0.5, 0.9}, request);
@@ -114,7 +114,7 @@ TEST_CASE("gradients come with the covariance of the same paths") {
   }
 }
 
-TEST_CASE("isotropic slab: derivatives by mu_t and albedo are those of the integral equation") {
+TEST_CASE("isotropic slab: derivatives by mu_t and albedo agree with the integral equation") {
   const auto views = intensity_request({0.3}, tests::far_views({0.1, 1.2, pi - 0.9, -2.0}));
   check_against_slab_theory({5, 0, 0.9}, 20, views, ReversedPaths::no, 200000, 11);
   check_against_slab_theory({40, 0, 0.5}, 20, views, ReversedPaths::no, 100000, 12);
@@ -122,13 +122,14 @@ TEST_CASE("isotropic slab: derivatives by mu_t and albedo are those of the integ
   check_against_slab_theory({5, 0, 0.95}, 20, tilts, ReversedPaths::no, 200000, 13);
 }
 
-TEST_CASE("isotropic slab: derivatives of the backscattering cone") {
+TEST_CASE(
+    "isotropic slab: derivatives of the backscattering cone agree with the integral equation") {
   const double back = 0.2 + pi;
   const auto cone = intensity_request({0.2}, tests::far_views({back, back + 0.01, back - 0.06}));
   check_against_slab_theory({5, 0, 0.9}, 20, cone, ReversedPaths::yes, 200000, 14);
 }
 
-TEST_CASE("a lossless slab scatters what it takes out of the beam, whatever its g") {
+TEST_CASE("lossless slab: derivatives of scattered power by mu_t and g equal those of extinction") {
   oracles::GaussPanels views;
   for (const double start : {-pi, -pi / 2, 0.0, pi / 2}) views.add(start, start + pi / 2, 2);
   const auto request = intensity_request({0.6}, tests::far_views(views.node));
@@ -156,7 +157,7 @@ TEST_CASE("a lossless slab scatters what it takes out of the beam, whatever its 
   }
 }
 
-TEST_CASE("single scattering: derivatives of the closed form") {
+TEST_CASE("single scattering: derivatives agree with the closed form") {
   const double depth = 10, light = 0.3, albedo = 1e-7;
   const std::vector<double> views = {0.1, 1.0, -2.5};
   for (const double g : {0.0, 0.6, -0.3}) {
@@ -184,7 +185,7 @@ TEST_CASE("single scattering: derivatives of the closed form") {
   }
 }
 
-TEST_CASE("single scattering by paths has the derivatives of the closed form") {
+TEST_CASE("single scattering by paths: derivatives agree with the closed form") {
   const auto request = pairs_request({{0.3, 0.1, 0.3, 0.1}, {0.3, 0.1, 0.33, 0.12}});
   const Scene scene = tests::hg_box(20, 10, {5, 0.4, 0.05}, request);
   Plan plan = gradient_plan(scene, ReversedPaths::no);
@@ -201,7 +202,7 @@ TEST_CASE("single scattering by paths has the derivatives of the closed form") {
   }
 }
 
-TEST_CASE("a swapped pair has the conjugate derivatives, however unlike its ends") {
+TEST_CASE("derivatives: a swapped pair of different channels gives the conjugate") {
   const auto request = pairs_request({{0.3, 0.1, -0.6, 1.4}, {0, 2.9, 0.5, -1.9}});
   auto swapped = request;
   for (auto& entry : swapped.entries) std::swap(entry.a, entry.b);
@@ -216,19 +217,19 @@ TEST_CASE("a swapped pair has the conjugate derivatives, however unlike its ends
   }
 }
 
-TEST_CASE("derivatives by g are those of transport") {
+TEST_CASE("derivatives by g: agree with transport") {
   const auto request = pairs_request(
       {{0, 0.1, 0, 0.1}, {0, 1, 0, 1}, {0, 0.1, 0.02, 0.12}, {0, pi - 0.5, 0, pi - 0.5}});
   for (const bool reversed : {true, false}) {
     const Scene scene = tests::hg_slab(10, {3, reversed ? 0.5 : 0, 0.97}, request);
-    const auto exact = slab_slopes(scene, reversed, {1e-4}, BulkParameter::g).value;
+    const auto exact = slab_derivatives(scene, reversed, {1e-4}, BulkParameter::g).value;
     const auto paths = reversed ? ReversedPaths::yes : ReversedPaths::no;
     check_entries(differentiate(scene, paths, 200000, 41).gradient("g"),
                   [&](std::size_t e) { return exact[request.entries.size() + e]; });
   }
 }
 
-TEST_CASE("nightly: derivatives by g are finite differences of long runs") {
+TEST_CASE("nightly: derivatives by g: agree with finite differences of long runs") {
   const auto request = pairs_request(
       {{0, 0.1, 0, 0.1}, {0, 1, 0, 1}, {0, 0.1, 0.02, 0.12}, {0, pi - 0.5, 0, pi - 0.5}});
   struct Case {
@@ -260,7 +261,7 @@ TEST_CASE("nightly: derivatives by g are finite differences of long runs") {
   }
 }
 
-TEST_CASE("reciprocity holds for derivatives") {
+TEST_CASE("derivatives: satisfy reciprocity") {
   const auto gradient = [](double light, double view, std::uint64_t seed) {
     const Scene scene =
         tests::hg_box(20, 10, {4, 0.6, 0.95}, pairs_request({{light, view, light, view}}));
@@ -274,7 +275,7 @@ TEST_CASE("reciprocity holds for derivatives") {
   }
 }
 
-TEST_CASE("a distant near sensor sees the far field's derivatives") {
+TEST_CASE("derivatives at a distant near sensor: agree with those of the far field") {
   const double r = 1e7;
   const std::vector<double> angles = {0.1, -2.8};
   std::vector<View> near;
@@ -285,7 +286,7 @@ TEST_CASE("a distant near sensor sees the far field's derivatives") {
   const Scene near_scene = tests::hg_box(20, 10, bulk, intensity_request({0}, near));
   Plan plan = gradient_plan(near_scene, ReversedPaths::yes);
   REQUIRE(plan.sampled_single);
-  plan.score_level = 0;  // no roulette, which knows no near sensors: the same paths
+  plan.score_level = 0;  // no roulette, which ignores near sensors: the same paths
   const auto near_run = differentiate(near_scene, plan, 4000, 61);
   const auto far_run = differentiate(far_scene, plan, 4000, 61);
   for (const char* parameter : {"mu_t", "g", "albedo"}) {
@@ -295,7 +296,7 @@ TEST_CASE("a distant near sensor sees the far field's derivatives") {
   }
 }
 
-TEST_CASE("derivatives of the memory effect are those of the integral equation's curve") {
+TEST_CASE("derivatives of the memory effect: agree with the integral equation") {
   const double depth = 20, mu_t = 0.1, albedo = 0.9;
   std::vector<double> tilts;
   for (int t = 0; t < 9; ++t) tilts.push_back(0.006 * t);
@@ -333,7 +334,7 @@ TEST_CASE("derivatives of the memory effect are those of the integral equation's
   }
 }
 
-TEST_CASE("points have the derivatives of isotropic bulk, but no g") {
+TEST_CASE("derivatives of points: equal those of isotropic bulk, without g") {
   SceneSpec spec;
   spec.width = 20;
   spec.depth = 10;
@@ -353,7 +354,7 @@ TEST_CASE("points have the derivatives of isotropic bulk, but no g") {
   }
 }
 
-TEST_CASE("cylinders have a density, a radius and an index") {
+TEST_CASE("derivatives of cylinders: by mu_t, radius, index and optical depth") {
   SceneSpec spec;
   spec.domain = "slab";
   spec.depth = 10;
@@ -365,7 +366,7 @@ TEST_CASE("cylinders have a density, a radius and an index") {
         std::vector<std::string>{"mu_t", "radius", "index", "optical_depth"});
 }
 
-TEST_CASE("what does not scatter has no derivatives, and too many entries are refused") {
+TEST_CASE("derivatives: media without scattering and too many entries are rejected") {
   const auto request = intensity_request({0}, {far_view(0.1)});
   CHECK_THROWS_AS(gradient_plan(tests::hg_slab(10, {4, 0, 0}, request), ReversedPaths::automatic),
                   InputError);

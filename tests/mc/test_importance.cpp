@@ -18,8 +18,8 @@ using tests::pi;
 
 constexpr double k = 2 * pi;
 
-/// Transmitted and reflected intensities and a matched pair through an isotropic slab of depth 10
-/// against the integral equation. largest_error: relative, of the intensities.
+/// Compares transmitted and reflected intensities and a matched pair of an isotropic slab of depth
+/// 10 with the integral equation. largest_error is relative, for intensities.
 void check_slab(double optical_depth, double albedo, const std::vector<double>& views,
                 const Plan& changed, std::uint64_t paths, double largest_error) {
   const double depth = 10;
@@ -54,8 +54,8 @@ Plan with(double score_level, bool weighted) {
 
 }  // namespace
 
-TEST_CASE("the rate at which light dies out is that of the transport equation") {
-  // In flatland isotropic scattering has 1 = albedo / sqrt(1 - rate^2).
+TEST_CASE("diffusion rate: agrees with the transport equation") {
+  // Isotropic scattering in the plane: 1 = albedo / sqrt(1 - rate^2).
   for (const double albedo : {0.01, 0.3, 0.8, 0.99, 1 - 1e-9})
     CHECK(grin::diffusion_rate(albedo, 0, 2) ==
           doctest::Approx(std::sqrt((1 - albedo) * (1 + albedo))).epsilon(1e-6));
@@ -74,7 +74,7 @@ TEST_CASE("the rate at which light dies out is that of the transport equation") 
   CHECK(grin::diffusion_rate(0.9, 0.9, 2) > grin::diffusion_rate(0.9, 0.95, 2));
 }
 
-TEST_CASE("roulette of scores and depth windows change the variance alone") {
+TEST_CASE("roulette of scores and depth windows: estimates are unbiased") {
   for (const double level : {0.0, 0.3, 5.0, 50.0})
     for (const bool weighted : {false, true})
       check_slab(3, 1, {0.1, pi - 0.2}, with(level, weighted), 60000, 0.2);
@@ -82,13 +82,13 @@ TEST_CASE("roulette of scores and depth windows change the variance alone") {
     check_slab(4, 0.7, {0.1, pi - 0.2}, with(level, true), 40000, 0.2);
 }
 
-TEST_CASE("what crosses deep absorbing media is found and weighs what it should") {
+TEST_CASE("deep absorbing media: estimates agree with the integral equation") {
   check_slab(30, 0.9, {0.1}, with(2, true), 80000, 0.1);
   check_slab(10, 0.5, {0}, with(2, true), 200000, 0.3);
   check_slab(100, 0.9, {pi - 0.4}, with(2, true), 40000, 0.05);
 }
 
-TEST_CASE("boxes that absorb, with reversed paths, agree with the textbook") {
+TEST_CASE("absorbing box with reversed paths: agrees with the textbook estimator") {
   const auto request = intensity_request({0, 0.4}, tests::far_views({0.2, 1.5, pi, pi - 0.4}));
   const Scene scene = tests::hg_box(12, 8, {2, 0.5, 0.7}, request);
   const auto found = tests::run(scene, ReversedPaths::yes, 200000, 5).entries();
@@ -102,8 +102,8 @@ TEST_CASE("boxes that absorb, with reversed paths, agree with the textbook") {
   }
 }
 
-TEST_CASE("deep boxes: the company and order of lights and views change nothing") {
-  // Each light reaches deep along a side where the other has no density, each view likewise.
+TEST_CASE("deep boxes: intensities do not depend on other lights and views or on their order") {
+  // Each light reaches deep along a side where the other has no density; views do the same.
   const auto intensities = [](const std::vector<double>& lights, const std::vector<double>& views) {
     const auto request = intensity_request(lights, tests::far_views(views));
     return tests::run(tests::hg_box(20, 20, {1}, request), ReversedPaths::no, 100000, 9).entries();
@@ -118,7 +118,7 @@ TEST_CASE("deep boxes: the company and order of lights and views change nothing"
   CHECK(both.error[5] < 0.05 * both.value[5].real());
 }
 
-TEST_CASE("media whose longest paths take seconds are refused") {
+TEST_CASE("long paths: media whose paths would take seconds are rejected") {
   const auto request = intensity_request({0}, {far_view(0.3)});
   const auto box = [&](double width, double optical_depth, double albedo = 1) {
     return tests::hg_box(width, 20, {20 / optical_depth, 0, albedo}, request);
@@ -133,7 +133,7 @@ TEST_CASE("media whose longest paths take seconds are refused") {
                        InputError);
 }
 
-TEST_CASE("the slowest mode of diffusion") {
+TEST_CASE("slowest diffusion mode: number of scatterings agrees with diffusion theory") {
   const auto request = intensity_request({0}, {far_view(0.3)});
   const auto scatterings = [](const Scene& scene) {
     return scatterings_of_slowest_mode(scene.medium, scene.domain);
@@ -145,7 +145,7 @@ TEST_CASE("the slowest mode of diffusion") {
   CHECK(scatterings(absorbing) == doctest::Approx(9).epsilon(1e-6));
 }
 
-TEST_CASE("narrow boxes lose by their sides what absorption takes elsewhere") {
+TEST_CASE("narrow lossless box: transmission agrees with an almost lossless one") {
   const auto request = intensity_request({0}, {far_view(0)});
   const auto through = [&](double albedo) {
     return tests::run(tests::hg_box(10, tests::is_night ? 40 : 25, {1, 0, albedo}, request),

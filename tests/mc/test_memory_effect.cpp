@@ -44,7 +44,7 @@ BulkMedium bulk(double mu_t, double g, double albedo) {
 
 }  // namespace
 
-TEST_CASE("the range of known curves is found to 1e-3 from 33 tilts") {
+TEST_CASE("memory-effect range: accurate to 1e-3 for known curves at 33 tilts") {
   const auto q = evenly(0, 8, 33), finer = evenly(0, 4, 33);
   const double half_gaussian = std::sqrt(std::log(2.0) / 2);
   CHECK(range_of(finer, gaussian).value == doctest::Approx(half_gaussian).epsilon(1e-3));
@@ -58,28 +58,28 @@ TEST_CASE("the range of known curves is found to 1e-3 from 33 tilts") {
   }
 }
 
-TEST_CASE("the range does not depend on the order of the tilts, nor on the zero tilt") {
+TEST_CASE("memory-effect range: independent of the order of tilts and of the zero tilt") {
   const auto q = evenly(0, 3, 13);
   const double expected = range_of(q, gaussian).value;
   CHECK(range_of({q.rbegin(), q.rend()}, gaussian).value == expected);
   CHECK(range_of({q.begin() + 1, q.end()}, gaussian).value == doctest::Approx(expected));
 }
 
-TEST_CASE("a tilt that is given twice does not spoil the range") {
+TEST_CASE("memory-effect range: unaffected by a repeated tilt") {
   auto q = evenly(0, 3, 13);
   const double expected = range_of(q, gaussian).value;
   q.insert(q.begin() + 3, q[2]);
   CHECK(range_of(q, gaussian).value == doctest::Approx(expected));
 }
 
-TEST_CASE("the range is taken on the positive side, or on the negative where that is all") {
+TEST_CASE("memory-effect range: of positive tilts, or of negative ones if there are no others") {
   const auto lopsided = [](double x) { return x > 0 ? gaussian(x) : gaussian(x / 2); };
   const double half = std::sqrt(std::log(2.0) / 2);
   CHECK(range_of(evenly(-3, 3, 61), lopsided).value == doctest::Approx(half).epsilon(1e-3));
   CHECK(range_of(evenly(-3, 0, 31), lopsided).value == doctest::Approx(2 * half).epsilon(1e-3));
 }
 
-TEST_CASE("a curve that does not fall to 1/2 is censored at its last tilt") {
+TEST_CASE("memory-effect range: censored at the last tilt of a curve above 1/2") {
   const auto range = range_of(evenly(0, 0.3, 5), gaussian);
   CHECK(range.censored == Range::Censoring::above_value);
   CHECK(range.value == doctest::Approx(0.3));
@@ -89,13 +89,13 @@ TEST_CASE("a curve that does not fall to 1/2 is censored at its last tilt") {
   CHECK(range_of({0.0}, gaussian).censored == Range::Censoring::above_value);
 }
 
-TEST_CASE("a curve that has fallen below 1/2 at its first tilt is censored there") {
+TEST_CASE("memory-effect range: censored at the first tilt if the curve is below 1/2 there") {
   const auto range = range_of({0.0, 1.5, 3.0}, gaussian);
   CHECK(range.censored == Range::Censoring::below_value);
   CHECK(range.value == 1.5);
 }
 
-TEST_CASE("field correlation of known entries, summed over views before the ratio") {
+TEST_CASE("field correlation: entries are summed over views before the ratio") {
   const auto request = memory_effect_request(k, 0, {0.1, 0.4}, {0.0, 0.02});
   std::vector<Complex> entries(request.entries.size());
   entries[request.tilted_entry(0, 0)] = 4;
@@ -114,7 +114,7 @@ TEST_CASE("field correlation of known entries, summed over views before the rati
   CHECK(correlation[1].real() == doctest::Approx(5 / std::sqrt(9.0 * 16)).epsilon(1e-14));
 }
 
-TEST_CASE("transmitted and reflected views have field correlations of their own") {
+TEST_CASE("field correlation: separate for transmitted and reflected views") {
   const auto both = memory_effect_request(k, 0, {0.1, 3.0, -0.2}, {0.0, 0.02});
   const auto groups = view_groups(both);
   REQUIRE(groups.size() == 2);
@@ -129,7 +129,7 @@ TEST_CASE("transmitted and reflected views have field correlations of their own"
         doctest::Approx(0.1).epsilon(1e-14));
 }
 
-TEST_CASE("near sensors, whose covariances differ in phase, correlate by power") {
+TEST_CASE("field correlation of near sensors: averages power, as covariances differ in phase") {
   const auto request = translation_request(point_source({0, -3}),
                                            {near_sensor({0, 9}), near_sensor({2, 9})}, {0, 1});
   REQUIRE(view_groups(request).size() == 1);
@@ -140,13 +140,13 @@ TEST_CASE("near sensors, whose covariances differ in phase, correlate by power")
         doctest::Approx(std::sqrt(0.5)).epsilon(1e-14));
 }
 
-TEST_CASE("where there is no light there is no correlation, and no NaN") {
+TEST_CASE("field correlation: 0 without light") {
   const auto request = memory_effect_request(k, 0, {0.1}, {0.0, 0.02});
   const std::vector<Complex> dark(request.entries.size());
   for (const Complex c : field_correlation(request, dark)) CHECK(c == 0.0);
 }
 
-TEST_CASE("zero tilt correlates fully, with an error of zero") {
+TEST_CASE("memory effect: correlation 1 with error 0 at zero tilt") {
   const auto request = memory_effect_request(k, 0.2, {0.1, 0.5}, {0.0, 0.01});
   const auto result =
       tests::run(tests::hg_slab(10, {5}, request), ReversedPaths::automatic, 32000, 1);
@@ -157,7 +157,7 @@ TEST_CASE("zero tilt correlates fully, with an error of zero") {
   CHECK(std::isfinite(effect.range.error));
 }
 
-TEST_CASE("diffusion: 1 at q = 0 and the textbook curve for thick slabs") {
+TEST_CASE("diffusion theory: 1 at q = 0, agrees with the textbook curve of thick slabs") {
   const BulkMedium medium = bulk(1, 0, 1);
   CHECK(diffusion_field_correlation(medium, 10, 0) == 1);
   CHECK(diffusion_field_correlation(bulk(1, 0.5, 0.9), 10, 0) == 1);
@@ -167,7 +167,7 @@ TEST_CASE("diffusion: 1 at q = 0 and the textbook curve for thick slabs") {
   }
 }
 
-TEST_CASE("diffusion is C20 word by word") {
+TEST_CASE("diffusion theory: agrees with C20") {
   const double mu_t = 2, g = 0.6, albedo = 0.95, depth = 10;
   const double mu_s = albedo * mu_t, mu_a = mu_t - mu_s;
   const double transport = 1 / (mu_a + mu_s * (1 - g)), z0 = 0.818 * transport;
@@ -183,7 +183,7 @@ TEST_CASE("diffusion is C20 word by word") {
   }
 }
 
-TEST_CASE("diffusion is finite far out, for strong absorption, and for thin slabs") {
+TEST_CASE("diffusion theory: finite at large q, strong absorption and small depth") {
   for (const double depth : {0.01, 10.0, 1e4}) {
     for (const double albedo : {0.0, 0.01, 0.9, 1 - 1e-9, 1.0}) {
       for (const double q : {0.0, 1e-9, 1.0, 1e4 / depth}) {

@@ -22,7 +22,7 @@ Estimate estimate(const CovarianceRequest& request, std::uint64_t paths, std::ui
       .entries();
 }
 
-/// found x scale against expected, each with its errors.
+/// Compares found x scale with expected, including both errors.
 void check_4_sigma(const Estimate& found, double scale, const Estimate& expected) {
   REQUIRE(found.value.size() == expected.value.size());
   for (std::size_t e = 0; e < found.value.size(); ++e) {
@@ -36,8 +36,8 @@ void check_4_sigma(const Estimate& found, double scale, const Estimate& expected
 
 }  // namespace
 
-TEST_CASE("reciprocity: a near source in a far view is a far light at a near sensor") {
-  // outside, inside, and close to each other, so that the off-diagonal entries are there
+TEST_CASE("reciprocity: near source and far view equal plane wave and near sensor") {
+  // outside and inside, in close pairs, so that off-diagonal entries are not small
   const std::vector<Vec2> points = {{1, -4}, {1.2, -4}, {0, 3}, {0.2, 3}};
   const std::vector<double> views = {0.3, pi - 0.4};
   const auto both = [&](bool forward) {
@@ -66,7 +66,7 @@ TEST_CASE("reciprocity: a near source in a far view is a far light at a near sen
   check_4_sigma(from_sources, 8 * pi * k, estimate(both(false), 200000, 2));
 }
 
-TEST_CASE("a source far away is a plane wave") {
+TEST_CASE("distant point source: equals a plane wave") {
   const auto views = tests::far_views({0.2, 1.3, pi - 0.2});
   constexpr double r = 1e6;
   const std::vector<double> angles = {0, 0.6, 2.8};
@@ -76,7 +76,7 @@ TEST_CASE("a source far away is a plane wave") {
                 estimate(intensity_request(angles, views), 150000, 4));
 }
 
-TEST_CASE("a wide beam is a plane wave") {
+TEST_CASE("wide beam: equals a plane wave") {
   const auto views = tests::far_views({0.2, 1.3, pi - 0.2});
   const std::vector<double> angles = {0, 0.6, 2.8};
   Lights beams;
@@ -89,7 +89,7 @@ TEST_CASE("a wide beam is a plane wave") {
   check_4_sigma(estimate(wide, 150000, 7), 1, estimate(pairs, 150000, 8));
 }
 
-TEST_CASE("in the middle of a wide box nothing depends on x") {
+TEST_CASE("wide box: intensities in the middle are independent of x") {
   const std::vector<View> sensors = {near_sensor({0.5, 6}), near_sensor({0, 2})};
   for (const Light& light : {gaussian_beam(0.2, {-2, 1}, 2), point_source({-0.4, 1.5})}) {
     const auto request = translation_request(light, sensors, {0, 3, -5});
@@ -107,14 +107,14 @@ TEST_CASE("in the middle of a wide box nothing depends on x") {
   }
 }
 
-TEST_CASE("a beam moved over a thin medium decorrelates as its field overlaps with itself") {
+TEST_CASE("beam moved over a thin medium: correlation agrees with the overlap of the fields") {
   const std::vector<double> shifts = {0, 0.25, 0.5, 1, 1.5, 2, 3, 4};
   const auto request =
       translation_request(gaussian_beam(0, {0, 0}, 2), tests::far_views({0.2}), shifts);
   const auto run =
       tests::run(tests::hg_box(40, 4, {2000, 0.3}, request), ReversedPaths::automatic, 100000, 10);
   const auto effect = memory_effect(request, run.sums, run.job.covariance);
-  constexpr double twice = 0.01;  // share of what scatters twice: half the width in free paths
+  constexpr double twice = 0.01;  // share of double scattering: half the width in mean free paths
   for (std::size_t i = 0; i < shifts.size(); ++i) {
     CAPTURE(shifts[i]);
     const double overlap = std::exp(-shifts[i] * shifts[i] / 8);
@@ -122,17 +122,18 @@ TEST_CASE("a beam moved over a thin medium decorrelates as its field overlaps wi
     CHECK(effect.correlation_error[i] < 0.01 * tests::effort().errors);
   }
   CHECK(effect.range.range.censored == Range::Censoring::none);
-  const double half = 2 * std::sqrt(std::numbers::ln2), steepness = half / 4;  // of C_I there
+  const double half = 2 * std::sqrt(std::numbers::ln2),
+               steepness = half / 4;  // derivative of C_I there
   CHECK(std::abs(effect.range.range.value - half) < 4 * effect.range.error + 2 * twice / steepness);
   CHECK(effect.range.error < 0.02 * tests::effort().errors);
 }
 
-TEST_CASE("the error bars of sensors inside the medium are honest") {
-  // Independent small runs: how the estimates scatter against what they say.
+TEST_CASE("error bars of sensors inside the medium: agree with the spread over runs") {
+  // Compares the scatter of independent small runs with their reported errors.
   const auto request = intensity_request(Lights{0.0}, {near_sensor({1, 3}), near_sensor({0, 6})});
   const Scene scene = tests::hg_box(20, 10, {4, 0}, request);
   const int runs = is_night ? 800 : 400, paths = is_night ? 2000 : 800;
-  double sum[2] = {}, squares[2] = {}, said[2] = {};
+  double sum[2] = {}, squares[2] = {}, reported[2] = {};
   for (int i = 0; i < runs; ++i) {
     const auto found =
         tests::run(scene, ReversedPaths::automatic, paths, 1000 + i, paths / 20).entries();
@@ -140,13 +141,13 @@ TEST_CASE("the error bars of sensors inside the medium are honest") {
       const double value = found.value[v].real();
       sum[v] += value;
       squares[v] += value * value;
-      said[v] += found.error[v] * found.error[v];
+      reported[v] += found.error[v] * found.error[v];
     }
   }
   for (std::size_t v = 0; v < 2; ++v) {
     CAPTURE(v);
     const double variance = (squares[v] - sum[v] * sum[v] / runs) / (runs - 1);
-    CHECK(std::abs(variance / (said[v] / runs) - 1) < 4 * std::sqrt(2.0 / runs));
+    CHECK(std::abs(variance / (reported[v] / runs) - 1) < 4 * std::sqrt(2.0 / runs));
   }
 }
 

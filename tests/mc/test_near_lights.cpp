@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "mc/paths/endpoint_factors/end_factors.h"
+#include "mc/paths/endpoint_factors/endpoint_factors.h"
 #include "mc/paths/endpoint_factors/gaussian_beam.h"
 #include "mc/paths/walk/first_scatterer.h"
 #include "tests/mc/estimates.h"
@@ -23,7 +23,7 @@ Scene box(const Lights& lights, double mean_free_path = 1.5) {
                        intensity_request(lights, {far_view(0)}));
 }
 
-/// Chi-square of first scatterers over a grid of cells.
+/// Checks first scatterers on a grid of cells by chi-square.
 void check_density(const Scene& scene, std::uint64_t seed) {
   constexpr int columns = 10, rows = 8, fine = 80, samples = 20000;
   const FirstScatterer first(scene);
@@ -44,7 +44,8 @@ void check_density(const Scene& scene, std::uint64_t seed) {
   flatspeckle::tests::check_chi_square(counts, probabilities);
 }
 
-/// u of a beam by its plane waves (their spectrum at the focus), without what does not propagate.
+/// Returns the field of a beam as a sum of plane waves (spectrum at the focus), without evanescent
+/// ones.
 Complex superposition(const Light& beam, Vec2 x) {
   constexpr int waves = 4000;
   const double step = 2 * k / waves;
@@ -60,7 +61,7 @@ Complex superposition(const Light& beam, Vec2 x) {
 
 }  // namespace
 
-TEST_CASE("a paraxial beam is its superposition of plane waves") {
+TEST_CASE("paraxial beam: field agrees with a superposition of plane waves") {
   const Light light = gaussian_beam(0.4, {1, 2}, 3);
   const GaussianBeam beam(light, k);
   CHECK(std::abs(beam.field({1, 2}) - 1.0) < 1e-15);
@@ -79,27 +80,27 @@ TEST_CASE("a paraxial beam is its superposition of plane waves") {
   }
 }
 
-TEST_CASE("a beam's ray is the gradient of its phase") {
+TEST_CASE("beam: ray direction agrees with the gradient of the phase") {
   const GaussianBeam beam(gaussian_beam(-0.7, {1, 2}, 2), k);
   // within the beam, where it is paraxial
   for (const auto& [s, t] : {std::pair{7.0, 1.5}, {20.0, -2.0}, {-20.0, 1.0}}) {
     const Vec2 x = beam.focus() + s * beam.axis() + t * beam.across_axis();
     const double h = 1e-5;
-    const auto slope = [&](Vec2 along) {
+    const auto derivative = [&](Vec2 along) {
       return std::arg(beam.field(x + h * along) / beam.field(x - h * along)) / (2 * h);
     };
-    const Vec2 gradient{slope({1, 0}), slope({0, 1})}, ray = beam.ray(x);
+    const Vec2 gradient{derivative({1, 0}), derivative({0, 1})}, ray = beam.ray(x);
     CHECK(gradient.x / length(gradient) == doctest::Approx(ray.x).epsilon(1e-3));
     CHECK(gradient.z / length(gradient) == doctest::Approx(ray.z).epsilon(1e-3));
   }
 }
 
-TEST_CASE("end factors of beams and sources are attenuated on the way in") {
+TEST_CASE("endpoint factors of beams and sources: attenuated inside the medium") {
   const Vec2 x{0.5, 2.5};
   const auto factor = [&](const Light& light, bool with_phase) {
     const Scene scene = box({light});
     std::vector<Complex> out(1);
-    StraightEnds(scene, light_ends(scene), with_phase).attenuate(x, out);
+    StraightEndpoints(scene, light_endpoints(scene), with_phase).attenuate(x, out);
     return out[0];
   };
   const Light beam = gaussian_beam(0, {0.5, -3}, 2);
@@ -112,13 +113,13 @@ TEST_CASE("end factors of beams and sources are attenuated on the way in") {
         std::exp(-inside / 3) * std::polar(1 / std::sqrt(8 * pi * k * r), k * r + pi / 4);
     CHECK(std::abs(factor(point_source(source), true) - expected) < 1e-13);
   }
-  // close by the Green function itself
+  // at short distance the Green function itself
   const double r = 0.1;
   const Complex green = Complex(0, 0.25) * Complex(::j0(k * r), ::y0(k * r));
   CHECK(std::abs(factor(point_source({0.5, 2.5 - r}), true) - std::exp(-r / 3) * green) < 1e-13);
 }
 
-TEST_CASE("first scatterers of point sources have the density that the weight uses") {
+TEST_CASE("first scatterers of point sources: samples follow the density of the weights") {
   std::uint64_t seed = 300;
   for (const double mean_free_path : {1000.0, 1.5})
     for (const Vec2 source :
@@ -129,7 +130,7 @@ TEST_CASE("first scatterers of point sources have the density that the weight us
     }
 }
 
-TEST_CASE("first scatterers of beams have the density that the weight uses") {
+TEST_CASE("first scatterers of beams: samples follow the density of the weights") {
   std::uint64_t seed = 400;
   for (const double mean_free_path : {1000.0, 1.5})
     for (const Light& beam :
@@ -143,7 +144,7 @@ TEST_CASE("first scatterers of beams have the density that the weight uses") {
     }
 }
 
-TEST_CASE("a mixture of sources and beams, left in any direction") {
+TEST_CASE("first scatterers of sources and beams: position and direction follow the density") {
   const Scene scene =
       box({point_source({0, 1}), point_source({2, -3}), gaussian_beam(0.2, {1, 1}, 1),
            gaussian_beam(0.2, {1.2, 1}, 1), plane_wave(-0.5)});
@@ -159,7 +160,7 @@ TEST_CASE("a mixture of sources and beams, left in any direction") {
   CHECK(sum * 2 * pi / round == doctest::Approx(first.density(x)).epsilon(1e-9));
 }
 
-TEST_CASE("a beam beside the medium is refused") {
+TEST_CASE("beam: rejected if it misses the medium") {
   CHECK_THROWS_AS(FirstScatterer(box({gaussian_beam(0, {20, 0}, 1)})), InputError);
   CHECK_NOTHROW(FirstScatterer(box({gaussian_beam(0, {4, 0}, 1)})));
 }

@@ -21,7 +21,7 @@ double tilted(double angle, double q) {
   return std::asin(std::sin(angle) + q / k);
 }
 
-/// |C| and C_E of a memory effect along the normal, q L = 0 first.
+/// |C| and C_E of a memory effect along the normal, per tilt.
 struct Expected {
   std::vector<double> magnitude, correlation;
 };
@@ -68,7 +68,7 @@ void check_memory_effect(double optical_depth, double g, double albedo, int pane
 
 }  // namespace
 
-TEST_CASE("pair transport: isotropic slabs, oblique and tilted, as by the integral equation") {
+TEST_CASE("pair transport: tilts of isotropic slabs agree with the integral equation") {
   for (const double light : {0.0, 0.4}) {
     for (const double tilt : {0.0, 1.0, -5.0, 20.0}) {  // q L
       const double q = tilt / depth, optical_depth = 3, view = -0.2;
@@ -84,7 +84,7 @@ TEST_CASE("pair transport: isotropic slabs, oblique and tilted, as by the integr
   }
 }
 
-TEST_CASE("pair transport without a tilt is transport of intensity") {
+TEST_CASE("pair transport: without a tilt it equals transport of intensity") {
   for (const double g : {-0.4, 0.8}) {
     for (const double optical_depth : {0.5, 20.0}) {
       const PairTransport transport({k, depth, optical_depth / depth, 0.97, henyey_greenstein(g)},
@@ -101,7 +101,7 @@ TEST_CASE("pair transport without a tilt is transport of intensity") {
   }
 }
 
-TEST_CASE("the memory effect of forward-peaked scatterers agrees with pair transport") {
+TEST_CASE("memory effect of forward-peaked scatterers: Monte Carlo agrees with pair transport") {
   check_memory_effect(5, 0.5, 0.95, 4, 100000);
   check_memory_effect(10, 0.8, 1, 5, 100000);
   if (tests::is_night) check_memory_effect(5, 0.9, 0.9, 8, 100000);

@@ -13,7 +13,7 @@ using tests::pi;
 
 constexpr std::uint64_t paths = 20000;
 
-/// Walks with a factor for every path, and one for each of its inner scatterers.
+/// Walks whose weights have a planted factor per path and one per inner scatterer.
 class PlantedWalks : public PathWalks {
  public:
   PlantedWalks(std::shared_ptr<const PathWalks> walks, double factor, double inner)
@@ -33,9 +33,10 @@ class PlantedWalks : public PathWalks {
                std::span<Complex> out) const override {
     walks_->towards(x, from, to, out);
   }
-  std::unique_ptr<EndFactors> factors(const Scene& scene, const std::vector<End>& ends,
-                                      bool phases) const override {
-    return walks_->factors(scene, ends, phases);
+  std::unique_ptr<EndpointFactors> factors(const Scene& scene,
+                                           const std::vector<Endpoint>& endpoints,
+                                           bool phases) const override {
+    return walks_->factors(scene, endpoints, phases);
   }
 
  private:
@@ -73,7 +74,7 @@ class PlantedWalks : public PathWalks {
 
 }  // namespace
 
-TEST_CASE("paths carry the power that light loses, in slabs, boxes and layers") {
+TEST_CASE("path power: equals the extinction in slabs, boxes and layers") {
   const auto request = intensity_request({0.3, -0.9}, tests::far_views({0}));
   const Scene scenes[] = {tests::hg_slab(10, {5, 0}, request),
                           tests::hg_slab(10, {1, 0.9}, request),
@@ -90,7 +91,7 @@ TEST_CASE("paths carry the power that light loses, in slabs, boxes and layers") 
   }
 }
 
-TEST_CASE("a factor of 1.01 in the weights of paths is seen in the power that they carry") {
+TEST_CASE("path power: detects a planted factor of 1.01 in the weights") {
   const auto request = intensity_request({0.3}, tests::far_views({0}));
   for (const Scene& scene :
        {tests::hg_slab(10, {5, 0.5}, request), tests::hg_slab(10, {5, 0, 0.8}, request),
@@ -105,7 +106,7 @@ TEST_CASE("a factor of 1.01 in the weights of paths is seen in the power that th
   CHECK(!inner.later.holds());
 }
 
-TEST_CASE("power of paths needs plane waves and scattering") {
+TEST_CASE("path power: requires plane waves and scattering") {
   const auto request = intensity_request({0}, tests::far_views({0}));
   CHECK(power_walks(tests::hg_slab(10, {4, 0, 0}, request), 1) == nullptr);
   const auto near = intensity_request({point_source({0, -5})}, tests::far_views({0}));

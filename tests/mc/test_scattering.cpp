@@ -41,7 +41,7 @@ void check_towards(const Scattering& scattering) {
   }
 }
 
-/// Turns fall into bins as the density says.
+/// Checks that sampled scattering angles follow the density.
 template <typename Scattering>
 void check_sampling(const Scattering& scattering) {
   constexpr int bins = 24, fine = 2000;
@@ -62,7 +62,8 @@ void check_sampling(const Scattering& scattering) {
   flatspeckle::tests::check_chi_square(counts, probabilities);
 }
 
-/// |A|^2 = p, A depends on the turn alone, many amplitudes are like one, and samples follow p.
+/// Checks that |A|^2 = p, that p depends only on the scattering angle, that lists of amplitudes
+/// equal single ones and that samples follow p.
 template <typename Scattering>
 void check_consistency(const Scattering& scattering, double tolerance) {
   double largest = 0;
@@ -74,7 +75,7 @@ void check_consistency(const Scattering& scattering, double tolerance) {
       CAPTURE(turn);
       CHECK(std::abs(std::norm(scattering.amplitude(in, out)) - p) < tolerance * largest);
       CHECK(std::abs(scattering.density(out, in) - p) < 1e-8 * largest);
-      // the way back of C14: A(-w' -> -w) = A(w -> w')
+      // reversed paths of C14: A(-w' -> -w) = A(w -> w')
       CHECK(std::abs(scattering.density(-out, -in) - p) < 1e-8 * largest);
     }
   }
@@ -84,7 +85,7 @@ void check_consistency(const Scattering& scattering, double tolerance) {
 
 }  // namespace
 
-TEST_CASE("squared amplitude is the phase function") {
+TEST_CASE("scattering amplitude: its squared modulus equals the phase function") {
   check_consistency(IsotropicScattering{}, 1e-14);
   for (const double g : {-0.5, 0.5, 0.99})
     check_consistency(HenyeyGreensteinScattering{{g}}, 1e-13);
@@ -95,7 +96,7 @@ TEST_CASE("squared amplitude is the phase function") {
   check_consistency(TabulatedScattering(cylinders(Scatterer::Kind::hard, 3, 1), k), 1e-6);
 }
 
-TEST_CASE("the tabulated amplitude is that of the T-matrix, phase included") {
+TEST_CASE("tabulated amplitude: agrees with the T-matrix in modulus and phase") {
   const BulkMedium medium = cylinders(Scatterer::Kind::tm, 5, {1.33, 0.01});
   const TabulatedScattering scattering(medium, k);
   for (const double turn : {0.0, 0.01, -0.37, 1.5, 3.0}) {
@@ -105,7 +106,7 @@ TEST_CASE("the tabulated amplitude is that of the T-matrix, phase included") {
   }
 }
 
-TEST_CASE("a thin TM cylinder scatters like a point") {
+TEST_CASE("thin TM cylinder: scatters isotropically") {
   const TabulatedScattering thin(cylinders(Scatterer::Kind::tm, 0.05, 1.5), k);
   for (const double turn : {0.0, 1.0, -2.0, pi})
     CHECK(thin.density(direction(0), direction(turn)) ==

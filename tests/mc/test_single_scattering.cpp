@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/paths/endpoint_factors/end_factors.h"
+#include "mc/paths/endpoint_factors/endpoint_factors.h"
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
 
@@ -12,10 +12,10 @@ namespace {
 
 using tests::pi;
 
-/// So dark that paths of two scatterers, of relative order albedo, cannot be seen.
+/// Albedo so small that double scattering, of relative order albedo, is negligible.
 constexpr double dark = 1e-6;
 
-/// C14, B = 1, with geometry and factors of its own: distance to the outline along w.
+/// Returns the distance to the outline along w, for an independent evaluation of C14 with B = 1.
 double chord(const Scene& scene, Vec2 x, Vec2 w) {
   const double z_end = w.z > 0 ? scene.domain.depth : 0;
   double longest = std::abs(w.z) > 1e-12 ? (z_end - x.z) / w.z : 1e300;
@@ -33,9 +33,9 @@ Complex light_factor(const Scene& scene, double light, Vec2 x) {
 
 Complex view_factor(const Scene& scene, const View& view, Vec2 x) {
   if (view.near) {
-    const Vec2 way = view.point - x;
-    const double r = length(way);
-    const double inside = std::min(r, chord(scene, x, 1 / r * way));
+    const Vec2 to_sensor = view.point - x;
+    const double r = length(to_sensor);
+    const double inside = std::min(r, chord(scene, x, 1 / r * to_sensor));
     // exp(ikr)/sqrt(r) is the far form of sqrt(pi k/2) e^{i pi/4} H0(kr)
     const Complex hankel(::j0(scene.k * r), ::y0(scene.k * r));
     return std::sqrt(pi * scene.k / 2) * std::polar(1.0, pi / 4) * hankel *
@@ -51,7 +51,8 @@ double phase_amplitude(const Scene& scene, double light, const View& view, Vec2 
   return std::sqrt((1 - g * g) / (2 * pi * (1 + g * g - 2 * g * std::cos(out - light))));
 }
 
-/// mu_s int dx [e A e]_a conj[e A e]_b on a midpoint grid; on a slab per unit length, at x = 0.
+/// Returns mu_s int dx [e A e]_a conj[e A e]_b by the midpoint rule; for a slab per unit length, at
+/// x = 0.
 Complex single_scattering(const Scene& scene, Channel a, Channel b, int nx, int nz) {
   const auto& request = scene.request;
   const bool box = scene.domain.kind == Domain::Kind::box;
@@ -88,7 +89,7 @@ void check_entries(const Scene& scene, std::uint64_t paths, std::uint64_t seed, 
 
 }  // namespace
 
-TEST_CASE("single scattering of a box is C14 with B = 1, seen from all sides") {
+TEST_CASE("single scattering of a box: agrees with C14, B = 1, for views from all sides") {
   const auto intensities =
       intensity_request({0, 0.7, -2.5}, tests::far_views({0, 1.0, pi / 2, 2.2, pi, -0.4, -1.9}));
   const auto pairs = pairs_request(
@@ -99,7 +100,7 @@ TEST_CASE("single scattering of a box is C14 with B = 1, seen from all sides") {
   }
 }
 
-TEST_CASE("single scattering of a slab is C14 with B = 1 per unit length") {
+TEST_CASE("single scattering of a slab: agrees with C14, B = 1, per unit length") {
   const auto intensities =
       intensity_request({0, 0.7, -1.4}, tests::far_views({0, 1.0, 1.5, 2.2, pi, -1.9, -0.3}));
   const auto tilted = memory_effect_request(2 * pi, 0.4, {-0.3, pi - 0.2}, {0.02, -0.05});
@@ -109,14 +110,14 @@ TEST_CASE("single scattering of a slab is C14 with B = 1 per unit length") {
   }
 }
 
-TEST_CASE("near sensors see single scattering with its Hankel function") {
+TEST_CASE("single scattering at near sensors: agrees with C14 with the Hankel function") {
   CovarianceRequest request = full_request(
       {0, 0.6}, {near_sensor({0.5, 4.6}), near_sensor({-4, 2}), near_sensor({1, -30})});
   for (const double g : {0.0, 0.5})
     check_entries(tests::hg_box(6, 4, {2, g, dark}, request), 200000, 5, 240, 160);
 }
 
-TEST_CASE("the memory effect of a thin slab is the sinc of C21, and unbounded straight ahead") {
+TEST_CASE("memory effect of a thin slab: agrees with C21, unlimited in the forward direction") {
   const double k = 2 * pi, depth = 10;
   const std::vector<double> tilts = {0.01, 0.05, -0.08, 0.2};
   for (const double view : {0.6, -0.3, pi - 0.4, 0.1}) {
@@ -126,7 +127,7 @@ TEST_CASE("the memory effect of a thin slab is the sinc of C21, and unbounded st
     const auto result = tests::run(scene, ReversedPaths::automatic, 64000, 6);
     const auto effect = memory_effect(request, result.sums, result.job.covariance);
     for (std::size_t t = 0; t < tilts.size(); ++t) {
-      // the z components exactly; to first order in the tilt q L (tan v - tan i)/2
+      // exact z components; to first order in the tilt q L (tan v - tan i)/2
       const double light2 = light + tilts[t];
       const double view2 = request.views[request.channels[request.entries[t].b].view].angle;
       const double phase =
@@ -144,7 +145,7 @@ TEST_CASE("the memory effect of a thin slab is the sinc of C21, and unbounded st
   }
 }
 
-TEST_CASE("the outgoing wave is H0 near by, its far form beyond, and joins within O(1/8kr)") {
+TEST_CASE("outgoing wave: H0 nearby, its far form beyond, continuous to O(1/8kr)") {
   const double k = 3;
   for (const double kr : {0.01, 1.0, 9.99}) {
     const Complex hankel(std::cyl_bessel_j(0, kr), std::cyl_neumann(0, kr));

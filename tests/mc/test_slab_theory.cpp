@@ -15,7 +15,7 @@ using Channel = oracles::IsotropicSlab::Channel;
 
 constexpr double k = 2 * pi;
 
-/// One slab, seen by the estimator and by theory.
+/// Slab for the estimator and for theory.
 struct Comparison {
   double depth, optical_depth, albedo;
 
@@ -45,14 +45,14 @@ void check_entries(const Comparison& slab, const CovarianceRequest& request, Rev
         reversed == ReversedPaths::yes ? theory.with_reversed(a, b) : theory.without_reversed(a, b);
     INFO("light ", a.light, ", view ", a.view, "; light ", b.light, ", view ", b.view);
     CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected, 3e-4 * std::abs(expected));
-    const double most = 0.05 * std::abs(expected) + 1e-4;  // or the test has no teeth
+    const double most = 0.05 * std::abs(expected) + 1e-4;  // so that the test is significant
     CHECK(found.error[e] < tests::effort().errors * most);
   }
 }
 
 }  // namespace
 
-TEST_CASE("slab theory conserves energy and its kernel is normalised") {
+TEST_CASE("slab theory: conserves energy") {
   for (const double optical_depth : {0.1, 1.0, 10.0}) {
     for (const double light : {0.0, 1.1}) {
       const oracles::IsotropicSlab slab(k, 10, optical_depth / 10, 1);
@@ -106,7 +106,7 @@ TEST_CASE("isotropic slab: coherent backscattering agrees with the crossed integ
                 ReversedPaths::yes, 60000, 23);
 }
 
-TEST_CASE("at exact backscattering reversed paths double all but single scattering") {
+TEST_CASE("exact backscattering: reversed paths double all but single scattering") {
   const Comparison slab{20, 5, 1};
   const auto request = intensity_request({0.4}, tests::far_views({0.4 + pi, 0.4 + pi - 0.8}));
   const auto with = slab.estimate(request, ReversedPaths::yes, 100000, 31);
@@ -120,13 +120,14 @@ TEST_CASE("at exact backscattering reversed paths double all but single scatteri
                        0.01 * std::abs(without.value[1]));
 }
 
-TEST_CASE("at exact backscattering reversed paths double it with peaked scattering, too") {
+TEST_CASE(
+    "exact backscattering, peaked scattering: reversed paths double all but single scattering") {
   const double depth = 20, g = 0.6, light = 0.4;
   const auto request = intensity_request({light}, tests::far_views({light + pi}));
   const Scene scene = tests::hg_slab(depth, {depth / 8, g, 0.95}, request);
   const auto with = tests::run(scene, ReversedPaths::yes, 200000, 33).entries();
   const auto without = tests::run(scene, ReversedPaths::no, 200000, 34).entries();
-  // p(pi) in place of 1/(2 pi)
+  // p(pi) instead of 1/(2 pi)
   const oracles::IsotropicSlab isotropic(k, depth, 8 / depth, 0.95);
   const Channel back{light, light + pi};
   const Complex single = (1 - g) / (1 + g) * isotropic.single(back, back);
@@ -135,7 +136,7 @@ TEST_CASE("at exact backscattering reversed paths double it with peaked scatteri
   CHECK(with.error[0] < 0.02 * with.value[0].real());
 }
 
-TEST_CASE("isotropic slab a million wavelengths over 2 pi thick") {
+TEST_CASE("isotropic slab with k depth = 1e6: covariances agree with the integral equation") {
   const double depth = 1e6 / k, tilt = 1e-6;
   check_entries({depth, 2, 1}, memory_effect_request(k, 0.5, {0.5, 0.1}, {tilt, -2 * tilt}),
                 ReversedPaths::no, 60000, 41);

@@ -1,4 +1,4 @@
-// Fields: their covariance, their distribution, and what they depend on.
+// Speckle fields: covariance, distribution, dependence on seed and number.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -37,7 +37,7 @@ Triangle full(const Triangle& lower, std::size_t n) {
 struct Ensemble {
   GroupedSums sums;
   std::size_t entries;
-  std::vector<double> intensity;  ///< that the fields were drawn with, mean
+  std::vector<double> intensity;  ///< mean of the intensities used to draw the fields
   std::vector<std::vector<Complex>> fields;
 
   Ensemble(const FieldDraw& draw, std::size_t n, std::uint64_t count = fields_drawn)
@@ -77,7 +77,7 @@ struct Ensemble {
     return result;
   }
 
-  /// One channel's intensities: independent, so that a chi-square test may count them.
+  /// Checks one channel's intensities, which are independent as a chi-square test requires.
   void check_exponential(std::size_t channel) const {
     FieldStatistics one({intensity[channel]}, 0, false);
     for (const auto& u : fields) one.add(std::vector<Complex>{u[channel]});
@@ -87,7 +87,7 @@ struct Ensemble {
     check_chi_square(counts, FieldStatistics::exponential_law());
   }
 
-  /// Contrast 1 but for what is left of the excess kurtosis.
+  /// Checks that the contrast is 1 apart from the remaining excess kurtosis.
   void check_contrast(double excess) const {
     const Estimate contrast = statistics().mean_contrast();
     CHECK_WITHIN_4_SIGMA(contrast.value[0].real(), contrast.error[0], std::sqrt(1 + excess), 0);
@@ -114,7 +114,7 @@ PathSurvey survey(const Scene& scene, const Plan& plan, std::uint64_t paths = su
   return read_survey(state.sums);
 }
 
-/// A positive definite matrix with nothing real about it.
+/// Returns a positive definite matrix with complex off-diagonal elements.
 Triangle some_covariance(std::size_t n) {
   RandomStream random(11, 0, 0);
   Triangle factor(n * n);
@@ -129,7 +129,7 @@ Triangle some_covariance(std::size_t n) {
   return lower;
 }
 
-/// F F^H of a factor, lower triangle.
+/// Returns the lower triangle of F F^H.
 Triangle product_of(const CovarianceFactor& factor) {
   const std::size_t n = factor.channels(), r = factor.rank();
   std::vector<std::vector<Complex>> columns(r, std::vector<Complex>(n));
@@ -164,7 +164,7 @@ void check_factor(const Triangle& lower, std::size_t n, std::size_t rank) {
 
 }  // namespace
 
-TEST_CASE("1e4 fields by paths have the covariance, with reversed paths, and none of the other") {
+TEST_CASE("fields by paths: covariance agrees with the estimator, pseudo-covariance is 0") {
   Scene scene = points_in_box();
   const Plan plan = make_plan(scene, ReversedPaths::yes);
   const Ensemble ensemble(fields_by_paths(scene, plan, seed, 100), scene.request.channels.size());
@@ -172,7 +172,7 @@ TEST_CASE("1e4 fields by paths have the covariance, with reversed paths, and non
   ensemble.check(tests::run(scene, ReversedPaths::yes, 400000, 1).entries());
 }
 
-TEST_CASE("1e4 fields of a thin dark box have the covariance in closed form") {
+TEST_CASE("fields by paths of a thin dark box: covariance agrees with the closed form") {
   // One scatterer, no attenuation: mu_s / 2 pi times the integral of exp(i q.x) over the box.
   const double width = 6, depth = 4, mean_free_path = 1e5, albedo = 1e-3, k = 2 * pi;
   Scene scene =
@@ -193,12 +193,12 @@ TEST_CASE("1e4 fields of a thin dark box have the covariance in closed form") {
     }
   const Plan plan = make_plan(scene, ReversedPaths::automatic);
   Ensemble(fields_by_paths(scene, plan, seed, 50), request.channels.size()).check(expected);
-  // The field of one path has a random phase and nothing else: |u|^4 = (|u|^2)^2.
+  // Only the phase of the field of one path is random: |u|^4 = (|u|^2)^2.
   for (const double excess : survey(scene, plan).excess)
     CHECK(excess == doctest::Approx(-1).epsilon(0.01));
 }
 
-TEST_CASE("1e4 fields from a covariance have it") {
+TEST_CASE("fields from a covariance: covariance, contrast and circularity agree") {
   const std::size_t n = 7;
   const Triangle lower = some_covariance(n);
   const Ensemble ensemble(fields_from_covariance(CovarianceFactor(n, lower), seed), n);
@@ -209,7 +209,7 @@ TEST_CASE("1e4 fields from a covariance have it") {
   CHECK_WITHIN_4_SIGMA(circularity.value[0], circularity.error[0], 0.0, 0);
 }
 
-TEST_CASE("a factor has the rank of its matrix, and its scale does not matter") {
+TEST_CASE("covariance factor: has the rank of the matrix at any scale") {
   const Triangle lower = some_covariance(5);
   check_factor(lower, 5, 5);
   SUBCASE("channels without light, and channels 1e-15 as bright") {
@@ -223,7 +223,7 @@ TEST_CASE("a factor has the rank of its matrix, and its scale does not matter") 
         scaled.push_back(scale[a] * scale[b] * matrix[source[a] * 5 + source[b]]);
     check_factor(scaled, n, 5);
   }
-  SUBCASE("channels that say the same") {
+  SUBCASE("identical channels") {
     const std::size_t n = 10;
     const Triangle matrix = full(lower, 5);
     Triangle twice;
@@ -231,12 +231,12 @@ TEST_CASE("a factor has the rank of its matrix, and its scale does not matter") 
       for (std::size_t b = 0; b <= a; ++b) twice.push_back(matrix[a % 5 * 5 + b % 5]);
     check_factor(twice, n, 5);
   }
-  SUBCASE("nothing but darkness") {
+  SUBCASE("no light") {
     check_factor(Triangle(6), 3, 0);
   }
 }
 
-TEST_CASE("fields by paths of the default number are Gaussian") {
+TEST_CASE("fields by paths: Gaussian at the default number of paths") {
   const Scene scene = points_in_box();
   const Plan plan = make_plan(scene, ReversedPaths::automatic);
   const auto chosen = make_field_plan(scene, survey(scene, plan),
@@ -249,7 +249,7 @@ TEST_CASE("fields by paths of the default number are Gaussian") {
   for (const std::size_t channel : {0, 5}) ensemble.check_exponential(channel);
 }
 
-TEST_CASE("fields of few paths have the excess kurtosis of the survey") {
+TEST_CASE("fields of few paths: excess kurtosis agrees with the survey") {
   const Scene scene =
       tests::hg_box(20, 10, {1, 0, 1}, field_request({0}, tests::far_views({0.3, pi - 0.5})));
   const Plan plan = make_plan(scene, ReversedPaths::automatic);
@@ -274,7 +274,7 @@ TEST_CASE("fields of few paths have the excess kurtosis of the survey") {
   }
 }
 
-TEST_CASE("a field depends on scene, seed and number alone") {
+TEST_CASE("fields: depend only on scene, seed and number") {
   const Scene scene = points_in_box();
   Plan plan = make_plan(scene, ReversedPaths::automatic);
   const std::size_t n = scene.request.channels.size();
@@ -312,13 +312,13 @@ TEST_CASE("a field depends on scene, seed and number alone") {
     CHECK(field(draw, 0) != field(make(seed + 1), 0));
   };
   check([&](std::uint64_t s) {
-    plan.paths_per_batch += 17;  // of the covariance; not of fields
+    plan.paths_per_batch += 17;  // affects the covariance, not fields
     return fields_by_paths(scene, plan, s, 50);
   });
   check([&](std::uint64_t s) { return fields_from_covariance(CovarianceFactor(n, lower), s); });
 }
 
-TEST_CASE("the intensity that fields by paths are drawn with is that of the covariance") {
+TEST_CASE("fields by paths: intensity used to draw them agrees with the covariance") {
   Scene scene = points_in_box();
   const Plan plan = make_plan(scene, ReversedPaths::yes);
   const std::size_t n = scene.request.channels.size();
@@ -338,7 +338,7 @@ TEST_CASE("the intensity that fields by paths are drawn with is that of the cova
                          expected.value[c], 0);
 }
 
-TEST_CASE("the cheaper way is taken: paths for many channels, the covariance for many fields") {
+TEST_CASE("field plan: paths for many channels, covariance for many fields") {
   Scene scene = points_in_box();
   const Plan plan = make_plan(scene, ReversedPaths::automatic);
   const auto method = [&](std::uint64_t fields) {
@@ -352,7 +352,7 @@ TEST_CASE("the cheaper way is taken: paths for many channels, the covariance for
   CHECK(method(100) == FieldMethod::paths);
 }
 
-TEST_CASE("paths to the covariance follow from the error that it may have") {
+TEST_CASE("field plan: number of covariance paths meets the requested error") {
   Scene scene = points_in_box();
   const Plan plan = make_plan(scene, ReversedPaths::automatic);
   const auto chosen =
@@ -368,7 +368,7 @@ TEST_CASE("paths to the covariance follow from the error that it may have") {
   CHECK(std::sqrt(sum) == doctest::Approx(0.02).epsilon(0.25));
 }
 
-TEST_CASE("the autocorrelation by FFT is the sum that it stands for") {
+TEST_CASE("autocorrelation by FFT: agrees with the direct sum") {
   const std::size_t n = 13;
   RandomStream random(1, 0, 0);
   std::vector<double> x(n);
@@ -382,7 +382,7 @@ TEST_CASE("the autocorrelation by FFT is the sum that it stands for") {
   }
 }
 
-TEST_CASE("the autocorrelation of Gaussian intensities is Siegert's relation") {
+TEST_CASE("autocorrelation of Gaussian intensities: agrees with Siegert's relation") {
   const std::size_t n = 40, views = 32;  // the rest belongs to another light
   Triangle lower;
   for (std::size_t a = 0; a < n; ++a)
@@ -415,7 +415,7 @@ TEST_CASE("the autocorrelation of Gaussian intensities is Siegert's relation") {
   }
 }
 
-TEST_CASE("statistics leave channels without light out and stay finite without any") {
+TEST_CASE("field statistics: leave out dark channels, finite without any light") {
   for (const bool dark : {true, false}) {
     FieldStatistics statistics({0, dark ? 0.0 : 2.0}, 2, true);
     for (int field = 0; field < 4; ++field)
@@ -429,7 +429,7 @@ TEST_CASE("statistics leave channels without light out and stay finite without a
   }
 }
 
-TEST_CASE("views are equally spaced in their sine or along a line") {
+TEST_CASE("equal step: of views equally spaced in sine or along a line only") {
   std::vector<double> angles;
   for (int v = 0; v < 9; ++v) angles.push_back(std::asin(0.1 * v - 0.5));
   CHECK(equal_step(tests::far_views(angles)).value() == doctest::Approx(0.1));

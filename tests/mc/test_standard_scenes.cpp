@@ -20,7 +20,7 @@ struct KnownRange {
 
 constexpr double depth = 1000;
 
-/// Light and view along the normal, tilts up to twice the range.
+/// Requests light and view along the normal at tilts up to 1.6 times the range.
 CovarianceRequest tilted(double range) {
   std::vector<double> tilts;
   for (const double share : {0.25, 0.5, 0.75, 0.9, 1.0, 1.1, 1.3, 1.6})
@@ -96,7 +96,7 @@ void check_entries(double albedo, int count, const std::vector<KnownEntry>& know
 
 }  // namespace
 
-TEST_CASE("slab_hg: the integral equation gives the known ranges for g = 0") {
+TEST_CASE("slab_hg: ranges of the integral equation agree with known values for g = 0") {
   std::vector<KnownRange> all{{10, 0, 0.8, 2.700, 0.004}, {40, 0, 1, 1.446, 0.006}};
   if (tests::is_night)
     all.insert(all.end(), {{10, 0, 1, 1.360, 0.003},
@@ -111,7 +111,7 @@ TEST_CASE("slab_hg: the integral equation gives the known ranges for g = 0") {
   }
 }
 
-TEST_CASE("slab_hg: memory-effect ranges at optical depth 10") {
+TEST_CASE("slab_hg: memory-effect ranges at optical depth 10 agree with known values") {
   std::uint64_t seed = 0;
   for (const auto& known : {KnownRange{10, 0, 1, 1.360, 0.003},
                             {10, 0.5, 1, 1.294, 0.002},
@@ -127,7 +127,7 @@ TEST_CASE("slab_hg: memory-effect ranges at optical depth 10") {
   }
 }
 
-TEST_CASE("box_points: table A of the measures") {
+TEST_CASE("box_points: covariances agree with measures, table A") {
   // light 0 and view v against sin(light) = q and sin(view) + q; errors about 1e-3
   check_entries(1, 31,
                 {{0.1, 0, 2.1113},
@@ -143,7 +143,7 @@ TEST_CASE("box_points: table A of the measures") {
   check_entries(1, 31, {{pi, 0, 2.3372}}, 1e-3, ReversedPaths::no, 12);
 }
 
-TEST_CASE("box_points_absorbing") {
+TEST_CASE("box_points_absorbing: intensities agree with known values") {
   check_entries(0.8, 39, {{0.1, 0, 1.465}, {pi, 0, 2.18}}, 3e-3, ReversedPaths::yes, 13);
   check_entries(0.8, 39, {{pi, 0, 1.64}}, 3e-3, ReversedPaths::no, 14);
 }

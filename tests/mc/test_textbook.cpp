@@ -1,4 +1,4 @@
-// The oracle itself: the published estimator against closed forms and against ours.
+// The textbook estimator, an oracle, against closed forms and against ours.
 #include <cmath>
 
 #include <doctest/doctest.h>
@@ -29,7 +29,7 @@ void check_same(const Scene& scene, bool reversed, std::uint64_t paths) {
     CHECK_WITHIN_4_SIGMA(found.value[e], std::hypot(found.error[e], expected.error[e]),
                          expected.value[e], 1e-4 * std::abs(expected.value[e]));
   }
-  CHECK(relative_error(expected) < 0.03);  // or the test has no teeth
+  CHECK(relative_error(expected) < 0.03);  // so that the test is significant
   CHECK(relative_error(found) < 0.03);
 }
 
@@ -76,17 +76,17 @@ void check_theory(double albedo, bool reversed, std::uint64_t seed) {
 
 }  // namespace
 
-TEST_CASE("the textbook estimator agrees with the integral equation of an isotropic slab") {
+TEST_CASE("textbook estimator: agrees with the integral equation of an isotropic slab") {
   check_theory(1, false, 61);
   check_theory(0.8, false, 62);
 }
 
-TEST_CASE("the textbook estimator's reversed paths agree with the crossed integral equation") {
+TEST_CASE("textbook estimator: reversed paths agree with the crossed integral equation") {
   check_theory(1, true, 63);
   check_theory(0.8, true, 64);
 }
 
-TEST_CASE("ours and the textbook estimator agree on a box of points") {
+TEST_CASE("box of points: estimates agree with the textbook estimator") {
   const Scene lossless = make_scene(box(31));
   check_same(lossless, false, 40000);
   check_same(lossless, true, 40000);
@@ -95,12 +95,12 @@ TEST_CASE("ours and the textbook estimator agree on a box of points") {
   check_same(make_scene(absorbing), true, 40000);
 }
 
-TEST_CASE("ours and the textbook estimator agree on a box of cylinders") {
+TEST_CASE("box of cylinders: estimates agree with the textbook estimator") {
   check_same(make_scene(cylinders()), false, 40000);
   check_same(make_scene(cylinders()), true, 40000);
 }
 
-TEST_CASE("ours and the textbook estimator agree on slabs of Henyey-Greenstein scatterers") {
+TEST_CASE("Henyey-Greenstein slabs: estimates agree with the textbook estimator") {
   const auto forward = memory_effect_request(k, 0, {0, 0.5}, {0, 2e-4, 6e-4});
   const auto backward = memory_effect_request(k, 0, {pi, pi - 0.3}, {0, 2e-4, 6e-4});
   for (const double g : {0.0, 0.5, 0.9}) {

@@ -19,7 +19,7 @@ Scene box(const CovarianceRequest& request) {
   return tests::hg_box(30, 8, {3, 0.4}, request);
 }
 
-/// Shifts that match the tilts, in the same order.
+/// Returns the shifts that match the tilts, in the same order.
 std::vector<double> matched_shifts() {
   std::vector<double> shifts;
   for (double tilt : tilts)
@@ -33,7 +33,7 @@ CovarianceRequest map_request(std::vector<double> shifts) {
 
 }  // namespace
 
-TEST_CASE("at the matched shifts the map holds the memory effect") {
+TEST_CASE("tilt-shift map: equals the memory effect at matched shifts") {
   const auto request = map_request(matched_shifts());
   const auto found = tests::run(box(request), ReversedPaths::automatic, 60000, 1).entries();
   const auto effect = memory_effect_request(k, light, views, tilts);
@@ -52,7 +52,7 @@ TEST_CASE("at the matched shifts the map holds the memory effect") {
   }
 }
 
-TEST_CASE("an infinite slab refuses what does not match; a wide box has next to nothing there") {
+TEST_CASE("tilt-shift map of a wide box: almost 0 at unmatched shifts") {
   const auto request = map_request({0, 1.5});
   const auto run = tests::run(box(request), ReversedPaths::automatic, 60000, 3);
   const auto map =
@@ -67,8 +67,8 @@ TEST_CASE("an infinite slab refuses what does not match; a wide box has next to 
   CHECK(map.moves.error[7] < 0.02);
 }
 
-TEST_CASE("half-widths of the map's axes are those of its width") {
-  // Along either axis alone the box's width limits: sinc(q W / 2) where the light fills it evenly.
+TEST_CASE("tilt-shift map: half-widths along its axes agree with the width of the box") {
+  // Along either axis alone the box's width is the limit: sinc(q W / 2) if evenly illuminated.
   std::vector<double> steps, small_tilts;
   for (int i = 0; i <= 8; ++i) {
     steps.push_back(0.02 * i);
@@ -88,7 +88,7 @@ TEST_CASE("half-widths of the map's axes are those of its width") {
   CHECK(map.ranges[2].range.censored == Range::Censoring::above_value);
 }
 
-TEST_CASE("near sensors shift along x") {
+TEST_CASE("tilt-shift map: near sensors are shifted along x") {
   const std::vector<View> sensors = {near_sensor({0, 9}), near_sensor({2, 4})};
   const auto request = tilt_shift_request(k, plane_wave(light), sensors, {0, 0.004}, {0, 0.4});
   CHECK(request.moves == 4);
@@ -96,7 +96,7 @@ TEST_CASE("near sensors shift along x") {
   CHECK(request.views[request.channels[a].view].point == Vec2{2, 4});
   CHECK(request.views[request.channels[b].view].point == Vec2{2.4, 4});
   CHECK(request.lights[request.channels[b].light].angle == doctest::Approx(light + 0.004));
-  // A shift of 0.4 wavelengths matters where light comes from all around; a tilt that changes the
+  // A shift of 0.4 wavelengths decorrelates light from all directions; a tilt that changes the
   // phase by 0.08 over a mean free path does not.
   const auto run = tests::run(box(request), ReversedPaths::automatic, 40000, 5);
   const auto map =
@@ -106,7 +106,7 @@ TEST_CASE("near sensors shift along x") {
   CHECK(map.moves.value[2].real() > 0.9);
 }
 
-TEST_CASE("single scattering is C21, with views summed before the modulus") {
+TEST_CASE("single-scattering correlation: agrees with C21, views summed before the modulus") {
   const double q = 0.7, depth = 5;
   const auto sinc = [](double a) { return std::sin(a) / a; };
   const double a = q * depth * (std::tan(0.5) - std::tan(0.1)) / 2,

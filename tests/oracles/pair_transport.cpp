@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// int_0^depth exp(-s a - (depth - s) b) ds
+/// Returns int_0^depth exp(-s a - (depth - s) b) ds.
 Complex overlap(Complex a, Complex b, double depth) {
   const Complex half = (a - b) * depth / 2.0, middle = std::exp(-(a + b) * depth / 2.0);
   if (std::abs(half) < 1e-3) return depth * middle * (1.0 + half * half / 6.0);
@@ -27,18 +27,19 @@ Complex overlap(Complex a, Complex b, double depth) {
 PairTransport::PairTransport(const Medium& medium, const std::vector<Pair>& lights,
                              const std::vector<Pair>& views, int panels)
     : medium_(medium), lights_(lights.size()) {
-  openblas_set_num_threads(1);  // the matrices are small, and tests run beside each other
+  openblas_set_num_threads(1);  // the matrices are small, and tests run in parallel
   add_nodes(medium.k * (std::sin(lights[0].first) - std::sin(lights[0].second)), panels);
   for (const Pair& pair : lights) add_pair(pair);
   for (const Pair& pair : views) add_pair(pair);
   scale_phase();
-  constexpr int doublings = 36;  // what a layer scatters twice is lost
+  constexpr int doublings = 36;  // double scattering is neglected in the thinnest layer
   double optical_depth = std::ldexp(medium_.mu_t * medium_.depth, -doublings);
   slab_ = thin_layer(optical_depth);
   for (int i = 0; i < doublings; ++i, optical_depth *= 2) slab_ = doubled(slab_, optical_depth);
 }
 
-/// Dense towards grazing angles, where radiance has a logarithm near the faces.
+/// Adds nodes, which are denser towards grazing angles, where the radiance near the faces has a
+/// logarithmic singularity.
 void PairTransport::add_nodes(double q, int panels) {
   GaussPanels unit;
   unit.add(0, 1, panels);
@@ -59,7 +60,7 @@ void PairTransport::add_pair(Pair angles) {
   ordinates_.push_back({angles, 0, 1, rate});
 }
 
-/// sqrt(p p) of both members of the pairs.
+/// Returns the geometric mean of the phase function over both members of the pairs.
 double PairTransport::phase_element(std::size_t out, std::size_t in, bool backward) const {
   const auto one = [&](double to, double from) {
     return medium_.phase((backward ? pi - to : to) - from);
@@ -86,7 +87,7 @@ void PairTransport::scale_phase() {
     for (std::size_t i = 0; i < n; ++i) {
       double sum = 0;
       for (std::size_t j = 0; j < nodes_; ++j) sum += scattered[i * nodes_ + j] * before[j].scale;
-      // between old and new the iteration would swing
+      // the geometric mean of old and new values, because plain iteration would oscillate
       ordinates_[i].scale = i < nodes_ ? std::sqrt(before[i].scale / sum) : 1 / sum;
     }
   }
@@ -125,7 +126,7 @@ PairTransport::Matrix PairTransport::product(const Matrix& a, const Matrix& b) c
   return c;
 }
 
-/// (1 - a)^-1 b
+/// Returns (1 - a)^-1 b.
 PairTransport::Matrix PairTransport::solve_one_minus(Matrix a, Matrix b) const {
   const std::size_t n = ordinates_.size();
   for (Complex& element : a) element = -element;
@@ -137,7 +138,7 @@ PairTransport::Matrix PairTransport::solve_one_minus(Matrix a, Matrix b) const {
   return b;
 }
 
-/// Two layers of equal optical depth on top of each other.
+/// Combines two layers of equal optical depth.
 PairTransport::Layer PairTransport::doubled(const Layer& half, double optical_depth) const {
   const std::size_t n = ordinates_.size();
   std::vector<Complex> direct;

@@ -7,44 +7,47 @@
 
 namespace flatspeckle::oracles {
 
-/// The covariance of two fields behind an infinite slab without random numbers, for any phase
-/// function and any tilt: C14 (F conj F, all B) and C18 as a transport equation. Both paths carry
-/// one transverse momentum q = k (sin i1 - sin i2), so the mutual radiance exp(i q x) J(z, theta)
-/// obeys
+/// Computes the covariance of two fields behind an infinite slab deterministically, for any phase
+/// function and any tilt. C14 (F conj F, all B) and C18 are solved as a transport equation. The
+/// pair of paths has one transverse momentum q = k (sin i1 - sin i2), so the mutual radiance exp(i
+/// q x) J(z, theta) obeys
 ///   cos(theta) dJ/dz = -(mu_t + i q sin(theta)) J + mu_s int p(theta - theta') J(theta') dtheta'
-/// and scatters into and out of pairs of directions by A A*. Solved by adding and doubling, like
-/// SlabTransport, with complex rates of decay.
+/// and pairs of directions scatter into each other with A A*. The equation is solved by adding and
+/// doubling, as in SlabTransport, with complex decay rates.
 class PairTransport {
  public:
   struct Medium {
     double k, depth, mu_t, albedo;
     std::function<double(double)> phase;  ///< p(angle), even, integral 1 over 2 pi (C5)
   };
-  /// Directions of two lights, or of the two transmitted views that go with them.
+  /// Directions of two illuminations, or of the two transmitted detection directions that belong to
+  /// them.
   struct Pair {
     double first, second;
   };
-  /// All pairs must share one k (sin first - sin second). `panels` of 10 nodes per quadrant:
-  /// forward peaks of width 1 - g want 0.8 / (1 - g) of them.
+  /// All pairs must have the same k (sin first - sin second). `panels` of 10 nodes per quadrant:
+  /// forward peaks of width 1 - g require 0.8 / (1 - g) panels.
   PairTransport(const Medium& medium, const std::vector<Pair>& lights,
                 const std::vector<Pair>& views, int panels);
 
-  /// By the numbers of the pairs of lights and views; |angles| < pi/2.
+  /// Returns the covariance for a pair of illuminations and a pair of detection directions, given
+  /// by their indices. All angles must satisfy |angle| < pi/2.
   Complex covariance(std::size_t lights, std::size_t views) const;
 
  private:
   using Matrix = std::vector<Complex>;
-  /// Of the slab and its parts, alike from above and below: [out][in], angles from -z where
-  /// reflected.
+  /// Response [out][in] of the slab or a part of it, which is the same for light from above and
+  /// from below. Angles of reflected light are measured from -z.
   struct Layer {
     Matrix reflected, transmitted;
   };
-  /// A node of the quadrature, where both angles are equal, or a pair, of weight 0.
+  /// A node of the quadrature, whose two angles are equal, or a requested pair of directions, whose
+  /// weight is 0.
   struct Ordinate {
     Pair angles;
-    double weight, per_cosine;  ///< radiance per power
-    Complex rate;               ///< of decay with optical depth
-    double scale = 1;           ///< of the phase function, to conserve power
+    double weight, per_cosine;  ///< factor from power to radiance
+    Complex rate;               ///< decay rate with optical depth
+    double scale = 1;           ///< factor on the phase function that conserves power
   };
   void add_nodes(double q, int panels);
   void add_pair(Pair angles);

@@ -55,7 +55,7 @@ Vec3 scattered(const Vec3& d, const WalkMedium& medium, Random& random) {
   return (cosine * d + sine * (std::cos(angle) * u + std::sin(angle) * v)).normalized();
 }
 
-/// Roots of |x + s d - c|^2 = r^2, or none.
+/// Returns the roots s of |x + s d - c|^2 = r^2, or nullopt if they are not real.
 std::optional<std::pair<double, double>> sphere_roots(const Vec3& x, const Vec3& d, const Vec3& c,
                                                       double r) {
   const double b = d.dot(x - c), q = b * b - (x - c).squaredNorm() + r * r;
@@ -63,7 +63,7 @@ std::optional<std::pair<double, double>> sphere_roots(const Vec3& x, const Vec3&
   return std::pair(-b - std::sqrt(q), -b + std::sqrt(q));
 }
 
-double way_out(const WalkShape& shape, const Vec3& x, const Vec3& d) {
+double exit_distance(const WalkShape& shape, const Vec3& x, const Vec3& d) {
   if (shape.radius > 0) {
     const auto roots = sphere_roots(x, d, shape.low, shape.radius);
     return roots ? std::max(0.0, roots->second) : 0;
@@ -81,16 +81,16 @@ bool is_out(const WalkShape& shape, const Vec3& x) {
   return (x - shape.low).minCoeff() < 0 || (shape.high - x).minCoeff() < 0;
 }
 
-/// What a photon comes to: the number of a ball whose surface it is, or one of these.
+/// Surface that a photon meets: the index of a ball, or one of the constants below.
 using Met = int;
 constexpr Met nothing = -1, boundary = -2;
 
-/// One photon on its way.
+/// Traces photons one by one.
 class Walk {
  public:
   Walk(const WalkScene& scene, Random& random) : scene_(scene), random_(random) {}
 
-  /// True where it left, false where it was absorbed.
+  /// Traces a photon; returns whether it left the scene, false if it was absorbed.
   bool run(Photon& photon) {
     for (;;) {
       const WalkMedium& medium = medium_of(photon);
@@ -120,7 +120,7 @@ class Walk {
 
   bool collide(Photon& photon, const WalkMedium& medium) {
     if (medium.density && uniform(random_) * medium.largest_density > medium.density(photon.x))
-      return true;  // nothing there
+      return true;  // null collision
     if (uniform(random_) * (medium.mu_s + medium.mu_a) > medium.mu_s) return false;
     photon.direction = scattered(photon.direction, medium, random_);
     ++photon.scatterings;
@@ -128,30 +128,31 @@ class Walk {
   }
 
   int balls() const { return static_cast<int>(scene_.balls.size()); }
-  double way_to(int ball, const Photon& p) const {
+  double length_to(int ball, const Photon& p) const {
     const auto& [centre, radius, medium, n] = scene_.balls[ball];
     const auto roots = sphere_roots(p.x, p.direction, centre, radius);
     if (p.ball == ball) return roots ? std::max(0.0, roots->second) : 0;
-    // Just out of it the ray leads away: its roots lie behind.
+    // A ray that has just left the ball leads away from it: its roots lie behind.
     const bool towards = p.direction.dot(centre - p.x) > 0;
     return roots && towards ? std::max(0.0, roots->first) : infinity;
   }
 
-  /// Balls before its own lie around the photon.
+  /// Moves the photon along a straight line. Balls with a smaller index than the photon's own ball
+  /// contain that ball and are skipped.
   Met go_straight(Photon& p, double flight) const {
-    double way = way_out(scene_.boundary, p.x, p.direction);
+    double ray_length = exit_distance(scene_.boundary, p.x, p.direction);
     Met met = boundary;
     for (int ball = std::max(0, p.ball); ball < balls(); ++ball)
-      if (const double there = way_to(ball, p); there < way) {
-        way = there;
+      if (const double there = length_to(ball, p); there < ray_length) {
+        ray_length = there;
         met = ball;
       }
-    if (flight < way) {
-      way = flight;
+    if (flight < ray_length) {
+      ray_length = flight;
       met = nothing;
     }
-    p.optical_path += way * index(p);
-    p.x += way * p.direction;
+    p.optical_path += ray_length * index(p);
+    p.x += ray_length * p.direction;
     return met;
   }
 
@@ -160,16 +161,16 @@ class Walk {
     double path = 0;
   };
 
-  /// RK4 of dx/ds = v/|v|, dv/ds = grad n, dpath/ds = n.
+  /// Makes an RK4 step of dx/ds = v/|v|, dv/ds = grad n, d(optical path)/ds = n.
   Ray stepped(const Ray& r, double h) const {
-    const auto slope = [&](const Ray& at) {
+    const auto derivative = [&](const Ray& at) {
       return Ray{at.v.normalized(), scene_.curved->gradient(at.x), scene_.curved->n(at.x)};
     };
     const auto moved = [&](const Ray& k, double by) {
       return Ray{r.x + by * k.x, r.v + by * k.v, r.path + by * k.path};
     };
-    const Ray a = slope(r), b = slope(moved(a, h / 2)), c = slope(moved(b, h / 2)),
-              d = slope(moved(c, h));
+    const Ray a = derivative(r), b = derivative(moved(a, h / 2)), c = derivative(moved(b, h / 2)),
+              d = derivative(moved(c, h));
     return {r.x + h / 6 * (a.x + 2 * b.x + 2 * c.x + d.x),
             r.v + h / 6 * (a.v + 2 * b.v + 2 * c.v + d.v),
             r.path + h / 6 * (a.path + 2 * b.path + 2 * c.path + d.path)};
@@ -178,7 +179,7 @@ class Walk {
   bool is_in(int ball, const Vec3& x) const {
     return (x - scene_.balls[ball].centre).norm() < scene_.balls[ball].radius;
   }
-  /// Of a photon in the curved index.
+  /// Returns the surface that a photon in the graded index has crossed on its way to x, if any.
   Met met_at(const Vec3& x) const {
     if (is_out(scene_.boundary, x)) return boundary;
     if (balls() > 0 && !is_in(0, x)) return 0;
@@ -194,7 +195,7 @@ class Walk {
       double h = std::min(left, scene_.curved->step);
       Ray next = stepped(ray, h);
       met = met_at(next.x);
-      if (met != nothing) {  // halve the step to where it goes out
+      if (met != nothing) {  // bisect the step to find the crossing
         double in = 0;
         for (int i = 0; i < 50; ++i) {
           const double middle = (in + h) / 2;
@@ -213,7 +214,7 @@ class Walk {
     return met;
   }
 
-  /// The last ball that x is in, but for one.
+  /// Returns the last ball, other than ball `left`, that contains x; -1 if none does.
   int innermost_but(int left, const Vec3& x) const {
     int found = -1;
     for (int ball = 0; ball < balls(); ++ball)
@@ -221,14 +222,14 @@ class Walk {
     return found;
   }
 
-  /// Snell's law and, by chance, Fresnel's reflectance of unpolarised light.
+  /// Refracts by Snell's law, or reflects with Fresnel's probability for unpolarised light.
   void cross(Photon& p, int ball) const {
     const Vec3 out = (p.x - scene_.balls[ball].centre).normalized();
     const bool leaves = p.ball == ball;
     Photon beyond = p;
     beyond.ball = leaves ? innermost_but(ball, p.x) : ball;
     const double ratio = index(p) / index(beyond);
-    const Vec3 normal = leaves ? out : Vec3(-out);  // along the way
+    const Vec3 normal = leaves ? out : Vec3(-out);  // along the ray
     const double c1 = normal.dot(p.direction), s2 = ratio * ratio * (1 - c1 * c1);
     if (s2 < 1) {
       const double c2 = std::sqrt(1 - s2);

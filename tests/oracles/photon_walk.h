@@ -12,10 +12,10 @@ namespace flatspeckle::oracles {
 
 using grin::Vec3;
 
-/// Analog light transport as in the textbooks, the oracle of the estimators: photons that fly,
-/// scatter, are absorbed (they vanish) and leave, one by one and all of the same power. It shares
-/// no code with them but the vector: other random numbers, other geometry, and in curved space
-/// plain RK4 by arc length in small steps, without tangent maps or surfaces that anything knows of.
+/// Textbook photon tracing, a reference for the estimators. Photons of equal power are traced one
+/// by one: they scatter until they are absorbed or leave the scene. Only the vector type is shared
+/// with the estimators; random numbers and geometry are independent. In a graded index rays are
+/// traced by plain RK4 in arc length with small steps, without tangent maps or crossing searches.
 
 using Random = std::mt19937_64;
 
@@ -24,11 +24,11 @@ struct WalkMedium {
   double mu_s = 0, mu_a = 0;
   Law law = Law::isotropic;
   double g = 0;
-  std::function<double(const Vec3&)> density = {};  ///< relative; nothing: 1
+  std::function<double(const Vec3&)> density = {};  ///< relative density; 1 everywhere if empty
   double largest_density = 1;
 };
 
-/// A box or, where radius > 0, a sphere about `low`.
+/// A box, or, if radius > 0, a sphere with centre `low`.
 struct WalkShape {
   Vec3 low, high;
   double radius = 0;
@@ -41,15 +41,15 @@ struct WalkBall {
   double index = 1;
 };
 
-/// An index that varies; rays take steps of `step` in arc length.
+/// A graded index; rays take steps of `step` in arc length.
 struct WalkIndex {
   std::function<double(const Vec3&)> n;
   std::function<Vec3(const Vec3&)> gradient;
   double step;
 };
 
-/// Balls are apart, or a later one is inside of one before it. `curved` is the index in the first
-/// ball; without balls it fills everything.
+/// A scene of balls. Two balls must be disjoint, or the later one must be inside the earlier one.
+/// `curved` is the graded index in the first ball, or in the whole scene if there are no balls.
 struct WalkScene {
   WalkShape boundary;
   WalkMedium medium = {};
@@ -62,33 +62,33 @@ struct Photon {
   Vec3 x, direction;
   double optical_path = 0;
   int scatterings = 0;
-  int ball = -1;  ///< the number of that which it is in; -1: around them
+  int ball = -1;  ///< index of the ball that contains it; -1: none
 };
 
-/// Where a photon starts; the caller says in which ball.
+/// Samples the start of a photon and the ball that contains it.
 using PhotonSource = std::function<Photon(Random&)>;
-/// Called for each photon that leaves, on the boundary.
+/// Called for each photon that leaves the scene, at its exit point on the boundary.
 using PhotonExit = std::function<void(const Photon&)>;
 
 void walk_photons(const WalkScene& scene, const PhotonSource& source, std::uint64_t photons,
                   std::uint64_t seed, const PhotonExit& exit);
 
-/// Sources.
+// Sources.
 PhotonSource point_source(const Vec3& x);
 PhotonSource beam_source(const Vec3& centre, const Vec3& direction, double radius);
-/// Lambertian from a disk.
+/// Returns a Lambertian source on a disk.
 PhotonSource lambertian_source(const Vec3& centre, const Vec3& normal, double radius);
 
-/// What photons are worth to a detector, per photon sent out. A photon adds to a bin no more than
-/// once, so that the squares of its shares tell the errors.
+/// Mean scores of photons at a detector, per photon emitted. A photon scores in a bin at most once,
+/// so the errors follow from the squares of the scores.
 class PhotonTally {
  public:
   PhotonTally(std::size_t bins, std::uint64_t photons)
       : sum_(bins), squares_(bins), photons_(static_cast<double>(photons)) {}
 
-  void add(std::size_t bin, double worth = 1) {
-    sum_[bin] += worth;
-    squares_[bin] += worth * worth;
+  void add(std::size_t bin, double score = 1) {
+    sum_[bin] += score;
+    squares_[bin] += score * score;
   }
   std::size_t size() const { return sum_.size(); }
   double mean(std::size_t bin) const { return sum_[bin] / photons_; }

@@ -19,7 +19,8 @@ double amplitude(double g, double cosine) {
          std::pow(1 + g * g - 2 * g * cosine, -0.75);
 }
 
-/// e_1 conj(e_2) at a depth, of lights along a and b with wavenumbers k and k2.
+/// Returns e_1 conj(e_2) (C13) at depth z, for illuminations along a and b with wavenumbers k and
+/// k2.
 Complex pair_intensity(double k, double k2, double depth, const Vec3& a, const Vec3& b, double z) {
   const auto loss = [&](double cosine) {
     return (cosine > 0 ? z : depth - z) / (2 * std::abs(cosine));
@@ -46,14 +47,14 @@ SpacePairWalk::Estimate SpacePairWalk::estimate(std::uint64_t photons, std::uint
   std::uniform_real_distribution<double> uniform(0, 1);
   const double k2 = k * (1 + shift);
   const Vec3 momentum = k * light1 - k2 * light2, q(momentum.x(), momentum.y(), 0);
-  const double slope = light1.z(), within = -std::expm1(-depth / slope);
+  const double mu = light1.z(), within = -std::expm1(-depth / mu);
   Complex sum = 0;
   double squares = 0;
   for (std::uint64_t photon = 0; photon < photons; ++photon) {
-    const double start = -slope * std::log1p(-within * uniform(random));
+    const double start = -mu * std::log1p(-within * uniform(random));
     Vec3 x(0, 0, start), direction = light1;
-    Complex weight = pair_intensity(k, k2, depth, light1, light2, start) * slope * within *
-                     std::exp(start / slope),
+    Complex weight = pair_intensity(k, k2, depth, light1, light2, start) * mu * within *
+                     std::exp(start / mu),
             found = 0;
     for (int order = 1; x.z() >= 0 && x.z() <= depth; ++order) {
       const Vec3& other = order == 1 ? light2 : direction;

@@ -7,20 +7,23 @@
 
 namespace flatspeckle::oracles {
 
-/// The covariance of scalar waves on a slab in space (conventions, C41) by the textbook's Monte
-/// Carlo: photons of a pair of lights walk through Henyey-Greenstein scatterers, carry the phase of
-/// the transverse momentum and of the difference in wavenumber, and at each scattering add what a
-/// pair of views would see of it. Lengths in mean free paths; the first light comes from above.
+/// Covariance of scalar waves in a 3D slab (conventions, C41) by textbook Monte Carlo. Photons of a
+/// pair of illuminations walk through Henyey-Greenstein scatterers. They carry the phase of the
+/// transverse momentum and of the wavenumber difference, and at each scattering add their
+/// contribution to a pair of detection directions. Lengths are in mean free paths; the first
+/// illumination comes from above.
 struct SpacePairWalk {
   double k, depth, g, albedo;
   grin::Vec3 light1, light2, view1, view2;
-  double shift = 0;  ///< of the wavenumber of the second field, relative; view2 matched
+  /// Relative shift of the second field's wavenumber; view2 must be the matched direction.
+  double shift = 0;
 
   struct Estimate {
     std::complex<double> value;
-    double error;  ///< of either part
+    double error;  ///< standard error, the same for real and imaginary part
   };
-  /// single: with paths of one scattering (the ladder); reversed paths have none.
+  /// single: whether to include single scattering; true for the ladder, false for reversed paths,
+  /// which have none.
   Estimate estimate(std::uint64_t photons, std::uint64_t seed, bool single) const;
 };
 

@@ -1,4 +1,4 @@
-"""The package under test, from this checkout, with a cache of its own for each test."""
+"""Imports the package under test from this checkout, with a separate cache for each test."""
 
 import os
 import pathlib
@@ -27,6 +27,6 @@ class PackageTest(unittest.TestCase):
         os.environ["FLATSPECKLE_CACHE"] = str(self.folder / "cache")
 
     def leave_figures_undrawn(self):
-        """By day figures are made and not drawn, which takes most of their time: apps/plots draws one of each script."""
+        """By day figures are made but not drawn, which takes most of the time: apps/plots draws one per script."""
         if not WHOLE:
             self.enterContext(mock.patch.object(fs.plots, "whole"))

@@ -1,5 +1,5 @@
-"""Calls: arrays arrive as they are, refusals are told by key, an interrupted run goes on, a call like an
-earlier one costs nothing."""
+"""Calls: arrays are passed unchanged, rejections name the key, an interrupted run is resumed, a repeated call
+costs nothing."""
 
 import functools
 import os
@@ -109,7 +109,7 @@ class Arrays(PackageTest):
         np.testing.assert_allclose(result.layer_optical_depth, layers["optical_depth"], rtol=1e-12)
 
     def test_grids_of_the_index(self):
-        """Of a constant index: a ray's optical path is n times its length."""
+        """In a constant index the optical path of a ray is n times its length."""
         grid = {"excess": np.full((4, 4, 4), 0.5), "origin": [-3, -3, -3], "spacing": [2, 2, 2]}
         result = fs.trace(field="grid", grid=grid, origin=[0, 0, -2], ray_count=1, max_length=3)
         np.testing.assert_allclose(result.optical_path, 1.5 * 3, rtol=1e-6)
@@ -121,7 +121,7 @@ class Arrays(PackageTest):
         np.testing.assert_array_equal(angle, [0, np.pi / 2, np.pi])
 
     def test_measured_curves(self):
-        """Each of the three ways to hand over the same curve finds the same medium."""
+        """The three ways to pass the same curve give the same medium."""
         curve = fs.covariance(CURVE, tilts=np.linspace(0, 4e-4, 9), method="mc", samples=20_000)
         medium = {"free": {"g": (0.5, 0.98)}, "depth": 1000, "optical_depth": 4}
         found = [fs.fit(medium, measurement=measured) for measured in (curve, curve.encoding["source"])]
@@ -178,7 +178,7 @@ class Interruption(PackageTest):
         return fs.covariance(LONG, cache=False)
 
     def interrupt(self):
-        """As by Ctrl-C, once the program is at work and has had time for some batches."""
+        """Interrupts as by Ctrl-C, after the program has had time for some batches."""
         while not any(self.folder.rglob(".*.h5.lock")):
             time.sleep(0.01)
         time.sleep(0.1)
@@ -234,7 +234,7 @@ class Cache(PackageTest):
         self.assertNotEqual(first.encoding["source"], fs.covariance(CURVE, seed=2, **FEW).encoding["source"])
         table = self.folder / "layers.csv"
         depths = []
-        for depth in (1, 2):  # in a file of the same name
+        for depth in (1, 2):  # in files of the same name
             table.write_text(f"thickness,optical_depth\n100,{depth}\n")
             depths.append(float(fs.covariance(domain="slab", scatterer="hg", layers=table).layer_optical_depth[0]))
         self.assertEqual(depths, [1, 2])

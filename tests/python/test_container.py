@@ -1,4 +1,4 @@
-"""The container's recipe, as far as that can be told without a container: instructions, stages, paths, shell."""
+"""The container's recipe, as far as it can be checked without a container: instructions, stages, paths, shell."""
 
 import pathlib
 import re
@@ -11,7 +11,7 @@ KNOWN = {"FROM", "RUN", "COPY", "ENTRYPOINT"}
 
 
 def instructions():
-    """(word, what follows) of each line, continued ones joined."""
+    """Returns (word, rest) of each line, with continued lines concatenated."""
     text = re.sub(r"\\\\\n", " ", RECIPE.read_text())
     lines = [line.strip() for line in text.splitlines()]
     return [tuple(line.split(maxsplit=1)) for line in lines if line and not line.startswith("#")]

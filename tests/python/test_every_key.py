@@ -1,6 +1,5 @@
-"""Every subcommand is a function with every key of the program's table, with its default and help, and
-each key takes a value that the program accepts: by night with each subcommand that has it, by day
-every sixth key with one of them."""
+"""Every subcommand is a function with all keys of the program's table, their defaults and help, and each key
+accepts a value: by night with each subcommand that has it, by day every sixth key with one of them."""
 
 import inspect
 import re
@@ -13,12 +12,12 @@ from flatspeckle import functions, keys, scene
 
 NUMBERS = [1, 0.5, 0, 2, 1e-7, 10, 100, -1]
 LENGTHS = (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12)
-# Refusals that say: the value is understood, but this scene does without.
-UNUSED = re.compile("are of media with an index_field|needs a box|nothing here has use for it|leave it out|is (a key )?of ")
+# Rejections that mean: the value is valid, but this scene does not use it.
+UNUSED = re.compile("requires? |is not used here|leave it out|is (a key )?of ")
 
 
 def candidates(key):
-    """Values of its kind, until one is accepted."""
+    """Yields values of its kind, to be tried until one is accepted."""
     if key.words:
         singles = [key.words[0]]
     elif key.type is bool:
@@ -36,7 +35,7 @@ def candidates(key):
 
 class EveryKey(PackageTest):
     def refusal(self, subcommand, key, value):
-        """What the program says to this value, nothing where it is accepted."""
+        """Returns the rejection of this value, empty if it is accepted."""
         known = keys.keys_of(subcommand)
         values = scene.all_texts({"out": str(self.folder / "new.h5"), key.name: value}, known)
         words = functions.command(subcommand, values, known, self.folder) + ["--print-config"]

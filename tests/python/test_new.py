@@ -1,4 +1,4 @@
-"""`flatspeckle new PURPOSE` prints a scene that the subcommand it names takes, and that reads back as a Scene."""
+"""`flatspeckle new PURPOSE` prints a scene that its subcommand accepts and that loads as a Scene."""
 
 import re
 import subprocess

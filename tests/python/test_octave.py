@@ -1,4 +1,4 @@
-"""The reader for Octave gives what h5py reads: every number at its place, complex or not, texts, axes, units, errors."""
+"""The reader for Octave agrees with h5py: every number at its place, complex or not, texts, axes, units, errors."""
 
 import shutil
 import subprocess
@@ -38,7 +38,7 @@ end
 
 
 def text_of(dataset):
-    """The same of h5py: a sum in which every number has its own weight."""
+    """Returns the text printed by Octave, by h5py: a sum in which every number has its own weight."""
     if h5py.check_string_dtype(dataset.dtype):
         return ",".join(np.ravel(dataset.asstr()[()]))
     values = np.ravel(dataset[()], order="F")

@@ -1,4 +1,4 @@
-"""Values that cannot be meant are refused by key, before the program runs; those that can arrive as they are."""
+"""Impossible values are rejected by key before the program runs; possible ones are passed unchanged."""
 
 import datetime
 import decimal
@@ -29,7 +29,7 @@ TABLES = {"unequal": {"x": [1, 2], "z": [1]}, "columns of two axes": {"x": np.ze
 
 class Odd(PackageTest):
     def refused(self, subcommand, key, value, *scene, **given):
-        """Returns the one line; the program must not have run."""
+        """Returns the one line of the rejection; the program must not have run."""
         with mock.patch.object(functions, "run", side_effect=AssertionError("runs")), self.assertRaises(fs.InputError) as caught:
             getattr(fs, subcommand)(*scene, **{**given, key: value})
         self.assertEqual(caught.exception.key, key)
@@ -73,7 +73,7 @@ class Odd(PackageTest):
     def test_files_that_are_no_results(self):
         for name, content in (("a.csv", b"x,z\n1,a\n"), ("b.csv", b"\xff\xfe\x00"), ("c.csv", b"")):
             (self.folder / name).write_bytes(content)
-            with self.subTest(file=name), self.assertRaisesRegex(fs.InputError, f"{name}: is neither"):
+            with self.subTest(file=name), self.assertRaisesRegex(fs.InputError, f"{name}: must be a result file"):
                 fs.read(self.folder / name)
 
     def test_what_the_program_refuses_has_its_key_too(self):
@@ -105,7 +105,7 @@ class Meant(PackageTest):
         np.testing.assert_array_equal(np.loadtxt(values, delimiter=",", skiprows=1), np.stack([np.arange(9), np.ones(9)], 1))
 
     def test_the_same_call_at_once(self):
-        """Each of the threads has the result of the one that makes it."""
+        """All threads get the result of the one that makes it."""
         found = []
 
         def call():

@@ -1,4 +1,4 @@
-"""Figures from Python: those of the scripts, and nothing of the user's is changed."""
+"""Figures from Python equal those of the scripts, and nothing of the user's is changed."""
 
 import sys
 import types

@@ -1,4 +1,4 @@
-"""Each tutorial runs, draws its picture, and finds its own assertions true, within a minute; six of them by night."""
+"""Each tutorial runs within a minute, draws its picture, and its assertions hold; six of them by night."""
 
 import contextlib
 import multiprocessing
@@ -21,7 +21,7 @@ MOST_S = 60 * float(os.environ.get("FLATSPECKLE_SLOWNESS", 1))
 
 class Tutorials(PackageTest):
     def run_script(self, script):
-        """As `python SCRIPT` in the test's folder, and what it says to standard error is in SCRIPT.error."""
+        """Runs `python SCRIPT` in the test's folder; its standard error goes to SCRIPT.error."""
         os.chdir(self.folder)
         with open(f"{script.stem}.error", "w") as heard, contextlib.redirect_stderr(heard):
             try:
@@ -31,7 +31,7 @@ class Tutorials(PackageTest):
                 sys.exit(1)
 
     def test_each(self):
-        """Each in a copy of this process, which has loaded matplotlib and xarray."""
+        """Runs each in a fork of this process, which has loaded matplotlib and xarray."""
         for script in TUTORIALS:
             if script.stem in BY_NIGHT and not WHOLE:
                 continue
@@ -39,7 +39,7 @@ class Tutorials(PackageTest):
                 process = multiprocessing.get_context("fork").Process(target=self.run_script, args=[script])
                 process.start()
                 process.join(MOST_S)
-                process.kill()  # does nothing where it has ended
+                process.kill()  # does nothing if it has ended
                 process.join()
                 self.assertEqual(process.exitcode, 0, (self.folder / f"{script.stem}.error").read_text())
                 self.assertTrue((self.folder / f"{script.stem}.png").is_file())

@@ -1,5 +1,6 @@
-// Moving scatterers in the exact solver: every placement is solved again after Gaussian steps and a
-// flow, and the fields are correlated with those before, on absolute scale.
+// Moving scatterers: Monte Carlo against the exact solver, on an absolute scale. Every placement is
+// solved again after Gaussian steps and a flow, and the new fields are correlated with the earlier
+// ones.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -27,14 +28,14 @@ Scene box_of_points() {
   return make_scene(spec);
 }
 
-/// Folded back at the walls, so that the density stays uniform.
+/// Reflects a coordinate at the walls, so that the density stays uniform.
 double reflected(double x, double low, double high) {
   if (x < low) return 2 * low - x;
   return x > high ? 2 * high - x : x;
 }
 
-/// One step of variance 2 D tau = 2 delay / k^2 along each axis, and a flow; who leaves by one side
-/// comes in by the other.
+/// Moves scatterers by a step of variance 2 D tau = 2 delay / k^2 along each axis, and a flow.
+/// Boundaries in x are periodic.
 Placement moved(Placement placement, const Scene& scene, const mc::Motion& motion, double delay,
                 RandomStream& random) {
   const mc::LocalMotion local(scene, motion);
@@ -50,8 +51,8 @@ Placement moved(Placement placement, const Scene& scene, const mc::Motion& motio
   return placement;
 }
 
-/// Sums of the fields before, [view], of those after each delay, [delay][view], and of products
-/// of a field before with its conjugate before, [view], and after, [delay][view].
+/// Returns an ensemble that sums the fields u before the motion, [view], and u' after each delay,
+/// [delay][view]; and then the products u u*, [view], and u u'*, [delay][view].
 BatchJob moving_ensemble(const Scene& scene, const mc::Motion& motion) {
   const std::size_t views = scene.request.views.size(), fields = (1 + delays.size()) * views;
   BatchJob job;
@@ -107,8 +108,8 @@ void check_motion(const mc::Motion& motion) {
   const auto mc =
       mc::change_estimates(scene.request, job, run(job.field.batches, 300'000).sums).correlation;
 
-  // What the method neglects: 80,000 placements show up to 0.02 more than Monte Carlo here, and
-  // half of that at a third of the density.
+  // Allowance for the bias of Monte Carlo: with 80,000 placements the exact solver gives values up
+  // to 0.02 larger here; at a third of the density the difference is half as large.
   const double bias = 2 / (scene.k * scene.medium.mean_free_path());
   for (std::size_t i = 0; i < mc.value.size(); ++i) {
     const double error = std::hypot(mc.error[i], exact.error[i]);
@@ -122,11 +123,11 @@ void check_motion(const mc::Motion& motion) {
 
 }  // namespace
 
-TEST_CASE("diffusing points decorrelate the exact fields as Monte Carlo says") {
+TEST_CASE("diffusing points: decorrelation of exact fields agrees with Monte Carlo") {
   check_motion({});
 }
 
-TEST_CASE("points that flow with a shear and diffuse do so too") {
+TEST_CASE("diffusing points in shear flow: decorrelation of exact fields agrees with Monte Carlo") {
   check_motion({.diffusion = 0.5, .velocity = {-0.15, 0.1}, .shear = 0.06});
 }
 

@@ -46,7 +46,7 @@ Scene disks(int count, const std::string& index, const std::string& structure,
   return make_scene(spec);
 }
 
-/// What random sequential placements of the scene's own box have.
+/// Measures the structure factor of random sequential placements in the scene's box.
 StructureTable measured_structure(const Scene& scene) {
   MeasuredStructureFactor measured(scene.domain, 2.1 * scene.k, 0.3);
   for (std::uint64_t r = 0; r < 1000; ++r) {
@@ -59,7 +59,8 @@ StructureTable measured_structure(const Scene& scene) {
   return {"measured", measured.shell_means([](double q) { return q; }), measured.values()};
 }
 
-/// mc / exact - 1 over the views: RMS without what the exact values' noise adds, and mean.
+/// Deviation mc / exact - 1 over the detection directions: its RMS, from which the noise of the
+/// exact values is subtracted, and its mean.
 struct Deviation {
   double rms = 0, mean = 0, mean_error = 0;
 
@@ -86,8 +87,9 @@ struct Deviation {
   }
 };
 
-/// What is left with S: refraction at the faces and local fields, of the order of the shift of the
-/// wavenumber, and recurrent scattering.
+/// Returns the deviation allowed with the structure factor. It is due to recurrent scattering
+/// (first term) and to refraction at the faces and local fields, which are of the order of the
+/// relative shift of the wavenumber.
 double allowance(const Scene& scene) {
   const auto& medium = scene.medium;
   return 2 / (scene.k * medium.mean_free_path()) + 2 * medium.k_shift / scene.k;
@@ -95,7 +97,7 @@ double allowance(const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("the structure factor mends what correlations do to the covariance") {
+TEST_CASE("correlated disks: with the structure factor the covariance agrees with exact values") {
   for (const int count : {36, 121, 241}) {
     const Exact exact = tabulated(count, 1.2);
     const Scene scene = disks(count, "1.2", "hard_disks", exact.angle);
@@ -105,7 +107,7 @@ TEST_CASE("the structure factor mends what correlations do to the covariance") {
   }
 }
 
-TEST_CASE("at packing 0.1 the RMS deviation falls threefold with the placements' own S") {
+TEST_CASE("correlated disks, packing 0.1: the measured S reduces the RMS deviation threefold") {
   const Exact exact = tabulated(121, 1.2);
   Scene scene = disks(121, "1.2", "none", exact.angle);
   const Deviation without(scene, exact);
@@ -113,11 +115,13 @@ TEST_CASE("at packing 0.1 the RMS deviation falls threefold with the placements'
   CHECK(without.rms > 3 * Deviation(scene, exact).rms);
 }
 
-TEST_CASE("what is left goes with the shift of the wavenumber") {
+TEST_CASE(
+    "correlated disks, index 1.05: the remaining deviation scales with the shift of the "
+    "wavenumber") {
   const Exact exact = tabulated(121, 1.05);
   const Scene scene = disks(121, "1.05", "hard_disks", exact.angle);
   const Deviation with(scene, exact), without(disks(121, "1.05", "none", exact.angle), exact);
-  // The exact values' own noise is as large as what is left.
+  // The noise of the exact values is as large as the remaining deviation.
   CHECK(with.rms < allowance(scene) + 4 * with.mean_error);
   CHECK(without.rms > 8 * with.rms);
 }

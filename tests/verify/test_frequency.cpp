@@ -1,4 +1,5 @@
-// Fields at two frequencies: placements solved at both, against Monte Carlo, on absolute scale.
+// Correlation of fields at two frequencies: exact solutions of the same placements at both
+// frequencies against Monte Carlo, on an absolute scale.
 #include <cmath>
 #include <numbers>
 
@@ -49,7 +50,8 @@ void check(const Scene& scene, std::uint64_t placements) {
   REQUIRE(plan.reversed);
   const auto mc = estimates(scene, mc::frequency_job(scene, plan, shifts, 1), 200'000).correlation;
 
-  const double bias = 2 / (scene.k * scene.medium.mean_free_path());  // what the method neglects
+  const double bias =
+      2 / (scene.k * scene.medium.mean_free_path());  // allowance for the bias of Monte Carlo
   const auto entries = static_cast<double>(mc.value.size());
   double deviations = 0, variances = 0;
   for (std::size_t i = 0; i < mc.value.size(); ++i) {
@@ -61,27 +63,28 @@ void check(const Scene& scene, std::uint64_t placements) {
     deviations += std::norm(mc.value[i] - exact.value[i]);
     variances += error * error;
   }
-  // Values of one view share their placements and paths; those of other views are independent. So the
-  // mean square of the deviations over that of the errors is 1 to 1 / sqrt(views), as real and
-  // imaginary parts are.
-  const auto views = static_cast<double>(
-      scene.request.moves > 0 ? scene.request.reference_views : scene.request.views.size());
+  // Values of one detection direction share placements and paths; those of different directions are
+  // independent. The ratio of the mean squared deviation to the mean squared error is therefore 1
+  // with a standard deviation of about 1 / sqrt(views), because each value has a real and an
+  // imaginary part.
+  const auto views = static_cast<double>(scene.request.moves > 0 ? scene.request.reference_views
+                                                                 : scene.request.views.size());
   CHECK(deviations < variances * (1 + 4 / std::sqrt(views)) + entries * bias * bias);
 }
 
 }  // namespace
 
-TEST_CASE("exact fields at two frequencies correlate as Monte Carlo says (k mfp = 63)") {
+TEST_CASE("frequency correlation: exact fields agree with Monte Carlo (k mfp = 63)") {
   const Scene scene = box_of_points("intensity");
   CHECK(scene.k * scene.medium.mean_free_path() == doctest::Approx(63.7).epsilon(0.01));
   check(scene, 10'000);
 }
 
-TEST_CASE("and so they do in tilted light") {
+TEST_CASE("frequency correlation: tilted illumination agrees with Monte Carlo") {
   check(box_of_points("memory_effect"), 5'000);
 }
 
-TEST_CASE("without shifts an ensemble is that of one frequency") {
+TEST_CASE("frequency ensemble: shift 0 equals the ensemble of one frequency") {
   const Scene scene = box_of_points("intensity");
   const auto sums = [&](const FieldJob& job) {
     std::vector<Complex> values(job.batches.size);

@@ -1,8 +1,7 @@
-"""One name, one type: no two classes, structs, unions or enums of the product and of bench share a name.
+"""Checks that no two classes, structs, unions or enums of the product and of bench share a name.
 
-All namespaces count as one. A type counts where it is defined, at the scope of a namespace: its line begins at the left
-margin. So forward declarations, specialisations of templates, types within a class or function, aliases and
-concepts do not count.
+Namespaces are ignored. Only definitions at namespace scope count, whose line begins at the left margin; forward
+declarations, specialisations of templates, types within a class or function, aliases and concepts do not.
 """
 
 import collections
@@ -11,14 +10,14 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from test_rooms import CODE, ROOT, sources
+from test_modules import CODE, ROOT, sources
 
 DEFINED = re.compile(r"^(?:template\s*<.*>\s*)?(?:class|struct|union|enum class|enum)\s+(?:alignas\([^)]*\)\s*|\[\[[^]]*\]\]\s*)?"
                      r"(\w+)(?:\s+final)?\s*(?::(?!:)[^;{]*)?\{", re.MULTILINE)
 
 
 def places_of_types(root):
-    """{name: "file:line" of each definition}."""
+    """Returns {name: "file:line" of each definition}."""
     found = collections.defaultdict(list)
     for file in sources(root, CODE):
         text = (root / file).read_text()
@@ -40,7 +39,7 @@ class Names(unittest.TestCase):
 
 
 class Planted(unittest.TestCase):
-    """What counts as a definition, in a small tree."""
+    """Tests which lines count as definitions, in a small tree."""
 
     def shared(self, header, source):
         with tempfile.TemporaryDirectory() as folder:

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Every number of the README that is marked as the report's is what docs/report/numbers.json says.
+"""Checks that the README's marked numbers equal those in docs/report/numbers.json.
 
-A mark: <!-- report:KEY -->text<!-- /report -->. With --write the texts are filled in from there."""
+Each number is marked as <!-- report:KEY -->text<!-- /report -->. With --write, each text is replaced by the one of
+the report."""
 
 import json
 import pathlib
@@ -15,7 +16,7 @@ OPENING = re.compile(r"<!-- report:")
 
 
 def complaints(readme, numbers):
-    """What is wrong, a line each."""
+    """Yields one line for each fault."""
     marks = list(MARK.finditer(readme))
     if not marks:
         yield "no number is marked"
@@ -26,7 +27,7 @@ def complaints(readme, numbers):
         if key not in numbers:
             yield f"{key}: the report has no such number"
         elif text != numbers[key]["text"]:
-            yield f"{key}: {text!r}, but the report says {numbers[key]['text']!r}"
+            yield f"{key}: {text!r}, but the report has {numbers[key]['text']!r}"
 
 
 def filled_in(readme, numbers):

@@ -1,4 +1,5 @@
-// The same seed and samples give the same sums bit for bit, whatever the number of threads.
+// Checks that sums depend only on the seed and the number of samples, bit for bit, and not on the
+// number of threads.
 #include <doctest/doctest.h>
 
 #include "flatland/scene/scene.h"
@@ -44,7 +45,7 @@ BatchJob mc_job(const SceneSpec& spec) {
 
 }  // namespace
 
-TEST_CASE("Monte Carlo sums do not depend on threads: points, cylinders, full covariance, slab") {
+TEST_CASE("Monte Carlo: sums do not depend on threads (points, cylinders, full covariance, slab)") {
   check_threads(mc_job(box("point")), 4000);
   check_threads(mc_job(box("te")), 2000);
   SceneSpec full = box("tm");
@@ -62,7 +63,7 @@ TEST_CASE("Monte Carlo sums do not depend on threads: points, cylinders, full co
   check_threads(mc_job(slab), 4000);
 }
 
-TEST_CASE("sums over exact placements do not depend on threads") {
+TEST_CASE("exact ensembles: sums do not depend on threads") {
   for (const char* scatterer : {"point", "hard"}) {
     const Scene scene = make_scene(box(scatterer));
     check_threads(wave::wave_job(scene, 3, 1e-6).batches, 40);

@@ -1,7 +1,7 @@
-// One scene, two eyes: the Monte Carlo estimator against the exact solver, on absolute scale with
-// nothing fitted. Where they disagree beyond 4 combined standard errors, the difference must stay
-// within what the method neglects (corrections of order 1/(k mean free path), and of order the
-// packing fraction for hard disks).
+// Compares Monte Carlo with the exact solver, on an absolute scale without fitted parameters. If
+// they differ by more than 4 combined standard errors, the difference must be within the bias of
+// Monte Carlo: corrections of the order of 1/(k mean free path), and, for hard disks, of the
+// packing fraction.
 #include <cmath>
 #include <numbers>
 
@@ -64,13 +64,14 @@ void check_agreement(const FieldMoments& mc, const FieldMoments& wave, double bi
 
 }  // namespace
 
-TEST_CASE("box of resonant points: covariance, memory effect and backscattering") {
+TEST_CASE(
+    "resonant points: covariance, memory effect and backscattering agree with the exact solver") {
   const Scene scene = make_scene(box_points());
   const auto mc = by_mc(scene, 1'000'000), wave = by_wave(scene, 10'000);
   check_agreement(mc, wave, 0.03);
 
-  // The same scene by another program: 2e6 paths, errors about 1e-3, and 2e4 exact placements,
-  // errors up to 0.024.
+  // Reference values of another program for this scene: 2e6 paths, errors about 1e-3, and 2e4 exact
+  // placements, errors up to 0.024.
   struct Row {
     std::size_t tilt, view;
     Complex mc, wave;
@@ -94,7 +95,7 @@ TEST_CASE("box of resonant points: covariance, memory effect and backscattering"
   }
 }
 
-TEST_CASE("absorbing points") {
+TEST_CASE("absorbing points: covariance agrees with the exact solver") {
   SceneSpec spec = box_points();
   spec.count = 39;
   spec.albedo = 0.8;
@@ -108,7 +109,7 @@ TEST_CASE("absorbing points") {
   CHECK(intensity(4) == doctest::Approx(2.18).epsilon(0.01));
 }
 
-TEST_CASE("dielectric cylinders, packing fraction 0.027") {
+TEST_CASE("dielectric cylinders, packing fraction 0.027: covariance agrees with the exact solver") {
   SceneSpec spec = box();
   spec.scatterer = "tm";
   spec.radius = 1 / (2 * pi);
@@ -121,7 +122,7 @@ TEST_CASE("dielectric cylinders, packing fraction 0.027") {
   check_agreement(by_mc(scene, 500'000), by_wave(scene, 400), 0.08);
 }
 
-TEST_CASE("a Poisson number keeps the forward lobe that a fixed number loses") {
+TEST_CASE("number of scatterers: a Poisson number has the forward lobe that a fixed number lacks") {
   SceneSpec spec = box();
   spec.view_angles = {0};
   spec.count = 31;
@@ -137,8 +138,9 @@ TEST_CASE("a Poisson number keeps the forward lobe that a fixed number loses") {
   CHECK(std::abs(with_fixed.covariance.value[0] - 0.90) <
         4 * with_fixed.covariance.error[0] + 0.03);
 
-  // What is lost is the fluctuation of the mean field with the number, N |dm/dN|^2; it is not
-  // |m|^2 / N, because m does not grow in proportion to N.
+  // With a fixed number of scatterers N, the covariance lacks the fluctuation of the mean field m
+  // that a Poisson number causes, N |dm/dN|^2. This is not |m|^2 / N, because m is not proportional
+  // to N.
   constexpr double count = 31;
   const auto mean_of = [&](double number) {
     spec.density = number / 200;
@@ -152,15 +154,15 @@ TEST_CASE("a Poisson number keeps the forward lobe that a fixed number loses") {
   CHECK(found + 4 * error < std::norm(mean_of(count)) / count);
 }
 
-TEST_CASE("the coherent field is the exact mean field") {
+TEST_CASE("coherent field: agrees with the exact mean field") {
   SceneSpec spec = box();
   spec.density = 31.0 / 200;
   spec.light_angles = {0, 0.4};
   spec.view_angles = {0, 0.05, 0.1, 0.4, 0.5, 3.0};
   const Scene scene = make_scene(spec);
   const auto mc = by_mc(scene, 1000), wave = by_wave(scene, 20'000);
-  // Relative to the forward lobe: what the method neglects there is reflection and diffraction at
-  // the edges of the box.
+  // Deviations are relative to the forward lobe, because the method neglects reflection and
+  // diffraction at the edges of the box.
   const double lobe = std::abs(wave.mean.value[0]);
   for (std::size_t c = 0; c < wave.mean.value.size(); ++c) {
     CAPTURE(c);
@@ -169,7 +171,7 @@ TEST_CASE("the coherent field is the exact mean field") {
   CHECK(lobe > 5);
 }
 
-TEST_CASE("near sensors outside the box see the same covariance by both methods") {
+TEST_CASE("near sensors outside the box: covariance agrees with the exact solver") {
   SceneSpec spec = box_points();
   spec.covariance = "intensity";
   spec.tilts = {};

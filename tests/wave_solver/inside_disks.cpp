@@ -22,7 +22,7 @@ double between(RandomStream& random, double low, double high) {
   return low * std::pow(high / low, random.uniform());
 }
 
-/// Within a factor 2 of a size.
+/// Draws a disk whose radius is within a factor 2 of a size.
 Scatterer random_disk(double size, RandomStream& random) {
   using Kind = Scatterer::Kind;
   constexpr Kind kinds[] = {Kind::tm, Kind::tm, Kind::te, Kind::te, Kind::soft, Kind::hard};
@@ -35,7 +35,8 @@ Scatterer random_disk(double size, RandomStream& random) {
 
 constexpr double least_gap = 1e-4;  // of the smaller radius
 
-/// Each disk is close to one before it, up to the smaller radius.
+/// Draws a cluster in which the gap between each disk and an earlier one is at most the smaller
+/// radius.
 Placement random_cluster(int number, int most_disks) {
   RandomStream random(11, 95, number);
   const auto count = 2 + static_cast<std::size_t>((most_disks - 1) * random.uniform());
@@ -57,7 +58,7 @@ Placement random_cluster(int number, int most_disks) {
   return placement;
 }
 
-/// Of a map that holds all disks.
+/// Returns the sensors of a map that contains all disks.
 std::vector<Vec2> sensors(const Placement& placement) {
   return map_sensors({{-50, -50}, {50, 50}, 1, 1}, placement);
 }
@@ -67,7 +68,8 @@ WaveSolution solved(const Placement& placement, double tolerance) {
                {.tolerance = tolerance, .sensors = sensors(placement), .diagnose = false});
 }
 
-/// Whether the finest solution is affordable; some disks are too close to be solved at all.
+/// Whether the most accurate solution is small enough; some disks are too close to be solved at
+/// all.
 bool is_small(const Placement& placement, std::size_t most_unknowns) {
   try {
     return TMatrixSystem(placement, two_pi, 1e-12, sensors(placement)).unknowns() <= most_unknowns;
@@ -76,7 +78,7 @@ bool is_small(const Placement& placement, std::size_t most_unknowns) {
   }
 }
 
-/// Of a solution of orders that surely suffice.
+/// Returns an oracle for a solution, with orders that are certainly sufficient.
 MultipoleOracle oracle_of(const WaveSolution& solution) {
   std::vector<int> orders = solution.basis_order();
   for (int& order : orders) order += order / 4 + 4;
@@ -97,7 +99,7 @@ Complex outside(const WaveSolution& solution, Vec2 point) {
   return solution.near_field(point, 0) + std::polar(1.0, two_pi * dot(direction(light), point));
 }
 
-/// On the rim, a little inside and outside of it.
+/// Two points at a rim, slightly inside and outside.
 struct RimPoint {
   std::size_t disk;
   Vec2 within, beyond;
@@ -115,7 +117,7 @@ std::vector<RimPoint> rim_points(const Placement& placement) {
   return points;
 }
 
-/// Where two disks face each other, and close by.
+/// Returns points on both rims at the gap between two disks, and near it.
 std::vector<RimPoint> gap_points(const Placement& two) {
   constexpr double little = 1e-9;
   std::vector<RimPoint> points;
@@ -132,7 +134,7 @@ std::vector<RimPoint> gap_points(const Placement& two) {
   return points;
 }
 
-/// Relative to the largest field on any rim.
+/// Returns errors relative to the largest field at any of the points.
 WorstError error_of(const WaveSolution& solution, const MultipoleOracle& oracle,
                     const std::vector<RimPoint>& points) {
   double largest = 1;

@@ -8,7 +8,7 @@
 
 namespace flatspeckle::wave {
 
-/// Of fields of clusters of disks, over the tolerance.
+/// Largest errors of fields inside and outside disks, in units of the tolerance.
 struct WorstError {
   double inside = 0, outside = 0;
 
@@ -18,24 +18,25 @@ struct WorstError {
   }
 };
 
-/// What a cluster may have.
+/// Limits of the size of a cluster.
 struct ClusterSize {
   int disks;
   std::size_t unknowns;  ///< at a tolerance of 1e-12
 };
 
-/// Of so many random clusters from number `first` on, of those that are small enough, against an
-/// oracle, by tolerance. Two disks or more, index to 8, gaps from 1e-4 of the smaller radius on.
+/// Returns the largest errors over random clusters compared with an oracle, for each tolerance: the
+/// given number of clusters within the limits, from number `first` on. Clusters have at least two
+/// disks, indices up to 8, and gaps of at least 1e-4 of the smaller radius.
 std::vector<WorstError> worst_errors(int first, int clusters, const ClusterSize& most,
                                      const std::vector<double>& tolerances);
 
-/// Checks the same of a disk of k a = 1 and one `ratio` times as large, where they face each other
-/// across a gap given in radii of that one. kind: as reference_scatterer() has it.
+/// Checks fields of a disk of k a = 1 and one `ratio` times as large near the gap between them,
+/// which is given in radii of the second. kind: as in reference_scatterer().
 void check_gap(const std::string& kind, double ratio, double gap,
                const std::vector<double>& tolerances);
 
-/// Of a map of penetrable disks in a plane wave, against an oracle: |u - exact|, the largest of
-/// every stride-th pixel.
+/// Returns the largest |u - exact| over every stride-th pixel of a map of penetrable disks in a
+/// plane wave, compared with an oracle.
 double worst_on_map(const Placement& placement, double angle, const MapGrid& grid, double tolerance,
                     std::size_t stride);
 

@@ -10,7 +10,7 @@ namespace flatspeckle::wave {
 
 namespace {
 
-/// Z_n(x) for n = -order .. order, and Z_n' of one less.
+/// Cylinder functions Z_n(x) for n = -order .. order, and Z_n' for one order less.
 template <class Number>
 class Cylinder {
  public:
@@ -20,7 +20,7 @@ class Cylinder {
     const Number& value = z_[static_cast<std::size_t>(std::abs(n))];
     return n < 0 && n % 2 != 0 ? -value : value;
   }
-  Number slope(int n) const { return 0.5L * ((*this)(n - 1) + -(*this)(n + 1)); }
+  Number derivative(int n) const { return 0.5L * ((*this)(n - 1) + -(*this)(n + 1)); }
 
  private:
   std::vector<Number> z_;
@@ -32,7 +32,7 @@ Cylinder<ScaledComplex> hankel(int order, double x) {
   return Cylinder(scaled_hankel(order + 1, x));
 }
 
-/// e^{i n phi} with the angle of d measured as in C2.
+/// Returns e^{i n phi} with the angle of d measured as in C2.
 Complex turn(int n, Vec2 d) {
   return std::polar(1.0, n * std::atan2(d.x, d.z));
 }
@@ -50,10 +50,10 @@ class InverseT {
   ScaledComplex operator()(int n) const {
     const ScaledComplex j_over_h = j_(n) / h_(n);
     if (kind_ == Scatterer::Kind::soft) return -(h_(n) / j_(n)) * j_over_h;
-    if (kind_ == Scatterer::Kind::hard) return -(h_.slope(n) / j_.slope(n)) * j_over_h;
-    const ScaledReal slope = q_ * inside_.slope(n);
-    return -((slope * h_(n) + -(inside_(n) * h_.slope(n))) /
-             (slope * j_(n) + -(inside_(n) * j_.slope(n)))) *
+    if (kind_ == Scatterer::Kind::hard) return -(h_.derivative(n) / j_.derivative(n)) * j_over_h;
+    const ScaledReal derivative = q_ * inside_.derivative(n);
+    return -((derivative * h_(n) + -(inside_(n) * h_.derivative(n))) /
+             (derivative * j_(n) + -(inside_(n) * j_.derivative(n)))) *
            j_over_h;
   }
 
@@ -65,9 +65,9 @@ class InverseT {
   Cylinder<ScaledReal> inside_;
 };
 
-/// right becomes the solution. Equations are turned so that their diagonal is large for LAPACK,
-/// which measures pivots by |re| + |im|: real ones of soft disks it would leave for others, and the
-/// factors of unequal disks would grow without bound.
+/// Replaces `right` by the solution. Equations are multiplied by phases that make their diagonal
+/// large for LAPACK, which measures pivots by |re| + |im|. Otherwise it would reject the real
+/// pivots of soft disks, and the factors of unequal disks would grow without bound.
 void solve(std::vector<Complex>& matrix, std::vector<Complex>& right) {
   const auto size = static_cast<lapack_int>(right.size());
   std::vector<lapack_int> pivots(right.size());
@@ -100,7 +100,7 @@ MultipoleOracle::MultipoleOracle(const Placement& placement, double k, double li
   solve(matrix, on_rim_);
 }
 
-/// And the right side.
+/// Fills the diagonal block and the right-hand side of a disk.
 void MultipoleOracle::own_block(std::size_t disk, std::vector<Complex>& matrix) {
   const auto& [centre, scatterer] = placement_[disk];
   const double x = k_ * scatterer.radius;
@@ -136,7 +136,7 @@ Complex MultipoleOracle::inside(std::size_t disk, Vec2 point) const {
   const auto here = bessel(order, m * k_ * length(d)), at_rim = bessel(order, m * x);
   Complex sum = 0;
   for (int n = -order; n <= order; ++n) {
-    // on the rim b H (1 + J / (T H)): scattered and incident
+    // Total field on the rim, scattered and incident: b H (1 + J / (T H)).
     const ExtendedComplex rim = 1.0L + static_cast<ExtendedComplex>(inverse_t(n));
     const auto radial = static_cast<long double>(here(n) / at_rim(n));
     sum += on_rim_[place(disk, n)] * Complex(rim * radial) * turn(n, d);

@@ -6,9 +6,9 @@
 
 namespace flatspeckle::wave {
 
-/// Disks in a plane wave by multipoles (C6, C7, C10), dense and plain, of orders that are given.
-/// Unknown are b_n H_n(k a), what a disk scatters on its own rim, for n = -order .. order; the
-/// equation of order n is multiplied by J_n(k a). Real indices.
+/// Reference solution of disks in a plane wave by multipoles (C6, C7, C10) of given orders, with a
+/// dense unscaled matrix. The unknowns are b_n H_n(k a), the scattered waves on a disk's own rim,
+/// for n = -order .. order; the equation of order n is multiplied by J_n(k a). Real indices only.
 class MultipoleOracle {
  public:
   MultipoleOracle(const Placement& placement, double k, double light, std::vector<int> orders);

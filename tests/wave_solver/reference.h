@@ -13,11 +13,11 @@ namespace flatspeckle::wave {
 
 inline constexpr double two_pi = 2 * std::numbers::pi;
 
-/// Path of data/reference/NAME.
+/// Returns the path of data/reference/NAME.
 std::string reference_path(const std::string& name);
 
-/// The placement of data/reference/FOLDER, every scatterer of the kind that the file names use:
-/// D, N, TM15, TE15, TM15abs, TE15abs.
+/// Reads the placement of data/reference/FOLDER with all scatterers of one kind, named as in the
+/// files: D, N, TM15, TE15, TM15abs, TE15abs.
 Placement reference_placement(const std::string& folder, const std::string& kind);
 Scatterer reference_scatterer(const std::string& kind);
 

@@ -28,7 +28,7 @@ WaveSolution solved(const Placement& placement, double tolerance, bool diagnose 
                {.tolerance = tolerance, .sensors = {}, .diagnose = diagnose});
 }
 
-// Two equal disks of size parameter ka; gap in radii.
+// Returns two equal disks of size parameter ka; gap in radii.
 Placement pair(const std::string& kind, double ka, double gap) {
   Scatterer disk = reference_scatterer(kind);
   disk.radius = ka / two_pi;
@@ -36,7 +36,7 @@ Placement pair(const std::string& kind, double ka, double gap) {
   return {{{0, 0}, disk}, {{0.6 * distance, 0.8 * distance}, disk}};
 }
 
-// Six equal disks around one.
+// Returns six equal disks around one.
 Placement cluster(const std::string& kind, double ka, double gap) {
   Placement seven = pair(kind, ka, gap);
   const Scatterer disk = seven[0].scatterer;
@@ -46,7 +46,7 @@ Placement cluster(const std::string& kind, double ka, double gap) {
   return seven;
 }
 
-// A disk and one of a fifth of its size; gap in radii of that.
+// Returns a disk and one of a fifth of its size; gap in radii of the latter.
 Placement unequal(const std::string& kind, double ka, double gap) {
   Placement two = pair(kind, ka, 0);
   two[1].scatterer.radius /= 5;
@@ -73,16 +73,16 @@ double energy_defect(const WaveSolution& solution) {
 
 }  // namespace
 
-TEST_CASE("Images accumulate at the focus of bipolar coordinates") {
+TEST_CASE("nearest image: iterated images accumulate at the focus of bipolar coordinates") {
   const double a = 0.4, b = 0.25, d = 0.7;
-  // The image in b of a point at distance s from the centre of a, and back into a, is at a^2/s.
+  // A point at distance s from the centre of a is reflected in a, at a^2/s, and then in b.
   double s = 1e3;
   for (int i = 0; i < 200; ++i) s = d - b * b / (d - a * a / s);
   CHECK(nearest_image(a, b, d) == doctest::Approx(s).epsilon(1e-13));
   CHECK(nearest_image(a, 0, d) == doctest::Approx(d).epsilon(1e-14));
 }
 
-TEST_CASE("Far fields are within the tolerance: references") {
+TEST_CASE("basis orders: far fields of reference placements converge within the tolerance") {
   for (const std::string kind : {"D", "N", "TM15", "TE15", "TM15abs"})
     for (const std::string folder : {"g2", "g10"}) {
       CAPTURE(kind);
@@ -91,8 +91,10 @@ TEST_CASE("Far fields are within the tolerance: references") {
     }
 }
 
-TEST_CASE("Far fields are within the tolerance: pairs from 1e-3 to 0.5 radii apart") {
-  int number = 0;  // by day every third
+TEST_CASE(
+    "basis orders: far fields of pairs with gaps of 1e-3 to 0.5 radii converge within the "
+    "tolerance") {
+  int number = 0;  // outside nightly runs every third
   for (const std::string kind : {"D", "N", "TM15", "TE15", "TE15abs"})
     for (const double ka : {0.01, 1.0, 10.0, 30.0})
       for (const double gap : {0.5, 0.1, 0.01, 1e-3}) {
@@ -105,8 +107,8 @@ TEST_CASE("Far fields are within the tolerance: pairs from 1e-3 to 0.5 radii apa
       }
 }
 
-TEST_CASE("Far fields are within the tolerance: clusters, and disks of unequal size") {
-  int number = 0;  // by day every fifth
+TEST_CASE("basis orders: far fields of clusters and unequal disks converge within the tolerance") {
+  int number = 0;  // outside nightly runs every fifth
   for (const std::string kind : {"D", "N", "TM15", "TE15"})
     for (const double ka : {0.01, 0.3, 3.0})
       for (const double gap : {0.5, 0.05}) {
@@ -119,8 +121,8 @@ TEST_CASE("Far fields are within the tolerance: clusters, and disks of unequal s
       }
 }
 
-TEST_CASE("Orders stay as low as that allows") {
-  // Nearly touching: only hard disks need ln(1/eps) / (2 xi) orders, 430 here.
+TEST_CASE("basis orders: only nearly touching hard disks require high orders") {
+  // Hard disks require ln(1/eps) / (2 xi) orders, 430 here.
   const auto order = [](const std::string& kind) {
     return solved(pair(kind, 1, 1e-3), 1e-12).basis_order()[0];
   };
@@ -131,7 +133,9 @@ TEST_CASE("Orders stay as low as that allows") {
   CHECK(order("N") < 560);
 }
 
-TEST_CASE("Near fields at stated sensors are within the tolerance, in the gap and on a rim too") {
+TEST_CASE(
+    "basis orders: near fields at sensors in a gap, on a rim and outside are within the "
+    "tolerance") {
   for (const std::string kind : {"D", "N", "TM15", "TE15"}) {
     const Placement two = pair(kind, 1, 0.1);
     const Vec2 middle = 0.5 * two[1].position;
@@ -153,7 +157,8 @@ TEST_CASE("Near fields at stated sensors are within the tolerance, in the gap an
   }
 }
 
-TEST_CASE("The boundary residual sees a basis order that is too low; energy does not") {
+TEST_CASE(
+    "boundary residual: a basis order that is too low is detected, unlike by energy conservation") {
   for (const std::string kind : {"D", "N", "TM15", "TE15"}) {
     CAPTURE(kind);
     const Placement cluster = reference_placement("g10", kind);
@@ -167,7 +172,7 @@ TEST_CASE("The boundary residual sees a basis order that is too low; energy does
   }
 }
 
-TEST_CASE("The boundary residual falls to rounding with the order") {
+TEST_CASE("boundary residual: decreases to rounding at high orders") {
   for (const std::string kind : {"D", "N", "TM15", "TE15", "TM15abs", "TE15abs"}) {
     const Placement cluster = reference_placement("g2", kind);
     SolveOptions options{.tolerance = 1e-15, .sensors = {}, .diagnose = true};
@@ -179,12 +184,12 @@ TEST_CASE("The boundary residual falls to rounding with the order") {
   }
 }
 
-TEST_CASE("What needs too high an order is refused with that order") {
+TEST_CASE("basis orders: an order above the limit is rejected with a message that contains it") {
   try {
     solved(pair("N", 0.01, 1e-6), 1e-12);
     FAIL("not refused");
   } catch (const InputError& error) {
-    // ln(1e12) / (2 xi), xi = 1e-3: 13816; the gap is rounded down by up to a twelfth
+    // ln(1e12) / (2 xi) with xi = 1e-3 is 13816; the gap is rounded down by up to a twelfth.
     const std::string message = error.what();
     const std::size_t at = message.find("basis order ");
     REQUIRE(at != std::string::npos);
@@ -192,8 +197,8 @@ TEST_CASE("What needs too high an order is refused with that order") {
   }
 }
 
-TEST_CASE("Neighbours are found as by looking at all") {
-  // Sparse, so that some have nothing within a cell and must look farther.
+TEST_CASE("neighbours: the closest image agrees with an exhaustive search") {
+  // Sparse, so that some have no neighbour within a cell and wider cells are searched.
   Scatterer disk = reference_scatterer("D");
   RandomStream random(5, 0, 0);
   Placement many;
@@ -217,7 +222,8 @@ TEST_CASE("Neighbours are found as by looking at all") {
   }
 }
 
-TEST_CASE("From 1e-4 to 100: sizes, indices and metals") {
+TEST_CASE(
+    "basis orders: reciprocity for size parameters from 1e-4 to 100, high indices and metals") {
   const std::vector<Complex> of_any{1}, indices{1 + 1e-8, 4, {0.1, 5}};
   for (const std::string kind : {"D", "N", "TM15", "TE15"})
     for (const double ka : {1e-4, 1.0, 100.0})

@@ -27,7 +27,7 @@ bool encloses(const Rectangle& outer, const Rectangle& inner) {
 
 }  // namespace
 
-TEST_CASE("Leaves hold every disk once, and no more unknowns than allowed") {
+TEST_CASE("box tree: leaves contain every disk once, and no more unknowns than allowed") {
   const auto disks = disks_in(30, 20, 1000);
   const BoxTree tree(disks, 50);
   std::vector<int> seen(disks.size());
@@ -43,7 +43,7 @@ TEST_CASE("Leaves hold every disk once, and no more unknowns than allowed") {
   CHECK(std::all_of(seen.begin(), seen.end(), [](int times) { return times == 1; }));
 }
 
-TEST_CASE("A hull encloses the rims of its disks and the hulls of its halves") {
+TEST_CASE("box tree: a hull encloses the rims of its disks and the hulls of its halves") {
   const auto disks = disks_in(30, 20, 500);
   const BoxTree tree(disks, 20);
   for (const auto& box : tree.boxes()) {
@@ -54,7 +54,7 @@ TEST_CASE("A hull encloses the rims of its disks and the hulls of its halves") {
     }
     if (box.is_leaf()) continue;
     const auto &low = tree.boxes()[box.child], &high = tree.boxes()[box.child + 1];
-    CHECK(encloses(box.hull, low.hull.joined(high.hull)));
+    CHECK(encloses(box.hull, low.hull.united(high.hull)));
     CHECK(low.first == box.first);
     CHECK(low.last == high.first);
     CHECK(high.last == box.last);
@@ -65,21 +65,21 @@ TEST_CASE("A hull encloses the rims of its disks and the hulls of its halves") {
       CHECK(tree.boxes()[box].level == level);
 }
 
-TEST_CASE("Strips are cut across until boxes are about square") {
+TEST_CASE("box tree: a strip is halved across its length until boxes are about square") {
   const BoxTree tree(disks_in(1, 64, 4000), 100);
   CHECK(tree.boxes()[0].hull.depth() > 60);
   for (const auto& box : tree.boxes())
     if (box.is_leaf()) CHECK(box.hull.depth() < 3);
 }
 
-TEST_CASE("A far smaller cluster costs one level") {
+TEST_CASE("box tree: a distant tiny cluster adds at most one level") {
   auto disks = disks_in(10, 10, 64);
   for (SortedDisk& disk : disks) disk.centre = 1e-9 * disk.centre;
   disks.push_back({{1000, 1000}});
   CHECK(BoxTree(disks, 16).levels() <= 1 + BoxTree(std::span(disks).first(64), 16).levels());
 }
 
-TEST_CASE("What cannot be halved stays together") {
+TEST_CASE("box tree: empty input, coincident and adjacent centres") {
   CHECK(BoxTree({}, 10).boxes().empty());
   CHECK(BoxTree({}, 10).levels() == 0);
   const std::vector<SortedDisk> alike(20, SortedDisk{{1, 2}});
@@ -88,7 +88,7 @@ TEST_CASE("What cannot be halved stays together") {
   CHECK(BoxTree(neighbours, 1).boxes().size() <= 3);
 }
 
-TEST_CASE("Distances between rectangles count from rim to rim") {
+TEST_CASE("rectangles: distances are measured from rim to rim") {
   const Rectangle unit{{0, 0}, {1, 1}};
   CHECK(unit.distance({{4, 5}, {6, 6}}) == doctest::Approx(5));
   CHECK(unit.distance({{0.2, 3}, {0.3, 4}}) == doctest::Approx(2));

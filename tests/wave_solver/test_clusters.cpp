@@ -1,5 +1,5 @@
-// A cluster as one object against the exact solution of all its disks, and what must hold of any
-// T-matrix: energy and reciprocity.
+// Compares the T-matrix of a cluster with the exact solution of all its disks and checks energy
+// conservation and reciprocity.
 
 #include <cmath>
 
@@ -32,7 +32,7 @@ std::vector<ClusterPlace> six_places(double pitch) {
   return bench::rows_of_places(2, 3, pitch);
 }
 
-// w_n of ClusterTMatrix.
+// Returns w_n of ClusterTMatrix.
 double wave_size(const Mode& mode) {
   return static_cast<double>(mode.weight) * (mode.order == 0 ? std::sqrt(2.0) : 1.0);
 }
@@ -48,11 +48,11 @@ std::vector<Complex> full_far_fields(const Placement& placement, const std::vect
 
 }  // namespace
 
-TEST_CASE("a cluster's T-matrix keeps energy and reciprocity") {
+TEST_CASE("cluster T-matrix: conserves energy and is reciprocal") {
   const auto cluster = cluster_t_matrix(five_disks(), k, gap);
   const std::size_t size = cluster.modes.size();
   REQUIRE(size == 2 * static_cast<std::size_t>(cluster.order) + 1);
-  // T + T^H + 2 T^H T = 0 of lossless scatterers, in waves that are not scaled
+  // T + T^H + 2 T^H T = 0 for lossless scatterers, in unscaled waves
   std::vector<Complex> t = cluster.response;
   double asymmetry = 0, loss = 0;
   for (std::size_t j = 0; j < size; ++j)
@@ -70,7 +70,7 @@ TEST_CASE("a cluster's T-matrix keeps energy and reciprocity") {
   CHECK(loss < 1e-11);
 }
 
-TEST_CASE("copies of a cluster scatter as all their disks do") {
+TEST_CASE("copies of a cluster: far fields agree with the exact solution of all disks") {
   const auto disks = five_disks();
   const auto cluster = cluster_t_matrix(disks, k, gap);
   const std::vector<double> lights{0.3, -2.0}, views{0, 0.5, 1.9, -0.8, 3.0};
@@ -83,8 +83,9 @@ TEST_CASE("copies of a cluster scatter as all their disks do") {
   }
 }
 
-// With few orders T can be inverted, and all ways of solving are open.
-TEST_CASE("copies of a cluster far apart are solved densely and fast") {
+// T has few orders and can be inverted, so that all methods apply.
+TEST_CASE(
+    "copies of a cluster far apart: dense and fast methods agree with the solution of all disks") {
   const auto disks = five_disks();
   constexpr double wide = 2, tolerance = 1e-9;
   const auto cluster = cluster_t_matrix(disks, k, wide, tolerance);
@@ -95,11 +96,11 @@ TEST_CASE("copies of a cluster far apart are solved densely and fast") {
     const ClusterSolution solution(cluster, places, lights, {tolerance, {}, true, method});
     CHECK(relative_distance(solution.fields(far_views(views)), expected) < 1e-9);
     CHECK(solution.diagnosis().residual < tolerance);
-    CHECK(solution.equations().are_whole());
+    CHECK(solution.equations().have_inverse());
   }
 }
 
-TEST_CASE("clusters closer than the gap of their T-matrix are refused") {
+TEST_CASE("copies of a cluster: distances below the gap of the T-matrix are rejected") {
   const auto cluster = cluster_t_matrix(five_disks(), k, gap);
   const auto near = six_places(2 * cluster.radius + 0.9 * gap);
   CHECK_THROWS_AS(ClusterSolution(cluster, near, {0}), InputError);

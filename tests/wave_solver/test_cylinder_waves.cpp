@@ -12,7 +12,7 @@ namespace flatspeckle::wave::test_cylinder_waves {
 
 namespace {
 
-// Unit waves 0, cos 1, sin 1, .. order
+// Returns unit waves 0, cos 1, sin 1, .. order.
 std::vector<Mode> unit_modes(int order) {
   std::vector<Mode> modes{{0, false, root_half}};
   for (int n = 1; n <= order; ++n)
@@ -40,7 +40,7 @@ const Vec2 here{0.3, -0.2}, there{1.1, 1.4};
 
 }  // namespace
 
-TEST_CASE("A translated wave is the wave, summed about the receiver") {
+TEST_CASE("translation: the expansion about the receiver agrees with the outgoing wave") {
   const auto sent = unit_modes(4), received = unit_modes(30);
   const ModeSet sender{here, sent, 4}, receiver{there, received, 30};
   std::vector<Complex> block(sent.size() * received.size());
@@ -56,7 +56,7 @@ TEST_CASE("A translated wave is the wave, summed about the receiver") {
     }
 }
 
-TEST_CASE("Sending back is the transpose") {
+TEST_CASE("translation: the reverse translation is the transpose") {
   const auto modes = unit_modes(6);
   const ModeSet a{here, modes, 6}, b{there, modes, 6};
   const std::size_t n = modes.size();
@@ -69,14 +69,14 @@ TEST_CASE("Sending back is the transpose") {
             1e-13 * std::abs(forth[j * n + i]) + 1e-15);
 }
 
-TEST_CASE("Values and slopes at points") {
+TEST_CASE("outgoing modes: values and derivatives agree with series and finite differences") {
   const auto modes = unit_modes(5);
   const ModeSet sender{here, modes, 5};
   const std::vector<Vec2> points{there, {-1, 0.5}, {0.4, -0.1}};
   const std::vector<Vec2> along{direction(0.3), direction(2), direction(-1)};
-  std::vector<Complex> value(points.size() * modes.size()), slope(value.size());
+  std::vector<Complex> value(points.size() * modes.size()), derivative(value.size());
   field_at(k, points, sender, {value.data(), points.size()});
-  slopes(k, points, along, sender, {slope.data(), points.size()});
+  directional_derivatives(k, points, along, sender, {derivative.data(), points.size()});
   const double step = 1e-5;
   for (std::size_t n = 0; n < modes.size(); ++n)
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -88,11 +88,11 @@ TEST_CASE("Values and slopes at points") {
           std::abs(hankel(modes[n].order, k * length(points[i] - here)).back()));
       CHECK(std::abs(value[at] - field(0)) < 1e-13 * size);
       const Complex difference = (field(step) - field(-step)) / (2 * step * k);
-      CHECK(std::abs(slope[at] - difference) < 1e-6 * std::abs(slope[at]) + 1e-7);
+      CHECK(std::abs(derivative[at] - difference) < 1e-6 * std::abs(derivative[at]) + 1e-7);
     }
 }
 
-TEST_CASE("Large orders at small distances leave double, not the result") {
+TEST_CASE("translation: correct results although H_n exceeds double precision at large orders") {
   const int order = 120;  // |H_240(0.3)| is 1e660
   std::vector<Mode> modes = unit_modes(order);
   const auto j = bessel_j(order, 0.1);
@@ -114,7 +114,7 @@ TEST_CASE("Large orders at small distances leave double, not the result") {
   CHECK_THROWS_AS(translate(k, {&d, 1}, c, {unused.data(), bare.size()}), InputError);
 }
 
-TEST_CASE("A receiver in the sender's place gets nothing") {
+TEST_CASE("translation: a receiver at the sender's position gets 0") {
   for (const int order : {0, 2}) {
     const auto modes = unit_modes(order);
     const ModeSet set{here, modes, order};

@@ -12,7 +12,7 @@ namespace flatspeckle::wave::test_dense_factor {
 
 namespace {
 
-// Resonant points, ten to the square wavelength: as badly conditioned as lossless media get.
+// Resonant points, ten per square wavelength: the worst conditioning of lossless media.
 TMatrixSystem resonant_points(std::size_t count) {
   RandomStream random(7, 1, count);
   const double side = std::sqrt(static_cast<double>(count) / 10);
@@ -38,7 +38,8 @@ std::vector<Complex> product(const Entries& matrix, const std::vector<Complex>& 
   return y;
 }
 
-// Relative to b; what a stable method leaves is the condition number larger at most.
+// Returns the residual relative to b; a stable method exceeds rounding by at most the condition
+// number.
 double residual(const Entries& matrix, const std::vector<Complex>& x, const std::vector<Complex>& b,
                 std::size_t n) {
   return relative_distance(product(matrix, x, n), b);
@@ -46,7 +47,7 @@ double residual(const Entries& matrix, const std::vector<Complex>& x, const std:
 
 }  // namespace
 
-TEST_CASE("L L^T is the matrix, its upper triangle untouched") {
+TEST_CASE("factor_symmetric: L L^T equals the matrix, its upper triangle is unchanged") {
   for (const std::size_t n : {1, 31, 32, 33, 200, 500}) {
     const auto system = resonant_points(n);
     const auto matrix = system.matrix();
@@ -66,12 +67,12 @@ TEST_CASE("L L^T is the matrix, its upper triangle untouched") {
   }
 }
 
-TEST_CASE("A vanishing pivot is told") {
+TEST_CASE("factor_symmetric: a vanishing pivot is reported") {
   std::vector<Complex> exchange{0, 1, 1, 0};
   CHECK_FALSE(factor_symmetric(exchange.data(), 2, 2));
 }
 
-TEST_CASE("Resonant points: small residual, no row exchanged") {
+TEST_CASE("dense factor: resonant points have a small residual without row exchanges") {
   const auto system = resonant_points(500);
   const auto b = random_columns(500 * 10);
   DenseFactor factor(system.matrix(), 500);
@@ -79,7 +80,7 @@ TEST_CASE("Resonant points: small residual, no row exchanged") {
   CHECK_FALSE(factor.is_pivoted());
 }
 
-TEST_CASE("A pivot that is small, but not 0, is found out by the residual") {
+TEST_CASE("dense factor: a small nonzero pivot is detected by the residual") {
   auto matrix = resonant_points(400).matrix();
   matrix[0] = 1e-14;
   const auto b = random_columns(400 * 3);
@@ -88,7 +89,7 @@ TEST_CASE("A pivot that is small, but not 0, is found out by the residual") {
   CHECK(residual(matrix, x, b, 400) < 1e-11);
 }
 
-TEST_CASE("Where no pivot may be kept, rows are exchanged") {
+TEST_CASE("dense factor: rows are exchanged if pivots vanish") {
   const Entries matrix{0, 1, 0, 1, 0, 0, 0, 0, 2};
   const std::vector<Complex> b{1, 2, 3};
   DenseFactor factor(matrix, 3);
@@ -98,7 +99,8 @@ TEST_CASE("Where no pivot may be kept, rows are exchanged") {
   CHECK(factor.condition() == doctest::Approx(std::sqrt(6 * 2.25)));
 }
 
-TEST_CASE("The condition is that of the Frobenius norm, within a factor of two") {
+TEST_CASE(
+    "dense factor: the condition number is that of the Frobenius norm within a factor of two") {
   const std::size_t n = 300;
   const auto matrix = resonant_points(n).matrix();
   DenseFactor factor(matrix, n);
@@ -112,7 +114,7 @@ TEST_CASE("The condition is that of the Frobenius norm, within a factor of two")
   CHECK(ratio < 2);
 }
 
-TEST_CASE("What is left of many columns is told by a few sums of them") {
+TEST_CASE("combinations: a few random sums estimate the size of many columns") {
   const std::size_t n = 500;
   const auto b = random_columns(64 * n);
   CHECK(combinations(b, n).size() < b.size() / 10);
@@ -120,7 +122,7 @@ TEST_CASE("What is left of many columns is told by a few sums of them") {
         doctest::Approx(1).epsilon(0.1));  // 4 n random numbers: 1 +- 1 / sqrt(8 n) = 0.016
 }
 
-TEST_CASE("Singular and infinite systems are refused") {
+TEST_CASE("dense factor: singular and infinite systems are rejected") {
   CHECK_THROWS_AS(DenseFactor({1, 1, 1, 1}, 2).solve({1, 2}), std::runtime_error);
   const double infinity = std::numeric_limits<double>::infinity();
   CHECK_THROWS_AS(DenseFactor({infinity}, 1), std::runtime_error);

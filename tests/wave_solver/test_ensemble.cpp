@@ -12,7 +12,7 @@ namespace flatspeckle::wave::test_ensemble {
 
 namespace {
 
-// box_points of the standard scenes: 20 x 10, 31 resonant points.
+// Returns box_points of the standard scenes: 20 x 10, 31 resonant points.
 Scene box_points(CovarianceRequest request) {
   SceneSpec spec;
   spec.width = 20;
@@ -35,7 +35,7 @@ GroupedSums run_serially(const FieldJob& job, std::uint64_t batches) {
 
 }  // namespace
 
-TEST_CASE("A batch depends on seed and number alone") {
+TEST_CASE("ensemble: a batch depends only on seed and number") {
   const Scene scene = box_points(full_request({0, 0.1}, {far_view(0.5), near_sensor({0, 20})}));
   const FieldJob job = wave_job(scene, 7, 1e-8), again = wave_job(scene, 7, 1e-8);
   const auto batch = [](const FieldJob& of, std::uint64_t number) {
@@ -50,7 +50,7 @@ TEST_CASE("A batch depends on seed and number alone") {
   CHECK(batch(wave_job(scene, 8, 1e-8), 3) != first);
 }
 
-TEST_CASE("The memory of all threads' matrices is asked for before the first placement") {
+TEST_CASE("ensemble: the memory of all threads' matrices is checked before the first placement") {
   Scene scene = box_points(full_request({0}, {far_view(0.5)}));
   scene.placement.mean_count = 4000;
   const int threads = omp_get_max_threads();
@@ -60,7 +60,7 @@ TEST_CASE("The memory of all threads' matrices is asked for before the first pla
   omp_set_num_threads(threads);
 }
 
-TEST_CASE("Sensors and sources that a cylinder may cover are refused") {
+TEST_CASE("ensemble: sensors and sources that a cylinder may cover are rejected") {
   SceneSpec spec;
   spec.width = 20;
   spec.depth = 10;
@@ -78,7 +78,7 @@ TEST_CASE("Sensors and sources that a cylinder may cover are refused") {
   CHECK_NOTHROW(make({0, -0.51}, {10.4, 10.4}));
 }
 
-TEST_CASE("Threads do not change a bit") {
+TEST_CASE("ensemble: results are bitwise independent of the number of threads") {
   const FieldJob job =
       wave_job(box_points(intensity_request({0, 0.3}, {far_view(0.5), far_view(3)})), 5, 1e-8);
   const auto total = [&](int threads) {
@@ -93,7 +93,7 @@ TEST_CASE("Threads do not change a bit") {
   CHECK(total(1) == total(4));
 }
 
-TEST_CASE("Mean and covariance are those of the fields, with the sample mean removed") {
+TEST_CASE("ensemble: mean and covariance agree with those of the fields, sample mean removed") {
   const auto request = full_request({0, 0.2}, {far_view(0.1), far_view(2)});
   const Scene scene = box_points(request);
   const FieldJob job = wave_job(scene, 1, 1e-8);
@@ -123,7 +123,7 @@ TEST_CASE("Mean and covariance are those of the fields, with the sample mean rem
   }
 }
 
-TEST_CASE("One sample has no spread") {
+TEST_CASE("ensemble: one sample has zero covariance and infinite relative error") {
   const FieldJob job = wave_job(box_points(intensity_request({0}, {far_view(1)})), 1, 1e-8);
   const GroupedSums sums = run_serially(job, 1);
   CHECK(job.covariance(1, sums.total())[0] == Complex(0));
@@ -131,7 +131,7 @@ TEST_CASE("One sample has no spread") {
   CHECK(std::isfinite(job.batches.relative_error(run_serially(job, 2))));
 }
 
-TEST_CASE("Covariance of box_points: measures, table A") {
+TEST_CASE("ensemble: covariance of box_points agrees with measures, table A") {
   struct Row {
     double view, q;
     Complex known;
@@ -143,7 +143,7 @@ TEST_CASE("Covariance of box_points: measures, table A") {
                               {std::numbers::pi, 0.04, {2.4577, 0.0918}}};
   std::vector<AnglePair> pairs;
   for (const Row& row : rows) {
-    // sin v shifted by q on the view's side of the medium
+    // sin v shifted by q, on the same side of the medium as the view
     const double shifted = std::asin(std::sin(row.view) + row.q);
     const double view2 = std::cos(row.view) < 0 ? std::numbers::pi - shifted : shifted;
     pairs.push_back({0, row.view, std::asin(row.q), view2});
@@ -160,7 +160,7 @@ TEST_CASE("Covariance of box_points: measures, table A") {
   }
 }
 
-TEST_CASE("Slabs and bulk phase functions are refused") {
+TEST_CASE("ensemble: slabs and bulk phase functions are rejected") {
   Scene slab = box_points(intensity_request({0}, {far_view(1)}));
   slab.domain.kind = Domain::Kind::slab;
   CHECK_THROWS_AS(wave_job(slab, 1, 1e-8), InputError);

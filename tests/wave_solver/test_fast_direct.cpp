@@ -16,7 +16,7 @@ namespace flatspeckle::wave::test_fast_direct {
 
 namespace {
 
-// Apart by a gap, else at random.
+// Adds scatterers at random positions, separated by at least a gap.
 void scatter(Placement& placement, std::size_t count, Vec2 size, const Scatterer& scatterer,
              double gap) {
   RandomStream random(12, 1, count);
@@ -58,24 +58,24 @@ std::vector<Complex> times(const Entries& matrix, const std::vector<Complex>& x,
   return y;
 }
 
-// Solutions against the dense ones; residuals by M itself. M is replaced by one that differs by
-// about the tolerance in norm: residuals are below 3 tolerances (plus what unpivoted elimination
-// leaves: up to 1e-9 here, depending on how the BLAS rounds), errors below `worse` tolerances, the
-// more the worse the condition.
+// Compares solutions with dense ones, and residuals computed with M itself. M is replaced by a
+// matrix that differs by about the tolerance in norm. Residuals are below 3 tolerances, plus an
+// error of unpivoted elimination up to 1e-9 that depends on the rounding of the BLAS. Errors are
+// below `worse` tolerances, a factor that increases with the condition number.
 void check_accuracy(const Placement& placement, double worse, bool compresses = true) {
   const TMatrixSystem system(placement, two_pi, 1e-5);
   const std::vector<double> lights{0.3, 2};
-  const auto sides = system.right_sides(lights);
+  const auto rhs = system.right_hand_sides(lights);
   const auto matrix = system.matrix();
-  const auto exact = DenseFactor(matrix, system.unknowns()).solve(sides);
+  const auto exact = DenseFactor(matrix, system.unknowns()).solve(rhs);
   for (const double tolerance : {1e-3, 1e-6, 1e-9, 1e-12}) {
     if (!flatspeckle::tests::is_night && (tolerance == 1e-3 || tolerance == 1e-9)) continue;
     const FastDirect direct(system, tolerance);
-    auto x = sides;
+    auto x = rhs;
     direct.solve(x);
     CAPTURE(tolerance);
     const double floor = tolerance < 1e-9 ? 1e-8 : 1e-10;
-    CHECK(relative_distance(times(matrix, x, system.unknowns()), sides) < 3 * tolerance + floor);
+    CHECK(relative_distance(times(matrix, x, system.unknowns()), rhs) < 3 * tolerance + floor);
     CHECK(relative_distance(x, exact) < worse * (tolerance + floor));
     if (compresses) CHECK(direct.statistics().root < system.unknowns() / 2);
   }
@@ -83,25 +83,25 @@ void check_accuracy(const Placement& placement, double worse, bool compresses = 
 
 }  // namespace
 
-TEST_CASE("Fast direct and dense solutions agree: points") {
+TEST_CASE("fast direct: points agree with the dense solution") {
   check_accuracy(scattered(1500, {12.2, 12.2}, Scatterer{}), 30);
   check_accuracy(scattered(1500, {12.2, 12.2}, weak_point()), 30);
 }
 
-TEST_CASE("Fast direct and dense solutions agree: cylinders") {
+TEST_CASE("fast direct: cylinders agree with the dense solution") {
   check_accuracy(scattered(120, {8, 8}, disk("TM15", 0.2), 0.1), 10);
   check_accuracy(scattered(120, {8, 8}, disk("TE15", 0.2), 0.1), 10);
   check_accuracy(scattered(120, {8, 8}, disk("D", 0.2), 0.1), 30);
   check_accuracy(scattered(12, {9, 9}, disk("TM15abs", 0.9), 0.1), 10, false);
 }
 
-TEST_CASE("Fast direct and dense solutions agree: points among cylinders") {
+TEST_CASE("fast direct: points among cylinders agree with the dense solution") {
   Placement placement = scattered(60, {8, 8}, disk("TE15", 0.2), 0.2);
   scatter(placement, 600, {8, 8}, Scatterer{}, 0.05);
   check_accuracy(placement, 30);
 }
 
-TEST_CASE("Fast direct and dense solutions agree: clusters, crowds, strips") {
+TEST_CASE("fast direct: clusters, dense boxes and strips agree with the dense solution") {
   Placement clusters;
   RandomStream random(13, 1, 0);
   for (int cluster = 0; cluster < 10; ++cluster) {
@@ -115,35 +115,35 @@ TEST_CASE("Fast direct and dense solutions agree: clusters, crowds, strips") {
   check_accuracy(scattered(1200, {0.5, 100}, Scatterer{}), 30, false);
 }
 
-TEST_CASE("Fast direct: few scatterers, and far ones that nothing compresses") {
+TEST_CASE("fast direct: few scatterers, and distant ones that cannot be compressed") {
   for (const std::size_t count : {0, 1, 5, 300}) {
     const TMatrixSystem system(scattered(count, {1000, 1000}, Scatterer{}), two_pi, 1e-9);
     const std::vector<double> lights{1, 2};
-    const auto sides = system.right_sides(lights);
+    const auto rhs = system.right_hand_sides(lights);
     const FastDirect direct(system, 1e-9);
-    auto x = sides;
+    auto x = rhs;
     direct.solve(x);
     CHECK(x.size() == 2 * count);
-    if (count > 0) CHECK(relative_distance(system.apply(x), sides) < 1e-9);
+    if (count > 0) CHECK(relative_distance(system.apply(x), rhs) < 1e-9);
   }
 }
 
-TEST_CASE("Fast direct: many right sides are solved as one by one") {
+TEST_CASE("fast direct: many right-hand sides agree with single ones") {
   const TMatrixSystem system(scattered(700, {8, 8}, Scatterer{}), two_pi, 1e-9);
   std::vector<double> lights;
   for (int i = 0; i < 70; ++i) lights.push_back(0.09 * i);
   const FastDirect direct(system, 1e-6);
-  auto together = system.right_sides(lights);
+  auto together = system.right_hand_sides(lights);
   direct.solve(together);
   for (const std::size_t light : {0, 63, 64, 69}) {
-    auto alone = system.right_sides({&lights[light], 1});
+    auto alone = system.right_hand_sides({&lights[light], 1});
     direct.solve(alone);
     const std::span column(&together[light * 700], 700);
     CHECK(relative_distance(column, alone) < 1e-10);
   }
 }
 
-TEST_CASE("Fast direct: the number of threads changes nothing") {
+TEST_CASE("fast direct: results do not depend on the number of threads") {
   const TMatrixSystem system(scattered(1500, {12, 12}, Scatterer{}), two_pi, 1e-9);
   const std::vector<double> lights{0.4};
   std::vector<std::vector<Complex>> solutions;
@@ -151,14 +151,14 @@ TEST_CASE("Fast direct: the number of threads changes nothing") {
   for (const int threads : {1, 3}) {
     omp_set_num_threads(threads);
     const FastDirect direct(system, 1e-6);
-    solutions.push_back(system.right_sides(lights));
+    solutions.push_back(system.right_hand_sides(lights));
     direct.solve(solutions.back());
   }
   omp_set_num_threads(before);
   CHECK(solutions[0] == solutions[1]);
 }
 
-TEST_CASE("Fast direct: scaling all lengths and k leaves the solution") {
+TEST_CASE("fast direct: the solution is invariant under a change of the unit of length") {
   Placement placement = scattered(900, {10, 10}, Scatterer{});
   const std::vector<double> lights{0.4};
   std::vector<std::vector<Complex>> solutions;
@@ -166,24 +166,24 @@ TEST_CASE("Fast direct: scaling all lengths and k leaves the solution") {
     Placement scaled = placement;
     for (auto& placed : scaled) placed.position = unit * placed.position;
     const TMatrixSystem system(scaled, two_pi / unit, 1e-9);
-    solutions.push_back(system.right_sides(lights));
+    solutions.push_back(system.right_hand_sides(lights));
     FastDirect(system, 1e-6).solve(solutions.back());
   }
   CHECK(relative_distance(solutions[0], solutions[1]) < 1e-9);
 }
 
-TEST_CASE("Fast direct refuses what memory cannot hold, before it begins") {
+TEST_CASE("fast direct: systems that exceed the memory are rejected in advance") {
   const TMatrixSystem system(scattered(2000, {14, 14}, Scatterer{}), two_pi, 1e-9);
   CHECK_NOTHROW(FastDirect(system, 1e-6, 1e8));
   try {
     FastDirect(system, 1e-6, 1e6);
     FAIL("not refused");
   } catch (const InputError& error) {
-    CHECK(std::string(error.what()).find("it may have 1000000;") != std::string::npos);
+    CHECK(std::string(error.what()).find("available bytes: 1000000;") != std::string::npos);
   }
 }
 
-TEST_CASE("Fast direct: statistics tell of every level") {
+TEST_CASE("fast direct: statistics of every level") {
   const TMatrixSystem system(scattered(2000, {14, 14}, Scatterer{}), two_pi, 1e-9);
   const FastDirect direct(system, 1e-6);
   const auto& statistics = direct.statistics();

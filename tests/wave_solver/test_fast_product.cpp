@@ -19,15 +19,15 @@ namespace {
 using flatspeckle::tests::is_night;
 using Kind = Scatterer::Kind;
 
-// On a grid of squares, each shifted by up to `room` of what its square leaves.
+// Returns scatterers on a square grid, shifted at random within their squares.
 Placement shaken_grid(std::size_t side, double square, const std::vector<Scatterer>& scatterers) {
   RandomStream random(3, 1, side);
   Placement placement;
   for (std::size_t i = 0; i < side * side; ++i) {
     const Scatterer& s = scatterers[i % scatterers.size()];
-    const double room = std::max(0.0, square - 2.05 * s.disk_radius());
-    placement.push_back({{square * static_cast<double>(i % side) + room * random.uniform(),
-                          square * static_cast<double>(i / side) + room * random.uniform()},
+    const double spare = std::max(0.0, square - 2.05 * s.disk_radius());
+    placement.push_back({{square * static_cast<double>(i % side) + spare * random.uniform(),
+                          square * static_cast<double>(i / side) + spare * random.uniform()},
                          s});
   }
   return placement;
@@ -56,13 +56,13 @@ const std::vector<Disks> all_disks{
     {7, 2.5, {disk(Kind::tm, 0.9, {1.5, 0.1}), disk(Kind::soft, 0.1), {.kind = Kind::point}}},
     {9, 0.01, {disk(Kind::hard, 0.004)}},
     {8, 1.5, {disk(Kind::tm, 0.5, 3.2), disk(Kind::tm, 0.61, 3.2)}},
-    {8, 0.6, {disk(Kind::hard, 0.25)}},  // from here on by night
+    {8, 0.6, {disk(Kind::hard, 0.25)}},  // from here on in nightly runs only
     {4, 9, {disk(Kind::soft, 4)}},
 };
 
 }  // namespace
 
-TEST_CASE("rings: without a range there are no points and no charges") {
+TEST_CASE("multipole ring: an infinite range needs no points and no charges") {
   const TMatrixSystem system({{{0, 0}, disk(Kind::tm, 0.3)}}, 2 * std::numbers::pi, 1e-10);
   MultipoleRing ring(system.modes(0), system.k(), 0.3, std::numeric_limits<double>::infinity(),
                      1e-10);
@@ -71,7 +71,7 @@ TEST_CASE("rings: without a range there are no points and no charges") {
   CHECK(ring.charges.empty());
 }
 
-TEST_CASE("rings on a grid and near blocks make the matrix, whatever the range") {
+TEST_CASE("ring product: grid and near blocks agree with the block-by-block product at any range") {
   for (const Disks& disks : std::span(all_disks).first(is_night ? 7 : 5)) {
     const TMatrixSystem system(shaken_grid(disks.side, disks.square, disks.scatterers), two_pi,
                                1e-10);
@@ -94,7 +94,7 @@ TEST_CASE("rings on a grid and near blocks make the matrix, whatever the range")
   }
 }
 
-TEST_CASE("points: the sum of sigma H_0 sigma and the diagonal") {
+TEST_CASE("fast product of points: agrees with the block-by-block product within the tolerance") {
   Placement placement = shaken_grid(40, 0.3, {{.kind = Kind::point, .phase_shift = 0.3}});
   for (std::size_t i = 0; i < placement.size(); i += 3) placement[i].scatterer.phase_shift = 1.2;
   const TMatrixSystem system(placement, two_pi, 1e-12);
@@ -104,7 +104,7 @@ TEST_CASE("points: the sum of sigma H_0 sigma and the diagonal") {
     CHECK(relative_distance(FastProduct(system, tolerance)(x), exact) < tolerance);
 }
 
-TEST_CASE("no scatterer, one, and two close ones") {
+TEST_CASE("fast product: no scatterer, one, and two close ones") {
   CHECK(FastProduct(TMatrixSystem({}, two_pi, 1e-10), 1e-10)({}).empty());
   for (const Placement& placement :
        {Placement{{{1, 2}, disk(Kind::soft, 0.3)}}, Placement{{{1, 2}, {.kind = Kind::point}}},
@@ -115,8 +115,8 @@ TEST_CASE("no scatterer, one, and two close ones") {
   }
 }
 
-// A whispering gallery: T_n is near 1 where J_n(k a) is below 1e-6.
-TEST_CASE("waves too singular for a grid are told and done without") {
+// Whispering-gallery resonances: T_n is close to 1 although J_n(k a) is below 1e-6.
+TEST_CASE("fast product: waves too singular for a grid are detected and multiplied without one") {
   const TMatrixSystem system(shaken_grid(is_night ? 10 : 7, 2.4, {disk(Kind::tm, 1, 6.0)}), two_pi,
                              1e-10);
   CHECK(!RingProduct(system, 3, 1e-12).resolved());
@@ -124,7 +124,7 @@ TEST_CASE("waves too singular for a grid are told and done without") {
   CHECK(relative_distance(FastProduct(system, 1e-12)(x), system.apply(x)) < 1e-12);
 }
 
-TEST_CASE("the product does not depend on the number of threads") {
+TEST_CASE("ring product: results do not depend on the number of threads") {
   const TMatrixSystem system(shaken_grid(14, 0.6, {disk(Kind::soft, 0.2)}), two_pi, 1e-8);
   const auto x = random_columns(2 * system.unknowns());
   const int threads = omp_get_max_threads();

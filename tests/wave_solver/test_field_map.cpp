@@ -26,7 +26,7 @@ Scatterer cylinder(Scatterer::Kind kind, double radius, Complex index = 1.5) {
   return disk;
 }
 
-// Basis orders that hold up to the rims.
+// Solves with basis orders that resolve the field up to the rims.
 WaveSolution solve_to_the_rims(const Placement& placement, const std::vector<double>& lights,
                                double tolerance = 1e-12) {
   SolveOptions options{.tolerance = tolerance, .sensors = {}, .diagnose = false};
@@ -54,30 +54,32 @@ Complex at_distance(const WaveSolution& solution, std::size_t disk, double angle
   return r < scatterer.radius ? inside(solution, disk, point) : outside(solution, point);
 }
 
-// J_n and Y_n of the standard library, and derivatives.
+// J_n and H_n from the standard library, and their derivatives.
 double j(int n, double x) {
   return n < 0 ? -std::cyl_bessel_j(-n, x) : std::cyl_bessel_j(n, x);
 }
 Complex h(int n, double x) {
   return n < 0 ? -h(-n, x) : Complex(std::cyl_bessel_j(n, x), std::cyl_neumann(n, x));
 }
-double j_slope(int n, double x) {
+double j_derivative(int n, double x) {
   return (j(n - 1, x) - j(n + 1, x)) / 2;
 }
-Complex h_slope(int n, double x) {
+Complex h_derivative(int n, double x) {
   return (h(n - 1, x) - h(n + 1, x)) / 2.0;
 }
 
-// The textbook series of one disk at the origin, from the jump conditions at its rim:
+// Evaluates the textbook series of one disk at the origin, from the jump conditions at its rim:
 // J + b H = d J(m), J' + b H' = q d J'(m).
 Complex mie(const Scatterer& disk, double light, Vec2 point) {
   const double x = two_pi * disk.radius, m = disk.index.real(), r = length(point);
   const double q = disk.kind == Scatterer::Kind::tm ? m : 1 / m;
   Complex sum = 0, power = 1;
   for (int n = 0; n < 30; ++n) {
-    const Complex determinant = q * j_slope(n, m * x) * h(n, x) - j(n, m * x) * h_slope(n, x);
-    const Complex b = (j(n, m * x) * j_slope(n, x) - q * j_slope(n, m * x) * j(n, x)) / determinant;
-    const Complex d = (j_slope(n, x) * h(n, x) - j(n, x) * h_slope(n, x)) / determinant;
+    const Complex determinant =
+        q * j_derivative(n, m * x) * h(n, x) - j(n, m * x) * h_derivative(n, x);
+    const Complex b =
+        (j(n, m * x) * j_derivative(n, x) - q * j_derivative(n, m * x) * j(n, x)) / determinant;
+    const Complex d = (j_derivative(n, x) * h(n, x) - j(n, x) * h_derivative(n, x)) / determinant;
     const Complex radial =
         r < disk.radius ? d * j(n, two_pi * m * r) : j(n, two_pi * r) + b * h(n, two_pi * r);
     sum += (n == 0 ? 1.0 : 2.0) * power * radial * std::cos(n * (angle_of(point) - light));
@@ -92,7 +94,7 @@ Placement cluster(Scatterer::Kind kind, Complex index) {
           {{1.2, -0.3}, cylinder(kind, 0.7, index)}};
 }
 
-// Disks and points on a disturbed lattice.
+// Returns disks and points on a perturbed lattice.
 Placement crowd(std::size_t side) {
   Placement placement;
   for (std::size_t i = 0; i < side * side; ++i) {
@@ -109,7 +111,7 @@ Placement crowd(std::size_t side) {
 
 }  // namespace
 
-TEST_CASE("One disk has the field of its textbook series, inside and out") {
+TEST_CASE("field map: one disk agrees with its textbook series, inside and outside") {
   for (const auto kind : {Scatterer::Kind::tm, Scatterer::Kind::te}) {
     const Scatterer disk = cylinder(kind, 0.45, 1.7);
     const double light = 0.6;
@@ -124,8 +126,8 @@ TEST_CASE("One disk has the field of its textbook series, inside and out") {
   }
 }
 
-// The jump is what the orders left out have inside (field_map.h).
-TEST_CASE("The field and q times its slope are continuous across rims") {
+// The remaining jump is due to the omitted orders inside (field_map.h).
+TEST_CASE("interior field: it and q times its derivative are continuous across rims") {
   const double tolerance = 1e-12;
   for (const auto kind : {Scatterer::Kind::tm, Scatterer::Kind::te})
     for (const Complex index : {Complex(1.5), Complex(1.33, 0.2), Complex(0.1, 5), Complex(4)}) {
@@ -137,20 +139,20 @@ TEST_CASE("The field and q times its slope are continuous across rims") {
           CHECK(std::abs(at_distance(solution, disk, angle, in) -
                          at_distance(solution, disk, angle, out)) < 1000 * tolerance);
           const double step = 1e-4;
-          const auto slope = [&](double from, double along) {
+          const auto derivative = [&](double from, double along) {
             return (4.0 * at_distance(solution, disk, angle, from + along) -
                     at_distance(solution, disk, angle, from + 2 * along) -
                     3.0 * at_distance(solution, disk, angle, from)) /
                    (2 * along);
           };
           const Complex q = kind == Scatterer::Kind::tm ? 1.0 : 1.0 / (index * index);
-          const Complex within = q * slope(in, -step), beyond = slope(out, step);
+          const Complex within = q * derivative(in, -step), beyond = derivative(out, step);
           CHECK(std::abs(within - beyond) < 1e-4 * (1 + std::abs(beyond)));
         }
     }
 }
 
-TEST_CASE("Nothing is left on soft rims and in soft and hard disks") {
+TEST_CASE("field map: 0 on soft rims and inside soft and hard disks") {
   const auto placement = cluster(Scatterer::Kind::soft, 1);
   const auto solution = solve_to_the_rims(placement, {1});
   for (std::size_t disk = 0; disk < 3; ++disk)
@@ -164,7 +166,7 @@ TEST_CASE("Nothing is left on soft rims and in soft and hard disks") {
   }
 }
 
-TEST_CASE("Outside, a map is the near field and the incident wave") {
+TEST_CASE("field map: outside disks it equals the near field plus the incident wave") {
   const auto solution = solve_to_the_rims(reference_placement("g10", "TE15abs"), {0.2, 2});
   FieldMap map(solution, {{-3, -2}, {3, 4}, 31, 29}, 1e-12);
   const auto field = map.field({0, 0, 31, 29});
@@ -184,7 +186,7 @@ TEST_CASE("Outside, a map is the near field and the incident wave") {
   CHECK(compared < 31 * 29);
 }
 
-TEST_CASE("The fast route agrees with the direct sum to its tolerance") {
+TEST_CASE("field map: the fast route agrees with the direct sum within the tolerance") {
   const auto solution = solve_to_the_rims(crowd(flatspeckle::tests::is_night ? 12 : 8), {0.4, 3});
   const MapGrid grid{{-1, -1}, {12, 11.5}, 201, 160};
   const MapTile tile{17, 3, 180, 150};
@@ -203,11 +205,11 @@ TEST_CASE("The fast route agrees with the direct sum to its tolerance") {
   }
 }
 
-TEST_CASE("Pixels on centres, rims and points have the field of their neighbourhood") {
+TEST_CASE("field map: pixels on centres, rims and points agree with their neighbourhood") {
   const Placement placement = {
       {{0, 0}, cylinder(Scatterer::Kind::tm, 0.5)}, {{1, 0}, Scatterer{}}, {{1, 1}, Scatterer{}}};
   const auto solution = solve_to_the_rims(placement, {0.7});
-  // Pixels 0.25 apart, on x, z = 0, 0.5 (the rim) and 1
+  // Pixels are 0.25 apart and include x, z = 0, 0.5 (the rim) and 1.
   FieldMap map(solution, {{-0.625, -0.625}, {1.125, 1.125}, 7, 7}, 1e-12);
   const auto field = map.field({0, 0, 7, 7});
   const auto at = [&](double x, double z) {
@@ -224,11 +226,11 @@ TEST_CASE("Pixels on centres, rims and points have the field of their neighbourh
     CHECK(std::abs(at(1, placement[point].position.z) - exciting) < 1e-12);
   }
   FieldMap beside(solution, {{1 + 4e-9, -1}, {1 + 8e-9, 1}, 1, 1},
-                  1e-12);  // on a point but for 6e-9
+                  1e-12);  // 6e-9 away from a point
   CHECK(std::abs(beside.field({0, 0, 1, 1})[0] - at(1, 0)) < 1e-12);
 }
 
-TEST_CASE("Fields inside extreme disks are finite and continuous") {
+TEST_CASE("interior field: finite and continuous in extreme disks") {
   struct Case {
     double radius;
     Complex index;
@@ -252,7 +254,7 @@ TEST_CASE("Fields inside extreme disks are finite and continuous") {
     }
 }
 
-TEST_CASE("A disk of index 1 leaves the incident wave, inside and out") {
+TEST_CASE("field map: a disk of index 1 does not change the incident wave") {
   const auto solution = solve_to_the_rims({{{0.2, 0}, cylinder(Scatterer::Kind::te, 0.5, 1)}}, {1});
   FieldMap map(solution, {{-1, -1}, {1, 1}, 9, 9}, 1e-12);
   const auto field = map.field({0, 0, 9, 9});
@@ -260,7 +262,7 @@ TEST_CASE("A disk of index 1 leaves the incident wave, inside and out") {
     CHECK(std::abs(field[i] - plane_wave(1, map.grid().pixel(i % 9, i / 9))) < 1e-14);
 }
 
-TEST_CASE("Tiles cover a map once, in whole chunks") {
+TEST_CASE("tiles: cover a map once, in whole chunks") {
   for (const auto& [nx, nz] : {std::pair<std::size_t, std::size_t>{1000, 700},
                                {1, 1},
                                {64, 5000},

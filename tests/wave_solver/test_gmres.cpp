@@ -30,7 +30,7 @@ std::vector<double> lights(int count) {
   return angles;
 }
 
-// ||b - A x|| / ||b|| of every column, by the slow product.
+// Returns ||b - A x|| / ||b|| of every column, with the block-by-block product.
 std::vector<double> residuals(const TMatrixSystem& system, std::span<const Complex> x,
                               std::span<const Complex> b) {
   const auto product = system.apply(x);
@@ -53,11 +53,11 @@ BlockMap dense_map(const Entries& matrix, std::size_t n) {
 
 }  // namespace
 
-TEST_CASE("weak points: the fields are those of the dense solution") {
+TEST_CASE("gmres: weak points agree with the dense solution") {
   const auto system = points(800, 25, 0.3);
   const FastProduct product(system, 1e-12);
   const auto angles = lights(3);
-  const auto b = system.right_sides(angles);
+  const auto b = system.right_hand_sides(angles);
   const auto found =
       gmres([&](auto x) { return product(x); }, system.unknowns(), b, {.tolerance = 1e-10});
   CHECK(found.converged);
@@ -73,10 +73,10 @@ TEST_CASE("weak points: the fields are those of the dense solution") {
     CHECK(std::abs(checked[light] - found.residuals[light]) < 1e-11);
 }
 
-TEST_CASE("resonant points do not converge, and that is said") {
+TEST_CASE("gmres: resonant points are reported as not converged") {
   const auto system = points(600, 6, two_pi / 4);
   const auto matrix = system.matrix();
-  const auto b = system.right_sides(lights(2));
+  const auto b = system.right_hand_sides(lights(2));
   const auto found = gmres(dense_map(matrix, 600), 600, b, {.tolerance = 1e-8, .products = 40});
   CHECK(!found.converged);
   const auto checked = residuals(system, found.x, b);
@@ -88,30 +88,30 @@ TEST_CASE("resonant points do not converge, and that is said") {
   }
 }
 
-TEST_CASE("stagnating restarts end, with the residual told") {
+TEST_CASE("gmres: stagnating restarts stop and report the residual") {
   const auto system = points(600, 6, two_pi / 4);
   const auto matrix = system.matrix();
-  const auto found = gmres(dense_map(matrix, 600), 600, system.right_sides(lights(1)),
+  const auto found = gmres(dense_map(matrix, 600), 600, system.right_hand_sides(lights(1)),
                            {.tolerance = 1e-10, .products = 100000, .basis_bytes = 16 * 600 * 20});
   CHECK(!found.converged);
   CHECK(found.residuals[0] > 1e-10);
   CHECK(found.steps[0] < 10000);
 }
 
-TEST_CASE("restarts reach the tolerance where each brings enough") {
+TEST_CASE("gmres: restarts that make progress reach the tolerance") {
   const auto system = points(500, 30, 0.3);
   const auto matrix = system.matrix();
-  const auto found = gmres(dense_map(matrix, 500), 500, system.right_sides(lights(2)),
+  const auto found = gmres(dense_map(matrix, 500), 500, system.right_hand_sides(lights(2)),
                            {.tolerance = 1e-10, .basis_bytes = 16 * 500 * 60});
   CHECK(found.converged);
   CHECK(found.steps[0] > 30);
 }
 
-TEST_CASE("right sides that share a space need fewer steps than each alone") {
+TEST_CASE("gmres: right-hand sides that share a space need fewer steps than single ones") {
   const std::size_t n = 500;
   const auto system = points(n, 12, 0.3);
   const auto matrix = system.matrix();
-  const auto b = system.right_sides(lights(8));
+  const auto b = system.right_hand_sides(lights(8));
   const auto apart = gmres(dense_map(matrix, n), n, b, {.tolerance = 1e-6, .block = 1});
   const auto together = gmres(dense_map(matrix, n), n, b, {.tolerance = 1e-6, .block = 8});
   CHECK(apart.converged);
@@ -120,11 +120,11 @@ TEST_CASE("right sides that share a space need fewer steps than each alone") {
   CHECK(relative_distance(together.x, apart.x) < 1e-4);
 }
 
-TEST_CASE("dependent, equal and vanishing right sides") {
+TEST_CASE("gmres: dependent, equal and vanishing right-hand sides") {
   const auto system = points(200, 8, 0.3);
   const auto matrix = system.matrix();
   const std::size_t n = 200;
-  auto b = system.right_sides(lights(4));
+  auto b = system.right_hand_sides(lights(4));
   for (std::size_t i = 0; i < n; ++i) {
     b[n + i] = b[i];
     b[2 * n + i] = 0;
@@ -138,11 +138,11 @@ TEST_CASE("dependent, equal and vanishing right sides") {
   for (std::size_t i = 0; i < n; ++i) CHECK(found.x[2 * n + i] == Complex());
 }
 
-TEST_CASE("more right sides than unknowns, and spaces that are used up") {
+TEST_CASE("gmres: more right-hand sides than unknowns, and exhausted spaces") {
   for (const std::size_t n : {1, 2, 7}) {
     const auto system = points(n, 2, two_pi / 4);
     const auto matrix = system.matrix();
-    const auto b = system.right_sides(lights(11));
+    const auto b = system.right_hand_sides(lights(11));
     const auto found = gmres(dense_map(matrix, n), n, b, {.tolerance = 1e-12});
     CHECK(found.converged);
     const auto checked = residuals(system, found.x, b);
@@ -151,11 +151,12 @@ TEST_CASE("more right sides than unknowns, and spaces that are used up") {
   CHECK(gmres({}, 0, {}).converged);
 }
 
-// The preconditioner is a solution to three digits, as a factorization of low accuracy gives.
-TEST_CASE("a preconditioner makes it iterative refinement, resonant points or not") {
+// The preconditioner is a solution to three digits, like that of an inaccurate factorization.
+TEST_CASE(
+    "gmres: with an approximate inverse as preconditioner resonant points converge in few steps") {
   const auto system = points(400, 6, two_pi / 4);
   const auto matrix = system.matrix();
-  const auto b = system.right_sides(lights(3));
+  const auto b = system.right_hand_sides(lights(3));
   const BlockMap inverse = [&](std::span<const Complex> x) {
     std::vector<Complex> y(x.begin(), x.end());
     return gmres(dense_map(matrix, 400), 400, x, {.tolerance = 1e-3}).x;

@@ -13,10 +13,10 @@ namespace {
 
 constexpr double k = 2 * std::numbers::pi;
 
-IndexField linear(Vec2 slope) {
+IndexField linear(Vec2 gradient) {
   IndexField field;
   field.kind = IndexField::Kind::linear;
-  field.slope = slope;
+  field.gradient = gradient;
   return field;
 }
 
@@ -34,34 +34,35 @@ Complex free_wave(double r) {
   return Complex(0, 0.25) * h;
 }
 
-/// (laplacian + k^2 n^2) G at q, over the size of k^2 n^2 G: differences of sixth order.
+/// Returns (laplacian + k^2 n^2) G at q over |k^2 n^2 G|, by finite differences of sixth order.
 double residual(const IndexField& field, Vec2 p, Vec2 q, double step) {
   const GradedGreen green(field, k, 40);
   const double weight[] = {-49.0 / 18, 1.5, -0.15, 1.0 / 90};
   Complex sum = 2 * weight[0] * green(p, q);
   for (int j = 1; j <= 3; ++j)
-    for (const Vec2 way : {Vec2{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
-      sum += weight[j] * green(p, q + j * step * way);
+    for (const Vec2 axis : {Vec2{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+      sum += weight[j] * green(p, q + j * step * axis);
   const Complex own = k * k * field.square(q) * green(p, q);
   return std::abs(sum / (step * step) + own) / std::abs(own);
 }
 
 }  // namespace
 
-TEST_CASE("Without a field, or with hardly one, it is H_0") {
+TEST_CASE("graded Green function: agrees with H_0 without or with a negligible gradient") {
   for (const IndexField& field : {linear({0, 0}), linear({0, 1e-9}), parabolic(1e-7)}) {
     const GradedGreen green(field, k, 40);
     for (const double r : {1e-6, 1e-3, 0.1, 1.0, 7.3, 39.0}) {
       const Complex expected = free_wave(r), found = green({0, 0}, {0.6 * r, 0.8 * r});
       CAPTURE(r);
       CHECK(std::abs(found - expected) < 5e-6 * std::abs(expected));
-      if (field.slope == Vec2{} && field.alpha == 0)
+      if (field.gradient == Vec2{} && field.alpha == 0)
         CHECK(std::abs(found - expected) < 3e-13 * std::abs(expected));
     }
   }
 }
 
-TEST_CASE("It satisfies the equation, as differences of sixth order see it") {
+TEST_CASE(
+    "graded Green function: satisfies the wave equation by finite differences of sixth order") {
   const struct {
     IndexField field;
     Vec2 p, q;
@@ -75,11 +76,11 @@ TEST_CASE("It satisfies the equation, as differences of sixth order see it") {
     CAPTURE(row.field.describe());
     CAPTURE(row.q.x);
     CHECK(coarse < 2e-5);
-    CHECK(fine < coarse / 20);  // the differences' error, not the function's
+    CHECK(fine < coarse / 20);  // error of the differences, not of the function
   }
 }
 
-TEST_CASE("It is reciprocal") {
+TEST_CASE("graded Green function: is reciprocal") {
   const Vec2 p{1, -3}, q{-4, 9};
   for (const IndexField& field : {linear({0.02, 0.04}), parabolic(0.07)}) {
     const GradedGreen green(field, k, 40);
@@ -87,14 +88,14 @@ TEST_CASE("It is reciprocal") {
   }
 }
 
-TEST_CASE("Where light turns round before it arrives there is no direct wave") {
+TEST_CASE("graded Green function: rejected if the ray turns back before it arrives") {
   const GradedGreen green(linear({0, -0.05}), k, 60);
   CHECK_THROWS_AS(green({-30, 9}, {30, 9}), InputError);
   const GradedGreen guide(parabolic(0.1), k, 60);
   CHECK_THROWS_AS(guide({0, 0}, {0, 40}), InputError);
 }
 
-TEST_CASE("Other fields have no exact solver") {
+TEST_CASE("graded Green function: other fields are rejected") {
   IndexField field;
   field.kind = IndexField::Kind::blobs;
   CHECK_THROWS_AS(GradedGreen(field, k, 10), InputError);

@@ -30,7 +30,7 @@ std::vector<Complex> random_charges(std::size_t count) {
   return charges;
 }
 
-// The slow oracle.
+// Reference: the sum over all pairs with accurate Hankel functions.
 std::vector<Complex> direct_sum(double k, const std::vector<Vec2>& sources,
                                 const std::vector<Vec2>& targets,
                                 const std::vector<Complex>& charges) {
@@ -63,7 +63,7 @@ void check_accuracy(double k, const std::vector<Vec2>& points) {
 
 }  // namespace
 
-TEST_CASE("near and far parts make H_0, near vanishes at its range") {
+TEST_CASE("kernel split: near and far parts add to H_0, and near vanishes beyond its range") {
   for (const double range : {1e-3, 0.3, 2.0, 30.0})
     for (const double tolerance : tolerances) {
       const KernelSplit split(two_pi, range, tolerance);
@@ -83,9 +83,10 @@ TEST_CASE("near and far parts make H_0, near vanishes at its range") {
     }
 }
 
-// far = H_0 convolved with a mollifier, so that its Laplacian + k^2 is the mollifier: within the
-// range far is no wave, but its Laplacian there must be smooth, and equal -k^2 far beyond.
-TEST_CASE("the far part is a wave beyond the range and smooth at it") {
+// far is H_0 convolved with a mollifier, so that (Laplacian + k^2) far is the mollifier: not 0
+// within the range, smooth at it, and 0 beyond.
+TEST_CASE(
+    "kernel split: the far part satisfies the wave equation beyond the range and is smooth at it") {
   const double k = two_pi, range = 0.8, step = 1e-3;
   const KernelSplit split(k, range, 1e-10);
   const auto source = [&](double r) {
@@ -100,7 +101,7 @@ TEST_CASE("the far part is a wave beyond the range and smooth at it") {
   CHECK(source(0.05 * range) > 1);
 }
 
-TEST_CASE("the sum is as accurate as asked for, in boxes of all shapes") {
+TEST_CASE("Helmholtz sum: agrees with the direct sum within the tolerance in boxes of all shapes") {
   for (const Vec2 box :
        {Vec2{12, 12}, {40, 3}, {0.02, 60}, {70, 70}, {1, 1}, {1e-3, 1e-3}, {1e-5, 2e-7}}) {
     CAPTURE(box.x);
@@ -108,7 +109,7 @@ TEST_CASE("the sum is as accurate as asked for, in boxes of all shapes") {
   }
 }
 
-TEST_CASE("the sum scales with the wavelength") {
+TEST_CASE("Helmholtz sum: is invariant under a change of the unit of length") {
   const auto points = points_in_box(1200, 10, 10);
   std::vector<Vec2> larger;
   for (const Vec2 p : points) larger.push_back(1e4 * p);
@@ -117,7 +118,7 @@ TEST_CASE("the sum scales with the wavelength") {
                           HelmholtzSum(two_pi, points, 1e-9)(charges)) < 1e-9);
 }
 
-TEST_CASE("close points count in full, coincident ones not at all") {
+TEST_CASE("Helmholtz sum: close points are summed accurately, coincident ones omitted") {
   auto points = points_in_box(1500, 12, 12);
   for (std::size_t i = 0; i < 50; ++i) {
     points[100 + i] = points[i] + Vec2{1e-6, 0};
@@ -127,7 +128,7 @@ TEST_CASE("close points count in full, coincident ones not at all") {
   check_accuracy(two_pi, points);
 }
 
-TEST_CASE("points on a line, clustered, and on the corners of the box") {
+TEST_CASE("Helmholtz sum: points on a line, clustered, and at the corners of the box") {
   check_accuracy(two_pi, points_in_box(some, 0, 50));
   check_accuracy(two_pi, points_in_box(some, 50, 0));
   auto clustered = points_in_box(some, 20, 20);
@@ -137,7 +138,7 @@ TEST_CASE("points on a line, clustered, and on the corners of the box") {
   check_accuracy(two_pi, clustered);
 }
 
-TEST_CASE("no, one and two points") {
+TEST_CASE("Helmholtz sum: no, one, two and coincident points") {
   CHECK(HelmholtzSum(two_pi, {}, 1e-9)({}).empty());
   const std::vector<Vec2> pair{{0, 0}, {0.3, 0.4}};
   CHECK(HelmholtzSum(two_pi, std::span(pair).first(1), 1e-9)(random_charges(1))[0] == Complex());
@@ -148,7 +149,7 @@ TEST_CASE("no, one and two points") {
   for (const Complex u : HelmholtzSum(two_pi, same, 1e-9)(random_charges(3))) CHECK(u == Complex());
 }
 
-TEST_CASE("few points very far apart are summed as they are") {
+TEST_CASE("Helmholtz sum: few points far apart are summed directly") {
   const auto points = points_in_box(300, 1e6, 1e6);
   const HelmholtzSum sum(two_pi, points, 1e-12);
   CHECK(sum.range() == 0);
@@ -156,7 +157,7 @@ TEST_CASE("few points very far apart are summed as they are") {
   CHECK(relative_distance(sum(charges), direct_sum(two_pi, points, points, charges)) < 1e-13);
 }
 
-TEST_CASE("targets apart from sources, several columns") {
+TEST_CASE("Helmholtz sum: separate targets and several columns agree with the direct sum") {
   auto sources = points_in_box(1200, 12, 12), targets = points_in_box(2500, 6, 25, 2);
   targets[7] = sources[3];
   const auto charges = random_charges(3 * sources.size());
@@ -169,7 +170,7 @@ TEST_CASE("targets apart from sources, several columns") {
   CHECK(HelmholtzSum(two_pi, sources, {}, 1e-6)(charges).empty());
 }
 
-TEST_CASE("the sum does not depend on the number of threads") {
+TEST_CASE("Helmholtz sum: results do not depend on the number of threads") {
   const auto points = points_in_box(3000, 17, 17);
   const auto charges = random_charges(2 * points.size());
   const int threads = omp_get_max_threads();
@@ -187,7 +188,7 @@ TEST_CASE("the sum does not depend on the number of threads") {
   for (const auto& other : sums) CHECK(other == sums[0]);
 }
 
-TEST_CASE("sizes of transforms are the next even products of 2, 3 and 5") {
+TEST_CASE("transform size: is the next even product of 2, 3 and 5") {
   const auto smooth = [](std::size_t n) {
     for (const std::size_t prime : {2, 3, 5})
       while (n % prime == 0) n /= prime;
@@ -198,7 +199,7 @@ TEST_CASE("sizes of transforms are the next even products of 2, 3 and 5") {
     while (!smooth(next)) next += 2;
     REQUIRE(transform_size(static_cast<double>(least)) == next);
   }
-  for (const double least : {1e12, 1e17})  // at once
+  for (const double least : {1e12, 1e17})  // without a long search
     CHECK(static_cast<double>(transform_size(least)) < 1.01 * least);
   CHECK(smooth(transform_size(1e50)));
 }

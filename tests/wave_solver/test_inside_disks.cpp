@@ -9,7 +9,8 @@ namespace flatspeckle::wave::test_inside_disks {
 
 using flatspeckle::tests::is_night;
 
-TEST_CASE("Fields are within the tolerance on both sides of the rims: small clusters") {
+TEST_CASE(
+    "fields on both sides of rims: small clusters agree with an oracle within the tolerance") {
   const std::vector<double> tolerances{1e-3, 1e-6, 1e-9};
   const auto worst = worst_errors(107, is_night ? 4 : 2, {13, 1300}, tolerances);
   for (std::size_t i = 0; i < worst.size(); ++i) {
@@ -19,17 +20,17 @@ TEST_CASE("Fields are within the tolerance on both sides of the rims: small clus
   }
 }
 
-TEST_CASE("Fields in narrow gaps are within the tolerance, on both of the rims that face it") {
+TEST_CASE("fields in narrow gaps: both rims agree with an oracle within the tolerance") {
   for (const std::string kind : {"D", "N", "TM15", "TE15"}) {
     CAPTURE(kind);
-    // by day two kinds each
+    // outside nightly runs two kinds each
     if (is_night || kind.size() == 1) check_gap(kind, 1, 0.1, {1e-3, 1e-6, 1e-9});
     if (is_night || kind.size() > 1) check_gap(kind, 0.2, 0.03, {1e-3, 1e-6, 1e-9});
   }
 }
 
 TEST_CASE(
-    "nightly: Fields are within the tolerance on both sides of the rims: 60 clusters of 2 to 13") {
+    "nightly: fields on both sides of rims: 60 clusters of 2 to 13 disks agree with an oracle") {
   const std::vector<double> tolerances{1e-3, 1e-6, 1e-9, 1e-12};
   const auto worst = worst_errors(100, 60, {13, 5000}, tolerances);
   for (std::size_t i = 0; i < worst.size(); ++i) {
@@ -40,8 +41,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "nightly: Fields in the narrowest gaps are within the tolerance, on both of the rims that face "
-    "it") {
+    "nightly: fields in the narrowest gaps: both rims agree with an oracle within the tolerance") {
   for (const std::string kind : {"D", "N", "TM15", "TE15"})
     for (const double ratio : {1.0, 0.2})
       for (const double gap : {0.1, 0.01, 1e-3}) {
@@ -51,7 +51,7 @@ TEST_CASE(
       }
 }
 
-TEST_CASE("nightly: The map of hundred_disks.toml is within its tolerance") {
+TEST_CASE("nightly: field map of hundred_disks.toml agrees with an oracle within the tolerance") {
   const Scatterer disk{.kind = Scatterer::Kind::tm, .radius = 0.4, .index = 1.5};
   const PlacementRule rule{
       .kind = PlacementRule::Kind::hard_disk, .mean_count = 100, .count = 100, .min_gap = 0.05};

@@ -9,7 +9,7 @@ namespace flatspeckle::wave::test_interpolative {
 
 namespace {
 
-// [row][column], singular values about exp(-decay i)
+// Row-major matrix.
 struct Matrix {
   std::size_t rows, columns;
   std::vector<double> values;
@@ -17,6 +17,7 @@ struct Matrix {
   double operator()(std::size_t i, std::size_t j) const { return values[i * columns + j]; }
 };
 
+// Returns a random matrix whose singular values decay about as exp(-decay i).
 Matrix decaying(std::size_t rows, std::size_t columns, std::size_t rank, double decay) {
   RandomStream random(4, 1, rank);
   Matrix matrix{rows, columns, std::vector<double>(rows * columns)};
@@ -39,7 +40,7 @@ Interpolation decomposition(const Matrix& matrix, double tolerance) {
   return interpolate(std::move(sketch), tolerance);
 }
 
-// Largest 2-norm of a column of A(:, redundant) - A(:, skeleton) T.
+// Returns the largest 2-norm of a column of A(:, redundant) - A(:, skeleton) T.
 double largest_error(const Matrix& matrix, const Interpolation& found) {
   double largest = 0;
   for (std::size_t r = 0; r < found.redundant.size(); ++r) {
@@ -63,32 +64,32 @@ double largest_coefficient(const Interpolation& found) {
 
 }  // namespace
 
-TEST_CASE("A matrix of exactly low rank is interpolated to rounding") {
+TEST_CASE("interpolation: a matrix of exactly low rank is represented to rounding") {
   for (const std::size_t rank : {1, 20, 64}) {
     const auto matrix = decaying(300, 150, rank, 0);
     const auto found = decomposition(matrix, 1e-11);
     CHECK(found.skeleton.size() >= rank);
-    CHECK(found.skeleton.size() < rank + 8);  // a panel is taken whole
+    CHECK(found.skeleton.size() < rank + 8);  // panels are eliminated as a whole
     CHECK(largest_error(matrix, found) < 1e-11);
     CHECK(largest_coefficient(found) < 100);
   }
 }
 
-TEST_CASE("The error follows the tolerance, the rank its logarithm") {
+TEST_CASE("interpolation: the error follows the tolerance, the rank its logarithm") {
   const auto matrix = decaying(700, 450, 450, 0.15);
   for (const double tolerance : {1e-2, 1e-5, 1e-8, 1e-11}) {
     const auto found = decomposition(matrix, tolerance);
     const double error = largest_error(matrix, found);
     CHECK(error < 2 * tolerance);
-    CHECK(error > 1e-4 * tolerance);  // nor is it needlessly accurate
-    // norms of terms are about sqrt(rows columns) / 12 = 46.8 exp(-0.15 i)
+    CHECK(error > 1e-4 * tolerance);  // not needlessly accurate
+    // Norms of terms are about sqrt(rows columns) / 12 exp(-0.15 i) = 46.8 exp(-0.15 i).
     const double terms = std::log(46.8 / tolerance) / 0.15;
     CHECK(static_cast<double>(found.skeleton.size()) < terms + 32);
     CHECK(largest_coefficient(found) < 100);
   }
 }
 
-TEST_CASE("Skeleton and redundant columns share all columns, in order") {
+TEST_CASE("interpolation: skeleton and redundant columns partition all columns, in order") {
   const auto found = decomposition(decaying(200, 120, 30, 0.1), 1e-6);
   std::vector<std::size_t> all = found.skeleton;
   all.insert(all.end(), found.redundant.begin(), found.redundant.end());
@@ -100,7 +101,7 @@ TEST_CASE("Skeleton and redundant columns share all columns, in order") {
   CHECK(found.t.size() == found.skeleton.size() * found.redundant.size());
 }
 
-TEST_CASE("Extremes: nothing, zeros, full rank, fewer rows than columns") {
+TEST_CASE("interpolation: empty, zero and full-rank matrices, fewer rows than columns") {
   CHECK(decomposition({5, 0, {}}, 1e-6).skeleton.empty());
   const auto zeros = decomposition({5, 40, std::vector<double>(200)}, 1e-6);
   CHECK(zeros.skeleton.empty());
@@ -108,11 +109,11 @@ TEST_CASE("Extremes: nothing, zeros, full rank, fewer rows than columns") {
   CHECK(decomposition(decaying(300, 40, 40, 0), 1e-9).redundant.empty());
   const auto flat = decaying(10, 100, 10, 0);
   const auto found = decomposition(flat, 1e-10);
-  CHECK(found.skeleton.size() <= 60);  // samples that no row was added to choose in vain
+  CHECK(found.skeleton.size() <= 60);  // samples without rows add useless pivots
   CHECK(largest_error(flat, found) < 1e-11);
 }
 
-TEST_CASE("Real and imaginary parts of a row are two rows") {
+TEST_CASE("row sketch: real and imaginary parts of a row are two rows") {
   const auto matrix = decaying(200, 60, 25, 0);
   RowSketch sketch(60, RandomStream(1, 2, 4));
   for (std::size_t i = 0; i < 200; i += 2) {

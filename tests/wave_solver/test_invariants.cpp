@@ -1,5 +1,5 @@
-// What must hold for every placement: energy, reciprocity, and indifference to the unit of length,
-// the order of scatterers, and the choice of axes.
+// Checks invariants of every placement: energy conservation, reciprocity, and independence of the
+// unit of length, the order of scatterers, and the choice of axes.
 
 #include <algorithm>
 #include <cmath>
@@ -49,11 +49,11 @@ struct Energy {
   double scattered, lost;
 };
 
-// sigma_s is the integral of |A|^2; sigma_e = -sqrt(8 pi / k) Re[e^{i pi/4} A(forward)], which is
-// C9 read through C6 for the cluster as a whole.
+// Returns sigma_s, the integral of |A|^2, and sigma_e = -sqrt(8 pi / k) Re[e^{i pi/4} A(forward)],
+// which is C9 with C6 for the cluster as a whole.
 Energy energy(const Placement& placement, double angle) {
   const auto solution = solve(placement, two_pi, {angle}, quick);
-  constexpr int directions = 256;  // of a field of angular order below 2 k R = 60
+  constexpr int directions = 256;  // for a field of angular orders below 2 k R = 60
   Energy energy{};
   for (int i = 0; i < directions; ++i)
     energy.scattered +=
@@ -71,7 +71,7 @@ std::vector<Complex> far_fields(const Placement& placement, double k = two_pi, d
 
 }  // namespace
 
-TEST_CASE("A lossless cluster scatters what it takes from the wave") {
+TEST_CASE("lossless clusters: scattering cross section equals extinction") {
   for (const Placement& placement : lossless())
     for (const double light : lights) {
       const auto [scattered, lost] = energy(placement, light);
@@ -79,7 +79,7 @@ TEST_CASE("A lossless cluster scatters what it takes from the wave") {
     }
 }
 
-TEST_CASE("An absorbing cluster takes more than it scatters") {
+TEST_CASE("absorbing clusters: extinction exceeds the scattering cross section") {
   auto absorbing = clusters({"TM15abs", "TE15abs"});
   absorbing.push_back(points(std::numbers::pi / 2, 0.8));
   for (const Placement& placement : absorbing)
@@ -90,7 +90,7 @@ TEST_CASE("An absorbing cluster takes more than it scatters") {
     }
 }
 
-TEST_CASE("Light and view may be exchanged") {
+TEST_CASE("reciprocity: far fields are unchanged if light and view are exchanged") {
   auto all = lossless();
   for (auto& placement : clusters({"TM15abs", "TE15abs"})) all.push_back(placement);
   const double pi = std::numbers::pi;
@@ -101,7 +101,7 @@ TEST_CASE("Light and view may be exchanged") {
   }
 }
 
-TEST_CASE("The unit of length does not matter") {
+TEST_CASE("far fields: independent of the unit of length") {
   const double unit = 3.7e4;
   for (Placement placement : lossless()) {
     const auto expected = far_fields(placement);
@@ -115,7 +115,7 @@ TEST_CASE("The unit of length does not matter") {
   }
 }
 
-TEST_CASE("The order of scatterers does not matter") {
+TEST_CASE("far fields: independent of the order of scatterers") {
   for (Placement placement : lossless()) {
     const auto expected = far_fields(placement);
     std::reverse(placement.begin(), placement.end());
@@ -124,7 +124,7 @@ TEST_CASE("The order of scatterers does not matter") {
   }
 }
 
-TEST_CASE("Turning the scene turns the field") {
+TEST_CASE("far fields: rotate with the scene") {
   const double turn = 0.83;
   for (Placement placement : lossless()) {
     const auto expected = far_fields(placement);
@@ -134,7 +134,8 @@ TEST_CASE("Turning the scene turns the field") {
   }
 }
 
-TEST_CASE("Moving the scene multiplies the field by the phases of the way in and out") {
+TEST_CASE(
+    "far fields: a translation of the scene multiplies them by the phases of light and view") {
   const Vec2 shift{3.1, -7.7};
   for (Placement placement : lossless()) {
     auto expected = far_fields(placement);
@@ -149,7 +150,7 @@ TEST_CASE("Moving the scene multiplies the field by the phases of the way in and
   }
 }
 
-TEST_CASE("The near field goes over into the far field") {
+TEST_CASE("near field: converges to the far field at large distance") {
   const auto solution = solve(reference_placement("g10", "TE15"), two_pi, {0.3}, quick);
   for (const double angle : {0.0, 1.0, 4.0}) {
     const double r = 1e7;

@@ -19,7 +19,7 @@ std::vector<double> fan(double first, double last, int lights) {
 
 constexpr Circle circle{{0.7, -2}, 1.5};
 
-// The largest error of the combinations over points in the circle.
+// Returns the largest error of the combinations over points in the circle.
 double worst_error(const std::vector<double>& angles, const LightBasis& basis) {
   double worst = 0;
   const std::size_t rank = basis.angles.size();
@@ -38,7 +38,7 @@ double worst_error(const std::vector<double>& angles, const LightBasis& basis) {
 
 }  // namespace
 
-TEST_CASE("Many lights are combinations of few") {
+TEST_CASE("light basis: many lights are combinations of few within the tolerance") {
   for (const double tolerance : {1e-3, 1e-6, 1e-12}) {
     const auto around = fan(0, two_pi, 200), narrow = fan(0.2, 0.4, 33);
     const auto all = light_basis(around, two_pi, circle, tolerance);
@@ -53,7 +53,7 @@ TEST_CASE("Many lights are combinations of few") {
   }
 }
 
-TEST_CASE("Lights that no fewer can stand for are left alone") {
+TEST_CASE("light basis: lights that cannot be compressed are unchanged") {
   const auto angles = fan(0, two_pi, 20);
   const auto basis = light_basis(angles, two_pi, circle, 1e-6);
   CHECK(basis.angles == angles);
@@ -61,7 +61,7 @@ TEST_CASE("Lights that no fewer can stand for are left alone") {
   CHECK(light_basis(fan(0, 0.1, 3), two_pi, circle, 1e-6).weights.empty());
 }
 
-TEST_CASE("Compressed lights and exchanged views change no field") {
+TEST_CASE("field plan: compressed lights and views agree with single solutions") {
   const Placement placement = reference_placement("g10", "TE15");
   const SolveOptions options{.tolerance = 1e-12, .sensors = {}, .diagnose = false};
   const Circle around = enclosing_circle(placement);
@@ -70,7 +70,7 @@ TEST_CASE("Compressed lights and exchanged views change no field") {
     const auto angles = fan(-1, 1, lights);
     std::vector<View> sensors;
     for (double angle : fan(0, two_pi, views)) sensors.push_back(far_view(angle));
-    // Each light solved for by itself, and each view taken from it.
+    // One solution per light, evaluated at all views.
     std::vector<Complex> one_by_one;
     for (double angle : angles) {
       const auto fields = solve(placement, two_pi, {angle}, options).fields(sensors);
@@ -85,7 +85,7 @@ TEST_CASE("Compressed lights and exchanged views change no field") {
   }
 }
 
-TEST_CASE("The circle holds all rims") {
+TEST_CASE("enclosing circle: contains all rims") {
   const Placement placement = reference_placement("g10", "D");
   const Circle around = enclosing_circle(placement);
   for (const auto& [position, disk] : placement)
@@ -93,7 +93,8 @@ TEST_CASE("The circle holds all rims") {
   CHECK(enclosing_circle({}).radius == 0);
 }
 
-TEST_CASE("A beam is the superposition of plane waves that has its field across the focus") {
+TEST_CASE(
+    "Gaussian beam: the superposition of plane waves agrees with its field across the focus") {
   const Circle box{{1, 5}, 11};
   const double waist = 2;
   const Lights lights = {gaussian_beam(0.3, {0.5, 2}, waist), gaussian_beam(0.3, {-1, 2}, waist),
@@ -118,7 +119,7 @@ TEST_CASE("A beam is the superposition of plane waves that has its field across 
   }
 }
 
-TEST_CASE("Point sources are the reciprocal of near sensors, and plane waves from far away") {
+TEST_CASE("point sources: reciprocal to near sensors, and to plane waves in the far field") {
   const Placement placement = reference_placement("g1", "TM15");
   const Circle around = enclosing_circle(placement);
   const SolveOptions options{.tolerance = 1e-10, .sensors = {}, .diagnose = false};
@@ -132,8 +133,8 @@ TEST_CASE("Point sources are the reciprocal of near sensors, and plane waves fro
                 back = fields_of({point_source(there)}, {near_sensor(here)})[0];
   CHECK(std::abs(forth) > 1e-4);
   CHECK(std::abs(forth - back) < 1e-9);
-  // far view towards v of a source at x = near field at x of the light from v, times e^(i pi/4) /
-  // sqrt(8 pi k)
+  // The far field towards v of a source at x equals the near field at x of the light from v, times
+  // e^(i pi/4) / sqrt(8 pi k).
   const Complex scale =
       std::polar(1 / std::sqrt(8 * std::acos(-1.0) * two_pi), std::acos(-1.0) / 4);
   const Complex far = fields_of({point_source(here)}, {far_view(0.4)})[0],

@@ -1,5 +1,5 @@
-// Solutions of placements drawn at random keep their tolerance against twice the order, or are
-// refused, or say that they have not converged.
+// Checks random placements: solutions agree with those of twice the order within the tolerance, or
+// are rejected, or are reported as not converged.
 
 #include <algorithm>
 #include <cmath>
@@ -26,18 +26,18 @@ std::vector<double> angles_around() {
   return angles;
 }
 
-// Far fields of orders this many times those that are chosen, by a dense solution.
+// Returns far fields of a dense solution whose orders are `growth` times those chosen.
 std::vector<Complex> fields_of_order(const Placement& placement, double tolerance, double growth) {
   const TMatrixSystem system(placement, two_pi, tolerance, {}, growth);
   DenseFactor factor(system.matrix(), system.unknowns());
-  const auto x = factor.solve(system.right_sides(lights));
+  const auto x = factor.solve(system.right_hand_sides(lights));
   return transposed_product(system.far_rows(angles_around()), x.data(), lights.size(),
                             system.unknowns());
 }
 
 enum class Outcome { held, missed, refused, not_converged, large };
 
-// Placements of more unknowns than that are left out.
+// Compares a solution with one of higher order; placements with too many unknowns are skipped.
 Outcome outcome(const Placement& placement, double tolerance, std::size_t most_unknowns) try {
   check_no_overlap(placement);
   if (TMatrixSystem(placement, two_pi, tolerance).unknowns() > most_unknowns) return Outcome::large;
@@ -47,14 +47,14 @@ Outcome outcome(const Placement& placement, double tolerance, std::size_t most_u
   std::vector<View> views;
   for (const double angle : angles_around()) views.push_back(far_view(angle));
   const auto expected = fields_of_order(placement, tolerance, grown ? 2.5 : 2);
-  // 0 / 0 where nothing scatters
+  // The distance is 0 / 0 if nothing scatters.
   return relative_distance(solution.fields(views), expected) > tolerance ? Outcome::missed
                                                                          : Outcome::held;
 } catch (const InputError&) {
   return Outcome::refused;
 }
 
-// Draws placements: kinds, sizes, indices, gaps.
+// Draws placements of random kinds, sizes, indices and gaps.
 class Draw {
  public:
   explicit Draw(std::uint64_t number) : random_(60, 0, number) {}
@@ -85,7 +85,7 @@ class Draw {
     }
   }
 
-  // Each disk but the first has a gap of random size to one before it.
+  // Draws a placement in which each disk has a gap of random size to an earlier one.
   Placement placement(double least_gap) {
     const auto kind = static_cast<Scatterer::Kind>(1 + std::min<std::size_t>(3, one_of(6)));
     const std::size_t count = 2 + one_of(4);
@@ -155,17 +155,17 @@ Placement pair_of(Scatterer::Kind kind, Complex index, Vec2 radii, double gap) {
 
 }  // namespace
 
-TEST_CASE("Random placements: the tolerance is held against twice the order, or refused") {
+TEST_CASE("random placements: agree with twice the order within the tolerance, or are rejected") {
   const Counts counts = check_placements(0, 40, 1e-2, 250);
   CHECK(counts.held > 20);
 }
 
-TEST_CASE("nightly: 500 random placements with gaps from 1e-6 radii hold their tolerance") {
+TEST_CASE("nightly: 500 random placements with gaps from 1e-6 radii agree with twice the order") {
   const Counts counts = check_placements(1000, 500, 1e-6, 600);
   CHECK(counts.held > 250);
 }
 
-TEST_CASE("Metal pairs in narrow gaps: the tolerance is held against twice the order") {
+TEST_CASE("metal pairs with narrow gaps: agree with twice the order within the tolerance") {
   const auto te = Scatterer::Kind::te;
   CHECK(outcome(pair_of(te, {0.05, 1.5}, {0.3, 0.45}, 0.1), 1e-8, 1500) == Outcome::held);
   CHECK(outcome(pair_of(te, {0.05, 2.2}, {0.1, 0.1}, 0.02), 1e-6, 1500) == Outcome::held);
@@ -174,7 +174,8 @@ TEST_CASE("Metal pairs in narrow gaps: the tolerance is held against twice the o
         Outcome::missed);
 }
 
-TEST_CASE("Three different metal disks that resonate together: higher orders confirm the fields") {
+TEST_CASE(
+    "three metal disks that resonate collectively: agree with higher orders or are not converged") {
   const auto disk = [](double radius, Complex index) {
     return Scatterer{.kind = Scatterer::Kind::te, .radius = radius, .index = index};
   };
@@ -186,14 +187,17 @@ TEST_CASE("Three different metal disks that resonate together: higher orders con
   CHECK((found == Outcome::held || found == Outcome::not_converged));
 }
 
-TEST_CASE("nightly: Metal pairs that need high orders are held, refused or not converged") {
+TEST_CASE(
+    "nightly: metal pairs of high orders: agree with twice the order, rejected or not converged") {
   const auto te = Scatterer::Kind::te;
   for (const double tolerance : {1e-4, 1e-6, 1e-8})
     CHECK(outcome(pair_of(te, {0.05, 2.2}, {0.1, 0.1}, 0.002), tolerance, 4000) != Outcome::missed);
   CHECK(outcome(pair_of(te, {0.05, 1.5}, {0.3, 0.45}, 0.01), 1e-12, 4000) != Outcome::missed);
 }
 
-TEST_CASE("Index^2 over the complex plane and gaps to rounding: held, refused or not converged") {
+TEST_CASE(
+    "index^2 over the complex plane, gaps to rounding: within the tolerance, rejected or "
+    "reported") {
   Counts counts;
   int number = 0;
   for (const double size : {0.3, 1.0, 4.0, 40.0})

@@ -1,4 +1,4 @@
-// Fixed placements against the tables of data/reference (its README says where they come from).
+// Compares fixed placements with the tables of data/reference (sources: its README).
 
 #include <algorithm>
 #include <sstream>
@@ -51,13 +51,13 @@ double error_against(const std::string& name, bool near, const Placement& placem
   return relative_distance(found, reference.field);
 }
 
-// What the tables themselves are good for, where that is more than 1e-13 (their README).
+// Returns a bound of the error of the tables themselves (their README).
 double table_error(const std::string& folder, const std::string& kind) {
   if (folder != "g10") return 1e-14;
   return kind == "N" ? 1e-10 : 3e-13;
 }
 
-// The orders are those that the tolerance needs: no more accurate than 1/1000 of it.
+// Orders must not be higher than necessary: the error is also above 1/1000 of the tolerance.
 void check_cluster(const std::string& folder) {
   for (const std::string kind : {"D", "N", "TM15", "TE15", "TM15abs", "TE15abs"})
     for (const bool near : {false, true}) {
@@ -85,17 +85,17 @@ double point_error(const std::string& file, double phase_shift, double tolerance
 
 }  // namespace
 
-TEST_CASE("one disk off the origin") {
+TEST_CASE("reference fields: one disk off the origin") {
   check_cluster("g1");
 }
-TEST_CASE("two disks") {
+TEST_CASE("reference fields: two disks") {
   check_cluster("g2");
 }
-TEST_CASE("ten disks, smallest gap 0.043") {
+TEST_CASE("reference fields: ten disks, smallest gap 0.043") {
   check_cluster("g10");
 }
 
-TEST_CASE("fifty points: nothing is truncated, the tolerance does not matter") {
+TEST_CASE("reference fields: fifty points, exact at any tolerance because there is no truncation") {
   for (const double tolerance : {1e-3, 1e-12}) {
     const double resonant = point_error("resonant_deltapi2", std::numbers::pi / 2, tolerance);
     const double weak = point_error("weak_delta0.3", 0.3, tolerance);

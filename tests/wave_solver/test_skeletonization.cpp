@@ -10,7 +10,7 @@
 
 namespace flatspeckle::wave::test_skeletonization {
 
-TEST_CASE("The contour goes once around at its distance, evenly") {
+TEST_CASE("proxy contour: goes around once at its distance, evenly spaced") {
   const Rectangle hull{{-1, 2}, {3, 2.5}};
   for (const double distance : {0.1, 0.7, 10.0}) {
     const double spacing = 0.05;
@@ -29,9 +29,9 @@ TEST_CASE("The contour goes once around at its distance, evenly") {
   }
 }
 
-// Box of 25 disks or 200 points at the origin among others, whose equations near and far, not only
-// those that it was fitted to, must be told by the skeleton.
-TEST_CASE("A skeleton tells the waves of its box to all outside, near and far") {
+// A box of 25 disks or 200 points among others: the skeleton must represent the equations of all
+// others, near and far, not only those used for its choice.
+TEST_CASE("skeletonization: the skeleton represents the coupling of its box to all others") {
   for (const bool disks : {false, true}) {
     Scatterer scatterer = disks ? reference_scatterer("TE15") : Scatterer{};
     scatterer.radius = disks ? 0.15 : 0;

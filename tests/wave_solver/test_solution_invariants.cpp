@@ -1,4 +1,4 @@
-// What a solution says about itself: its power balance, and what a rounding of the radius changes.
+// Checks the diagnosis of a solution: power balance and sensitivity to rounding of the radius.
 
 #include <cmath>
 #include <limits>
@@ -27,7 +27,7 @@ std::vector<Placement> clusters() {
   return all;
 }
 
-// What is solved with elements of the T-matrix and of the translations multiplied by factors.
+// Returns a solution with elements of the T-matrix and of the translations multiplied by factors.
 WaveSolution altered(const Placement& placement, double t_factor, double translation_factor) {
   TMatrixSystem system(placement, two_pi, tolerance);
   Entries matrix = system.matrix();
@@ -36,11 +36,11 @@ WaveSolution altered(const Placement& placement, double t_factor, double transla
     for (std::size_t i = 0; i < n; ++i)
       matrix[i + n * j] =
           i == j ? matrix[i + n * j] / t_factor : matrix[i + n * j] * translation_factor;
-  auto x = DenseFactor(std::move(matrix), n).solve(system.right_sides(lights));
+  auto x = DenseFactor(std::move(matrix), n).solve(system.right_hand_sides(lights));
   return WaveSolution(std::move(system), lights, std::move(x));
 }
 
-// A disk whose wave of order n resonates, found from k radius = from on.
+// Returns a disk whose wave of order n resonates, searched from k radius = from upwards.
 Scatterer resonant(int n, double index, double from) {
   Scatterer disk{.kind = Scatterer::Kind::tm, .index = index};
   const auto detuning = [&](double x) {
@@ -62,7 +62,8 @@ Scatterer resonant(int n, double index, double from) {
 
 }  // namespace
 
-TEST_CASE("Power balance: extinction is scattering and absorption in every kind of placement") {
+TEST_CASE(
+    "power balance: extinction equals scattering plus absorption for all kinds of scatterers") {
   for (const Placement& placement : clusters()) {
     const auto solution = solve(placement, two_pi, lights, {.tolerance = tolerance, .sensors = {}});
     const auto [off, limit] = power_balance(solution, tolerance);
@@ -73,7 +74,7 @@ TEST_CASE("Power balance: extinction is scattering and absorption in every kind 
   }
 }
 
-TEST_CASE("Power balance: a factor 1.01 in T-matrices, translations or amplitudes is seen") {
+TEST_CASE("power balance: a factor 1.01 in T-matrices, translations or amplitudes is detected") {
   for (const Placement& placement : clusters()) {
     for (const auto& [t_factor, translation_factor] :
          {std::pair{1.0, 1.0}, {1.01, 1.0}, {1.0, 1.01}}) {
@@ -92,7 +93,7 @@ TEST_CASE("Power balance: a factor 1.01 in T-matrices, translations or amplitude
   }
 }
 
-TEST_CASE("Power balance: from k radius = 1e-4 to 300") {
+TEST_CASE("power balance: holds from k radius = 1e-4 to 300") {
   for (const double size : {1e-4, 0.01, 1.0, 300.0})
     for (const auto kind : {Scatterer::Kind::tm, Scatterer::Kind::te}) {
       const Scatterer disk{.kind = kind, .radius = size / two_pi, .index = {1.5, 0.01}};
@@ -103,7 +104,8 @@ TEST_CASE("Power balance: from k radius = 1e-4 to 300") {
     }
 }
 
-TEST_CASE("Rounding: what it changes is that of a radius one unit in the last place away") {
+TEST_CASE(
+    "rounding: the estimate agrees with the change for a radius one unit in the last place away") {
   for (const int n : {10, 15, 24}) {
     Placement one{{{0, 0}, resonant(n, 2, n / 2.0)}};
     const auto solution = solve(one, two_pi, {0.3}, {});

@@ -9,7 +9,7 @@
 
 namespace flatspeckle::wave::test_wave_solution {
 
-TEST_CASE("Nothing scatters nothing") {
+TEST_CASE("wave solution: an empty placement has zero fields") {
   const auto solution = solve({}, two_pi, {0, 1});
   CHECK(solution.far_field(0.2, 1) == Complex(0));
   CHECK(solution.near_field({1, 2}) == Complex(0));
@@ -18,7 +18,7 @@ TEST_CASE("Nothing scatters nothing") {
   CHECK(solution.diagnosis().boundary_residual == 0);
 }
 
-TEST_CASE("One scatterer has the amplitude of its T-matrix, with the phase of its place") {
+TEST_CASE("wave solution: one scatterer agrees with its T-matrix and the phase of its position") {
   const Vec2 place{0.4, -1.3};
   for (const std::string kind : {"D", "N", "TM15", "TE15abs"}) {
     Scatterer disk = reference_scatterer(kind);
@@ -34,7 +34,7 @@ TEST_CASE("One scatterer has the amplitude of its T-matrix, with the phase of it
   }
 }
 
-TEST_CASE("Disks of index 1 are not there") {
+TEST_CASE("wave solution: disks of index 1 do not scatter") {
   Placement placement = reference_placement("g10", "TM15");
   for (auto& placed : placement) placed.scatterer.index = 1;
   const auto solution = solve(placement, two_pi, {0.2});
@@ -42,7 +42,7 @@ TEST_CASE("Disks of index 1 are not there") {
   CHECK(solution.diagnosis().boundary_residual == 0);
 }
 
-TEST_CASE("Residual and condition are those of a well-posed problem") {
+TEST_CASE("wave solution: residual and condition number of a well-posed problem") {
   const auto diagnosis = solve(reference_placement("g10", "D"), two_pi, {0, 2}).diagnosis();
   CHECK(diagnosis.residual > 0);
   CHECK(diagnosis.residual < 1e-13);
@@ -50,7 +50,8 @@ TEST_CASE("Residual and condition are those of a well-posed problem") {
   CHECK(diagnosis.condition < 1e5);
 }
 
-TEST_CASE("The residual that is told is that of the equations, of few lights and of many") {
+TEST_CASE(
+    "wave solution: the reported residual is that of the equations, for few and many lights") {
   RandomStream random(3, 1, 0);
   Placement points(2000);
   for (auto& placed : points) placed.position = {14 * random.uniform(), 14 * random.uniform()};
@@ -67,7 +68,7 @@ TEST_CASE("The residual that is told is that of the equations, of few lights and
         const auto beta = solution.coefficients(light);
         x.insert(x.end(), beta.begin(), beta.end());
       }
-      const double residual = relative_distance(system.apply(x), system.right_sides(angles));
+      const double residual = relative_distance(system.apply(x), system.right_hand_sides(angles));
       CAPTURE(lights);
       if (method == Method::dense)
         CHECK(solution.diagnosis().residual < 1e-12);
@@ -77,22 +78,22 @@ TEST_CASE("The residual that is told is that of the equations, of few lights and
     }
 }
 
-TEST_CASE("The product formed block by block is that of the matrix") {
+TEST_CASE("wave equations: the block-by-block product agrees with the matrix") {
   TMatrixSystem system(reference_placement("g2", "D"), two_pi, 1e-12);
   const std::vector<double> lights{0};
-  const auto sides = system.right_sides(lights);
-  const auto product = system.apply(sides);
+  const auto rhs = system.right_hand_sides(lights);
+  const auto product = system.apply(rhs);
   const auto matrix = system.matrix();
   for (std::size_t row = 0; row < system.unknowns(); ++row) {
     Complex sum = 0;
     for (std::size_t column = 0; column < system.unknowns(); ++column)
-      sum += matrix[column * system.unknowns() + row] * sides[column];
+      sum += matrix[column * system.unknowns() + row] * rhs[column];
     CHECK(std::abs(sum - product[row]) < 1e-14);
   }
-  CHECK(relative_distance(product, sides) > 0.1);
+  CHECK(relative_distance(product, rhs) > 0.1);
 }
 
-TEST_CASE("Points among disks") {
+TEST_CASE("wave solution: points among disks are reciprocal") {
   Placement placement = reference_placement("g2", "TE15");
   placement.push_back({{0.9, 0.1}, Scatterer{}});
   const auto solution = solve(placement, two_pi, {0.3, 1.4 + two_pi / 2});
@@ -101,7 +102,7 @@ TEST_CASE("Points among disks") {
   CHECK(std::abs(there - solution.far_field(0.3 + two_pi / 2, 1)) < 1e-12 * std::abs(there));
 }
 
-TEST_CASE("What cannot be solved is refused") {
+TEST_CASE("wave solution: inner points, bulk phase functions and overlaps are rejected") {
   const Placement two = reference_placement("g2", "D");
   const auto solution = solve(two, two_pi, {0});
   CHECK_THROWS_AS(solution.near_field(two[0].position), InputError);
@@ -119,7 +120,7 @@ TEST_CASE("What cannot be solved is refused") {
   CHECK_THROWS_AS(solve(overlapping, two_pi, {0}), InputError);
 }
 
-TEST_CASE("A matrix beyond this machine's memory is refused before it is allocated") {
+TEST_CASE("wave equations: a matrix beyond the memory is rejected before it is allocated") {
   Placement crowd(3'000'000);
   for (std::size_t j = 0; j < crowd.size(); ++j) crowd[j].position.x = static_cast<double>(j);
   const TMatrixSystem system(std::move(crowd), two_pi, 1e-12);

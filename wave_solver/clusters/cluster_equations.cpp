@@ -29,7 +29,8 @@ double circle_radius(const Placement& cluster) {
   return radius;
 }
 
-// The first order beyond which all waves are below the tolerance.
+// Returns the lowest order beyond which both |J_n(k radius)| and |J_n(k radius) H_n(k (radius +
+// gap))| are below the tolerance.
 int series_order(double k, double radius, double gap, double tolerance) {
   const auto regular = scaled_bessel_j(most_orders, k * radius);
   const auto outgoing = scaled_hankel(most_orders, k * (radius + gap));
@@ -42,8 +43,8 @@ int series_order(double k, double radius, double gap, double tolerance) {
   while (order > 0 && is_below(order)) --order;
   if (order == most_orders)
     throw InputError("gap", number_text(gap),
-                     "a circle of radius " + number_text(radius) + " needs more than " +
-                         std::to_string(most_orders) + " orders; must be wider");
+                     "a circle of radius " + number_text(radius) + " requires more than " +
+                         std::to_string(most_orders) + " orders; use a wider gap");
   return order;
 }
 
@@ -66,7 +67,8 @@ std::string text_of(const ClusterPlace& place) {
   return "(" + number_text(place.centre.x) + ", " + number_text(place.centre.z) + ")";
 }
 
-// In order of x, so that only near ones are compared.
+// Throws InputError if two clusters are too close. Sorts by x, so that only close clusters are
+// compared.
 void require_apart(const ClusterTMatrix& cluster, std::vector<ClusterPlace> places) {
   const double least = (2 * cluster.radius + cluster.gap) * (1 - 1e-12);
   std::ranges::sort(places, {}, [](const ClusterPlace& place) { return place.centre.x; });
@@ -76,29 +78,31 @@ void require_apart(const ClusterTMatrix& cluster, std::vector<ClusterPlace> plac
         throw InputError(
             "distance of the clusters at " + text_of(places[j]) + " and " + text_of(places[i]),
             number_text(distance),
-            "must be at least " + number_text(least) + ", two radii of their circles and the gap");
+            "must be at least " + number_text(least) + ", the radii of both circles plus the gap");
 }
 
-// The root of |response|, of cos n and sin n the same: what sigma is in units of w.
+// Returns sigma_n / w_n (ScaledInverse) of each mode: the square root of the diagonal element of
+// |response|, averaged over cos(n phi) and sin(n phi).
 std::vector<double> sizes_of(const ClusterTMatrix& cluster) {
   const std::size_t size = cluster.modes.size();
   const auto own = [&](std::size_t i) { return std::abs(cluster.response[i * (size + 1)]); };
   std::vector<double> sizes{std::sqrt(own(0))};
   for (std::size_t i = 1; i < size; i += 2)
     sizes.insert(sizes.end(), 2, std::sqrt((own(i) + own(i + 1)) / 2));
-  for (double& one : sizes)
-    one = std::max(one, std::sqrt(std::numeric_limits<double>::min()));  // where nothing scatters
+  // Sizes must not be 0, even if nothing scatters.
+  for (double& one : sizes) one = std::max(one, std::sqrt(std::numeric_limits<double>::min()));
   return sizes;
 }
 
-// What w of each mode is in fields: w_n, or w_n |H_n| as close as anything comes.
-std::vector<double> reaches_of(const ClusterTMatrix& cluster) {
+// Returns the largest amplitude of each mode in a field: w_n for the regular wave, or w_n |H_n| for
+// the outgoing wave at the smallest distance allowed, whichever is larger.
+std::vector<double> amplitudes_of(const ClusterTMatrix& cluster) {
   const auto outgoing = scaled_hankel(cluster.order, cluster.k * (cluster.radius + cluster.gap));
-  std::vector<double> reaches;
+  std::vector<double> amplitudes;
   for (const Mode& mode : cluster.modes)
-    reaches.push_back(std::max(static_cast<double>(mode.weight),
-                               static_cast<double>(mode.weight * abs(outgoing[mode.order]))));
-  return reaches;
+    amplitudes.push_back(std::max(static_cast<double>(mode.weight),
+                                  static_cast<double>(mode.weight * abs(outgoing[mode.order]))));
+  return amplitudes;
 }
 
 std::vector<Complex> inverted(Entries matrix, std::size_t size) {
@@ -130,11 +134,12 @@ ClusterTMatrix cluster_waves(double k, double radius, double gap, int order) {
   return {k, radius, gap, order, scaled_modes(k, radius, order), {}};
 }
 
-// With V the regular waves about the origin in those about each scatterer, times sigma, the
-// coefficients are beta = -M^-1 V, and V^T takes them back; V is divided by w.
+// The matrix V (`waves`) expands the regular waves about the origin, divided by w, in the regular
+// waves about each scatterer, times sigma. The coefficients of the scatterers are then beta = -M^-1
+// V, and V^T transforms them to outgoing waves about the origin, also divided by w.
 ClusterTMatrix cluster_t_matrix(const Placement& cluster, double k, double gap, double tolerance) {
   if (!(gap > 0)) throw InputError("gap", number_text(gap), "must be positive");
-  if (cluster.empty()) throw InputError("a cluster needs scatterers");
+  if (cluster.empty()) throw InputError("a cluster must contain at least one scatterer");
   const double radius = circle_radius(cluster);
   ClusterTMatrix result = cluster_waves(k, radius, gap, series_order(k, radius, gap, tolerance));
   auto inverse = result.modes;
@@ -157,27 +162,28 @@ ClusterTMatrix cluster_t_matrix(const Placement& cluster, double k, double gap, 
 
 namespace {
 
-// How far the inverse of the inverse is from the response, as fields see it.
-double lost_by(const ClusterTMatrix& cluster, const ScaledInverse& found) {
+// Returns the relative difference between the response and the matrix that results from inverting
+// the response twice. Elements are weighted by amplitudes_of() their modes.
+double inversion_error_of(const ClusterTMatrix& cluster, const ScaledInverse& found) {
   const auto& sigma = found.sizes;
   const std::size_t size = sigma.size();
   const auto back = inverted({found.inverse.begin(), found.inverse.end()}, size);
-  const auto reach = reaches_of(cluster);
-  double wrong = 0, all = 0;
+  const auto amplitude = amplitudes_of(cluster);
+  double error_square = 0, all = 0;
   for (std::size_t j = 0; j < size; ++j)
     for (std::size_t i = 0; i < size; ++i) {
       const Complex whole = cluster.response[i + size * j];
-      const double weight = reach[i] * reach[j];
-      wrong += std::norm(weight * (whole + sigma[i] * sigma[j] * back[i + size * j]));
+      const double weight = amplitude[i] * amplitude[j];
+      error_square += std::norm(weight * (whole + sigma[i] * sigma[j] * back[i + size * j]));
       all += std::norm(weight * whole);
     }
-  return all > 0 ? std::sqrt(wrong / all) : 0;
+  return all > 0 ? std::sqrt(error_square / all) : 0;
 }
 
 }  // namespace
 
-// What is inverted is accretive, as M is. Where orders that hardly scatter leave no inverse at all,
-// all is lost.
+// The real part of the inverted matrix is positive semidefinite, like that of M. If the matrix is
+// singular, because some orders hardly scatter, the inversion error remains infinite.
 ScaledInverse scaled_inverse(const ClusterTMatrix& cluster) {
   ScaledInverse found{sizes_of(cluster), {}, std::numeric_limits<double>::infinity()};
   const auto& sigma = found.sizes;
@@ -188,7 +194,7 @@ ScaledInverse scaled_inverse(const ClusterTMatrix& cluster) {
       scaled[i + size * j] = -cluster.response[i + size * j] / (sigma[i] * sigma[j]);
   try {
     found.inverse = inverted(std::move(scaled), size);
-    found.lost = lost_by(cluster, found);
+    found.inversion_error = inversion_error_of(cluster, found);
   } catch (const std::runtime_error&) {
   }
   return found;
@@ -208,7 +214,7 @@ void ClusterEquations::add_copies(const ClusterTMatrix& own,
 ClusterEquations::ClusterEquations(const ClusterTMatrix& cluster,
                                    const std::vector<ClusterPlace>& places,
                                    const ScaledInverse& inverse)
-    : WaveEquations(cluster.k), whole_(true) {
+    : WaveEquations(cluster.k), have_inverse_(true) {
   ClusterTMatrix own = cluster;
   for (std::size_t i = 0; i < own.modes.size(); ++i)
     own.modes[i].weight = own.modes[i].weight * ScaledReal(inverse.sizes[i]);
@@ -218,7 +224,7 @@ ClusterEquations::ClusterEquations(const ClusterTMatrix& cluster,
 
 ClusterEquations::ClusterEquations(const ClusterTMatrix& cluster,
                                    const std::vector<ClusterPlace>& places)
-    : WaveEquations(cluster.k), whole_(false) {
+    : WaveEquations(cluster.k), have_inverse_(false) {
   ClusterTMatrix own = cluster;
   own.response.assign(own.response.size(), 0);
   add_copies(own, places);

@@ -22,20 +22,21 @@ namespace flatspeckle::wave {
 
 const DatasetTable cluster_table{
     "solve --t_matrix_gap",
-    {{"cluster/order", Data::scale, "", "1", "n of outgoing waves exp(i n phi) about the centre"},
-     {"cluster/order_in", Data::scale, "", "1", "n of regular waves exp(i n phi)"},
+    {{"cluster/order", Data::scale, "", "1",
+      "order n of the outgoing waves exp(i n phi) about the centre"},
+     {"cluster/order_in", Data::scale, "", "1", "order n of the regular waves exp(i n phi)"},
      {"cluster/t_matrix", Data::complex, "cluster/order cluster/order_in", "1",
-      "outgoing wave of the first order for a unit regular wave of the second"}},
-    {{"cluster", "wavelength", "float64", "at which it holds"},
-     {"cluster", "radius", "float64", "of the circle that holds the placement"},
-     {"cluster", "gap", "float64", "from the circle to the nearest source"},
-     {"cluster", "tolerance", "float64", "relative, of its fields"},
-     {"cluster", "centre_x", "float64", "of the circle"},
-     {"cluster", "centre_z", "float64", "of the circle"}}};
+      "amplitude of the outgoing wave (order) for a unit regular wave (order_in)"}},
+    {{"cluster", "wavelength", "float64", "wavelength of the T-matrix"},
+     {"cluster", "radius", "float64", "radius of the circle that encloses the placement"},
+     {"cluster", "gap", "float64", "distance from the circle to the nearest source"},
+     {"cluster", "tolerance", "float64", "relative error of the fields"},
+     {"cluster", "centre_x", "float64", "x of the circle's centre"},
+     {"cluster", "centre_z", "float64", "z of the circle's centre"}}};
 
 namespace {
 
-// w_n of cluster_equations.h, of each mode.
+// Returns w_n (cluster_equations.h) of each mode.
 std::vector<double> wave_sizes(const ClusterTMatrix& cluster) {
   std::vector<double> sizes;
   for (const Mode& mode : cluster.modes)
@@ -44,8 +45,9 @@ std::vector<double> wave_sizes(const ClusterTMatrix& cluster) {
   return sizes;
 }
 
-// How much of a mode of order |n| is in J_n e^{i n phi}, J_{-n} = (-1)^n J_n: with
-// e^{+-i n phi} = (cos +- i sin) / sqrt(2) of the modes sqrt(2) cos, sqrt(2) sin, a unitary change.
+// Returns the coefficient of a real mode of order |n| in the wave J_n e^{i n phi}, where J_{-n} =
+// (-1)^n J_n. In the modes c = sqrt(2) cos(n phi) and s = sqrt(2) sin(n phi), e^{+-i n phi} is (c
+// +- i s) / sqrt(2), so that the transform is unitary.
 Complex share(int n, const Mode& mode) {
   if (n == 0) return 1;
   const double sign = n < 0 && n % 2 != 0 ? -1 : 1;
@@ -53,7 +55,7 @@ Complex share(int n, const Mode& mode) {
   return sign * std::numbers::sqrt2 / 2 * (mode.odd ? sine : Complex(1));
 }
 
-// sum of out(i) entry(i, j) in(j)
+// Returns the sum over i and j of out(i) entry(i, j) in(j).
 template <typename Entry, typename Out, typename In>
 Complex combined(const Entry& entry, std::size_t rows, std::size_t columns, const Out& out,
                  const In& in) {
@@ -70,7 +72,8 @@ std::size_t mode_count(int n) {
   return n == 0 ? 1 : 2;
 }
 
-// T_mn: [m][n], both -order .. order
+// Returns the T-matrix for the waves e^{i n phi}: T_mn as [m][n], with m and n from -order to
+// order.
 std::vector<Complex> angular(const ClusterTMatrix& cluster) {
   const int last = cluster.order;
   const std::size_t size = cluster.modes.size();
@@ -90,7 +93,7 @@ std::vector<Complex> angular(const ClusterTMatrix& cluster) {
   return t;
 }
 
-// The way back.
+// Converts T_mn back to the response in real modes: the inverse of angular().
 std::vector<Complex> response_of(const ClusterTMatrix& cluster, const std::vector<Complex>& t) {
   const int last = cluster.order;
   const std::size_t size = cluster.modes.size();
@@ -118,18 +121,18 @@ std::vector<Complex> response_of(const ClusterTMatrix& cluster, const std::vecto
 KeptCluster read_file(const std::string& path) {
   const ResultReader file(path);
   const auto refuse = [&](const std::string& why) {
-    throw InputError("cluster", path, why + "; must be a file that solve --t_matrix_gap wrote");
+    throw InputError("cluster", path, why + "; must be a file written by solve --t_matrix_gap");
   };
-  if (!file.has("cluster/t_matrix")) refuse("holds no T-matrix");
+  if (!file.has("cluster/t_matrix")) refuse("contains no T-matrix");
   const auto number = [&](const char* name) { return file.attribute<double>("cluster", name); };
   const double wavelength = number("wavelength"), radius = number("radius"), gap = number("gap");
   const auto t = file.dataset<Complex>("cluster/t_matrix");
   const auto shape = file.shape("cluster/t_matrix");
   KeptCluster kept{{}, {number("centre_x"), number("centre_z")}, number("tolerance")};
   for (const double value : {wavelength, radius, gap, kept.tolerance})
-    if (!std::isfinite(value) || !(value > 0)) refuse("has numbers that are not positive");
+    if (!std::isfinite(value) || !(value > 0)) refuse("has attributes that are not positive");
   if (shape.size() != 2 || shape[0] != shape[1] || shape[0] % 2 == 0 || shape[0] > 2001)
-    refuse("has a T-matrix that is not square, of odd size");
+    refuse("has a T-matrix that is not square with an odd size");
   if (!std::ranges::all_of(t, [](const Complex& value) {
         return std::isfinite(value.real()) && std::isfinite(value.imag());
       }))
@@ -190,11 +193,11 @@ const DatasetTable cluster_solution_table{
      {"copy", Data::numbers, "", "1", "number of the copy"},
      {"places/x", Data::real, "copy", "length", "transverse position of the centre"},
      {"places/z", Data::real, "copy", "length", "depth of the centre"},
-     {"places/angle", Data::real, "copy", "rad", "by which the cluster is turned"},
-     {"solve/unknowns", Data::count, "", "1", "of the equations"},
+     {"places/angle", Data::real, "copy", "rad", "rotation angle of the cluster"},
+     {"solve/unknowns", Data::count, "", "1", "number of unknowns of the equations"},
      {"solve/residual", Data::real, "", "1", "relative residual of the unscaled equations"},
      {"solve/condition", Data::real, "", "1",
-      "condition of the scaled matrix, Frobenius norm, estimated"}}};
+      "estimated condition number of the scaled matrix, in the Frobenius norm"}}};
 
 namespace {
 
@@ -213,10 +216,11 @@ void require_off(const ClusterTMatrix& cluster, const std::vector<ClusterPlace>&
         throw InputError("near_sensors",
                          "(" + number_text(sensor.x) + ", " + number_text(sensor.z) + ")",
                          "must be at least " + number_text(least) +
-                             ", radius and gap, from the centre of every cluster");
+                             " (radius and gap) from the centre of every cluster");
 }
 
-// Columns times the response of each copy, in place.
+// For each copy of the cluster, replaces its rows of `columns` by `factor` times the response of
+// the copy times these rows.
 void respond(const ClusterTMatrix& cluster, const std::vector<ClusterPlace>& places, Complex factor,
              Complex* columns, std::size_t count) {
   const std::size_t size = cluster.modes.size(), unknowns = size * places.size();
@@ -236,8 +240,9 @@ double norm(const std::vector<Complex>& values) {
   return std::sqrt(sum);
 }
 
-// b - T S b = T a; equations: of S alone, right sides -a. All turned so that the diagonal is large
-// for LAPACK, which measures pivots by |re| + |im|: factors may grow without bound otherwise.
+// Solves b - T S b = T a by LU with pivoting; `equations` contains only S and the right-hand sides
+// -a. Both sides are multiplied by a phase factor, which makes the diagonal large in LAPACK's
+// measure of pivots, |re| + |im|. Without this factor, elements of L and U may grow without bound.
 LightSolution pivoted(const ClusterEquations& equations, const ClusterTMatrix& cluster,
                       const std::vector<ClusterPlace>& places,
                       const std::vector<double>& light_angles, double tolerance) {
@@ -246,23 +251,24 @@ LightSolution pivoted(const ClusterEquations& equations, const ClusterTMatrix& c
   Entries matrix = equations.matrix();
   respond(cluster, places, -turned, matrix.data(), n);
   for (std::size_t i = 0; i < n; ++i) matrix[i * (n + 1)] += turned;
-  auto sides = equations.right_sides(light_angles);
-  respond(cluster, places, -1, sides.data(), light_angles.size());
-  LightSolution found{sides, {}, "dense LU with pivoting"};
+  auto rhs = equations.right_hand_sides(light_angles);
+  respond(cluster, places, -1, rhs.data(), light_angles.size());
+  LightSolution found{rhs, {}, "dense LU with pivoting"};
   for (Complex& side : found.coefficients) side *= turned;
   std::vector<lapack_int> pivots(n);
   const auto size = static_cast<lapack_int>(n);
   if (LAPACKE_zgesv(LAPACK_COL_MAJOR, size, static_cast<lapack_int>(light_angles.size()),
                     matrix.data(), size, pivots.data(), found.coefficients.data(), size) != 0)
-    throw std::runtime_error("clusters: singular equations");
+    throw std::runtime_error("the multiple-scattering equations of the clusters are singular");
   auto left = equations.apply(found.coefficients);
   respond(cluster, places, 1, left.data(), light_angles.size());
-  for (std::size_t i = 0; i < left.size(); ++i) left[i] += sides[i] - found.coefficients[i];
-  const double asked = norm(sides);
-  found.diagnosis.residual = asked > 0 ? norm(left) / asked : 0;
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] += rhs[i] - found.coefficients[i];
+  const double rhs_norm = norm(rhs);
+  found.diagnosis.residual = rhs_norm > 0 ? norm(left) / rhs_norm : 0;
   if (!(found.diagnosis.residual <= 100 * std::max(tolerance, 1e-12)))
-    throw std::runtime_error("clusters: not solved, residual " +
-                             number_text(found.diagnosis.residual));
+    throw std::runtime_error(
+        "the multiple-scattering equations of the clusters were not solved: relative residual " +
+        number_text(found.diagnosis.residual));
   return found;
 }
 
@@ -270,12 +276,13 @@ ClusterEquations equations_of(const ClusterTMatrix& cluster,
                               const std::vector<ClusterPlace>& places,
                               const SolveOptions& options) {
   const ScaledInverse inverse = scaled_inverse(cluster);
-  if (inverse.lost <= options.tolerance) return {cluster, places, inverse};
+  if (inverse.inversion_error <= options.tolerance) return {cluster, places, inverse};
   if (options.method == Method::fast || options.method == Method::krylov)
     throw InputError(
-        "solver: the cluster's T-matrix is too nearly singular (inverted and back it is off by " +
-        number_text(inverse.lost) +
-        ") for any but dense; make it with a wider gap or a larger tolerance");
+        "solver: the cluster's T-matrix is nearly singular (relative inversion error " +
+        number_text(inverse.inversion_error) +
+        ") for fast and krylov; use dense, or make the T-matrix with a wider gap or a larger "
+        "tolerance");
   return {cluster, places};
 }
 
@@ -287,7 +294,7 @@ ClusterSolution::ClusterSolution(const ClusterTMatrix& cluster, std::vector<Clus
       light_angles_(std::move(light_angles)),
       equations_(equations_of(cluster, places_, options)) {
   require_off(cluster, places_, options.sensors);
-  found_ = equations_.are_whole()
+  found_ = equations_.have_inverse()
                ? solve_lights(equations_, light_angles_, circle_of(equations_), options)
                : pivoted(equations_, cluster, places_, light_angles_, options.tolerance);
   require_finite(found_.coefficients);

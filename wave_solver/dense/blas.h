@@ -1,12 +1,12 @@
 #pragma once
 
-// Products and solves of complex matrices, column-major with their leading dimensions.
+// Products and triangular solves of complex column-major matrices with leading dimensions.
 
 #include "core/numbers/blas.h"
 
 namespace flatspeckle::wave {
 
-/// C = alpha op(A) op(B) + beta C; op(A) is rows x inner.
+/// Replaces C by alpha op(A) op(B) + beta C. op(A) is rows x inner, C is rows x columns.
 inline void multiply(CBLAS_TRANSPOSE op_a, CBLAS_TRANSPOSE op_b, std::size_t rows,
                      std::size_t columns, std::size_t inner, std::complex<double> alpha,
                      const std::complex<double>* a, std::size_t lda, const std::complex<double>* b,
@@ -16,7 +16,8 @@ inline void multiply(CBLAS_TRANSPOSE op_a, CBLAS_TRANSPOSE op_b, std::size_t row
               &alpha, a, blas_size(lda), b, blas_size(ldb), &beta, c, blas_size(ldc));
 }
 
-/// X = op(T)^-1 X, or X op(T)^-1 from the right; X is rows x columns.
+/// Replaces X by op(T)^-1 X (side: left) or X op(T)^-1 (side: right). T is triangular, X is rows x
+/// columns.
 inline void triangular_solve(CBLAS_SIDE side, CBLAS_UPLO triangle, CBLAS_TRANSPOSE op,
                              std::size_t rows, std::size_t columns, const std::complex<double>* t,
                              std::size_t ldt, std::complex<double>* x, std::size_t ldx) {
@@ -25,7 +26,8 @@ inline void triangular_solve(CBLAS_SIDE side, CBLAS_UPLO triangle, CBLAS_TRANSPO
               &one, t, blas_size(ldt), x, blas_size(ldx));
 }
 
-/// C -= W W^T in the lower triangle; W is n x depth, with C's leading dimension.
+/// Subtracts W W^T from the lower triangle of C. W is n x depth; W and C have the same leading
+/// dimension.
 inline void subtract_square(std::size_t n, std::size_t depth, const std::complex<double>* w,
                             std::complex<double>* c, std::size_t ld) {
   const std::complex<double> one = 1, minus_one = -1;
@@ -33,9 +35,9 @@ inline void subtract_square(std::size_t n, std::size_t depth, const std::complex
               w, blas_size(ld), &one, c, blas_size(ld));
 }
 
-/// C -= V W^T by three real products in place of four: errors of C are small beside |V| |W|, not
-/// real and imaginary part by itself (Higham 1992). C is rows x columns, all with one leading
-/// dimension.
+/// Subtracts V W^T from C by three real products instead of four. Errors of C are small relative to
+/// |V| |W|, but not separately for the real and the imaginary part [higham1992]. C is rows x
+/// columns; C, V and W have the same leading dimension.
 inline void subtract_product(std::size_t rows, std::size_t columns, std::size_t depth,
                              const std::complex<double>* v, const std::complex<double>* w,
                              std::complex<double>* c, std::size_t ld) {

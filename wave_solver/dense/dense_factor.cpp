@@ -15,7 +15,7 @@ namespace flatspeckle::wave {
 
 namespace {
 
-// Column by column.
+// Factors a small matrix column by column, without BLAS.
 bool factor_small(Complex* a, std::size_t n, std::size_t ld) {
   for (std::size_t j = 0; j < n; ++j) {
     Complex* column = a + j * ld;
@@ -32,7 +32,8 @@ bool factor_small(Complex* a, std::size_t n, std::size_t ld) {
 
 constexpr std::size_t small = 48, block = 96, strip = 384;
 
-// Halves down to small ones, so that the panels of a block are made by BLAS too.
+// Factors a diagonal block, which is halved recursively down to the size `small`, so that BLAS can
+// also be used within the block.
 bool factor_block(Complex* a, std::size_t n, std::size_t ld) {
   if (n <= small) return factor_small(a, n, ld);
   const std::size_t half = n / 2;
@@ -42,8 +43,8 @@ bool factor_block(Complex* a, std::size_t n, std::size_t ld) {
   return factor_block(a + half * (ld + 1), n - half, ld);
 }
 
-// C -= W W^T in the lower triangle, in strips of columns: what lies below their squares by three
-// real products in place of four.
+// Subtracts W W^T from the lower triangle of C, one strip of columns at a time. Blocks below the
+// diagonal blocks are updated by subtract_product(), with three real products instead of four.
 void subtract_in_strips(std::size_t n, std::size_t depth, const Complex* w, Complex* c,
                         std::size_t ld) {
   for (std::size_t first = 0; first < n; first += strip) {
@@ -62,7 +63,7 @@ double weighted_square(const std::vector<double>& weights, const std::vector<Com
   return sum;
 }
 
-constexpr double good = 1e-14;  // backward error
+constexpr double good = 1e-14;  // largest accepted backward error
 constexpr std::size_t probes = 4;
 
 double squared_norm(const Complex* values, std::size_t n) {
@@ -73,7 +74,7 @@ double squared_norm(const Complex* values, std::size_t n) {
   return sum;
 }
 
-// From the lower triangle.
+// Returns the Frobenius norm of a symmetric matrix, of which only the lower triangle is read.
 double frobenius_norm(const Entries& symmetric, std::size_t n) {
   double square = 0;
   for (std::size_t j = 0; j < n; ++j) {
@@ -190,7 +191,7 @@ void DenseFactor::solve_once(std::vector<Complex>& x) const {
   }
 }
 
-// From the upper triangle, with the diagonal put right.
+// Computes B - M X. M is in the strict upper triangle of matrix_ and in diagonal_.
 std::vector<Complex> DenseFactor::residual(const std::vector<Complex>& b,
                                            const std::vector<Complex>& x) const {
   std::vector<Complex> r = b;
@@ -203,7 +204,7 @@ std::vector<Complex> DenseFactor::residual(const std::vector<Complex>& b,
   return r;
 }
 
-// The largest of all columns; infinite if anything is not finite.
+// Returns the largest backward error of all columns; infinite if a value is not finite.
 double DenseFactor::backward_error(const std::vector<Complex>& b, const std::vector<Complex>& x,
                                    const std::vector<Complex>& r) const {
   double worst = 0;
@@ -220,11 +221,12 @@ double DenseFactor::backward_error(const std::vector<Complex>& b, const std::vec
 
 bool DenseFactor::is_good(const std::vector<Complex>& b, const std::vector<Complex>& x) {
   const auto b_sums = combinations(b, n_), x_sums = combinations(x, n_);
-  remainder_ = residual(b_sums, x_sums);
-  return backward_error(b_sums, x_sums, remainder_) <= good;
+  combined_residual_ = residual(b_sums, x_sums);
+  return backward_error(b_sums, x_sums, combined_residual_) <= good;
 }
 
-// Until the backward error is that of rounding or falls no further. False if it is not good.
+// Refines x until the backward error is at the level of rounding or no longer halves. Returns
+// whether the backward error is below `good`.
 bool DenseFactor::refine(const std::vector<Complex>& b, std::vector<Complex>& x) const {
   constexpr double rounding = 1e-16;
   double before = std::numeric_limits<double>::infinity();
@@ -239,14 +241,16 @@ bool DenseFactor::refine(const std::vector<Complex>& b, std::vector<Complex>& x)
   }
 }
 
-// What M^-1 makes of vectors of random phases, the last columns, is on average its norm.
+// Estimates the condition number from the last columns of x, which are M^-1 times the vectors of
+// append_probes(), and removes them. Their mean squared norm is the squared Frobenius norm of M^-1.
 void DenseFactor::take_condition(std::vector<Complex>& x) {
   const std::size_t kept = x.size() - probes * n_;
   condition_ = norm_ * std::sqrt(squared_norm(x.data() + kept, probes * n_) / probes);
   x.resize(kept);
 }
 
-// Empty if it does not do.
+// Solves with the current factorization (L L^T or LU). Returns an empty result if the solution is
+// not accurate.
 std::vector<Complex> DenseFactor::attempt(const std::vector<Complex>& b, bool condition) {
   std::vector<Complex> x = b;
   if (condition) append_probes(x, n_);
@@ -262,7 +266,8 @@ std::vector<Complex> DenseFactor::solve(const std::vector<Complex>& columns, boo
   if (factored_) x = attempt(columns, condition);
   if (x.empty() && !pivoted_ && (factored_ = factor_pivoted())) x = attempt(columns, condition);
   if (x.empty())
-    throw std::runtime_error("the multiple-scattering equations have no solution in reach");
+    throw std::runtime_error(
+        "the multiple-scattering equations have no accurate numerical solution");
   return x;
 }
 

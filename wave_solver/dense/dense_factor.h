@@ -10,42 +10,43 @@
 
 namespace flatspeckle::wave {
 
-/// A = L L^T of a complex symmetric (not Hermitian) matrix without pivoting: half the work of LU,
-/// nearly all of it in rank-k updates. Meant for matrices whose real part is positive semidefinite,
-/// as those of passive scatterers are (TMatrixSystem): every Schur complement is of that kind
-/// again, so that no pivot vanishes. Element growth is bounded only where the real part is well
-/// conditioned (Golub and Van Loan 1979); callers check a residual.
+/// Factors a complex symmetric (not Hermitian) matrix A = L L^T without pivoting. This is half the
+/// work of LU, and nearly all of this work is in rank-k updates. Intended for matrices with a
+/// positive semidefinite real part, such as those of passive scatterers (TMatrixSystem). Schur
+/// complements also have this property, so that no pivot vanishes. Element growth is bounded only
+/// if the real part is well conditioned [golub1979]; callers check a residual.
 ///
-/// a: column-major with leading dimension ld; its lower triangle becomes L, the strict upper one is
-/// left alone. False if a pivot is 0 or not finite.
+/// a: column-major with leading dimension ld; its lower triangle is replaced by L, the strict upper
+/// triangle is unchanged. Returns false if a pivot is 0 or not finite.
 bool factor_symmetric(Complex* a, std::size_t n, std::size_t ld);
 
-/// X <- L^-1 X, X column-major of n rows.
+/// Replaces X by L^-1 X. X is column-major with n rows.
 void solve_forward(const Complex* l, std::size_t n, std::size_t ld, Complex* x, std::size_t columns,
                    std::size_t ldx);
-/// X <- L^-T X
+/// Replaces X by L^-T X.
 void solve_backward(const Complex* l, std::size_t n, std::size_t ld, Complex* x,
                     std::size_t columns, std::size_t ldx);
 
-/// Sums of all columns, of length n, with random phases, four of them, or the columns themselves
-/// where they are fewer: the mean square of what is wrong in the sums is what is wrong in all
-/// columns, in sum.
+/// Returns four linear combinations of all columns (of length n) with random phases as
+/// coefficients, or the columns themselves if there are at most four. The mean squared error of the
+/// combinations estimates the sum of the squared errors of all columns.
 std::vector<Complex> combinations(const std::vector<Complex>& columns, std::size_t n);
 
-/// sqrt(sum w |r|^2 / sum w |b|^2) over all columns b, what is left of them, r, being told by
-/// combinations(). weights: [row]
+/// Estimates sqrt(sum w |r|^2 / sum w |b|^2). The sums run over the rows of all right-hand sides b
+/// and of their residuals r, with the weight w of each row. combined_r: combinations() of the
+/// residuals. weights: w.
 double relative_size(const std::vector<Complex>& combined_r, const std::vector<Complex>& b,
                      const std::vector<double>& weights);
 
-/// a^T b of matrices with n rows, columns by columns: [column of b][column of a].
+/// Returns a^T b of matrices with n rows: [column of b][column of a].
 std::vector<Complex> transposed_product(const std::vector<Complex>& a, const Complex* b,
                                         std::size_t columns_b, std::size_t n);
 
-/// Throws std::runtime_error where a value is infinite or not a number.
+/// Throws std::runtime_error if a value is infinite or not a number.
 void require_finite(std::span<const Complex> values);
 
-/// Allocator of a vector whose elements are written before they are read: they are not set to 0
-/// when it is made with a size.
+/// Allocator that does not set the elements of a new vector to 0. It is intended for vectors whose
+/// elements are all written before they are read.
 template <typename Number>
 struct Unset : std::allocator<Number> {
   Unset() = default;
@@ -63,34 +64,37 @@ struct Unset : std::allocator<Number> {
   }
 };
 
-/// Of a matrix that is filled by whoever makes it, column by column.
+/// Elements of a matrix, column by column; not initialised on creation.
 using Entries = std::vector<Complex, Unset<Complex>>;
 
-/// A complex symmetric system M x = b: L L^T without pivoting, or LU with row
-/// exchanges where that leaves a backward error |b - M x| / (|M| |x| + |b|) above 1e-14 after
-/// refinement. It is measured in the 2- and Frobenius norms on combinations of all columns
-/// (in columns), or on each where they are refined.
+/// Solver of a complex symmetric system M x = b: L L^T without pivoting, or LU with row exchanges
+/// if L L^T leaves a backward error |b - M x| / (|M| |x| + |b|) above 1e-14 after refinement.
+/// Vectors are measured by the 2-norm, M by the Frobenius norm. The backward error is measured on
+/// combinations() of the columns; during refinement it is the largest of all columns.
 ///
-/// Cost: n^3/6 complex multiplications and as many additions, half of LU's. For the points and
-/// disks of this room that is 0.51 of LAPACK's zgetrf (zsytrf: 0.59). Single precision with
-/// refinement was tried and left out: conditions of 1e4 to 1e6 cost it so many residuals that it
-/// gained nothing at n = 1000 and 2000, and a quarter at n = 4000 with two right sides.
+/// Cost of L L^T: n^3/6 complex multiplications and as many additions, half of the cost of LU. For
+/// the points and disks of this module L L^T takes 0.51 of the time of LAPACK's zgetrf (LAPACK's
+/// zsytrf takes 0.59 of it). Single precision with refinement was tried and rejected. With
+/// condition numbers of 1e4 to 1e6, single precision needs many refinement steps, so that it saved
+/// no time at n = 1000 and 2000, and only a quarter at n = 4000 with two right-hand sides.
 class DenseFactor {
  public:
   /// matrix: both triangles, column-major.
   DenseFactor(Entries matrix, std::size_t unknowns);
 
-  /// columns: [column][unknown]; condition: also estimate it, beside them, for a few columns
-  /// more. Throws std::runtime_error if no finite solution of small backward error is found.
+  /// Solves for columns of right-hand sides, [column][unknown]. condition: whether to estimate the
+  /// condition number as well, at the cost of a few more columns. Throws std::runtime_error if no
+  /// finite solution with a small backward error is found.
   std::vector<Complex> solve(const std::vector<Complex>& columns, bool condition = false);
 
-  /// Whether rows had to be exchanged.
+  /// Whether LU with row exchanges was used.
   bool is_pivoted() const { return pivoted_; }
-  /// B - M X of combinations of the last columns B and their solution X.
-  const std::vector<Complex>& remainder() const { return remainder_; }
-  /// Condition number of M in the Frobenius norm, about: at least that in the 2-norm. Four random
-  /// vectors tell it within a factor of two or so (Kenney and Laub 1994). Of the last solve that
-  /// was asked for it.
+  /// Residual B - M X of the last solve, for combinations() of its right-hand sides B and solutions
+  /// X.
+  const std::vector<Complex>& combined_residual() const { return combined_residual_; }
+  /// Estimated condition number of M in the Frobenius norm, which is at least the condition number
+  /// in the 2-norm. Four random vectors determine it within a factor of about two [kenney1994].
+  /// Refers to the last solve() with condition = true.
   double condition() const { return condition_; }
 
  private:
@@ -105,14 +109,14 @@ class DenseFactor {
   bool refine(const std::vector<Complex>& b, std::vector<Complex>& x) const;
 
   std::size_t n_;
-  // The strict upper triangle is M's; the rest is L, or what is left of it once rows were
-  // exchanged.
+  // The strict upper triangle contains M, the rest contains L. If LU with row exchanges was used,
+  // the diagonal also contains M.
   Entries matrix_;
-  std::vector<Complex> diagonal_;  // of M
+  std::vector<Complex> diagonal_;  // diagonal of M
   std::vector<Complex> lu_;
-  std::vector<Complex> remainder_;
+  std::vector<Complex> combined_residual_;
   std::vector<int> pivots_;
-  double norm_ = 0;  // Frobenius
+  double norm_ = 0;  // Frobenius norm of M
   double condition_ = 1;
   bool factored_ = false, pivoted_ = false;
 };

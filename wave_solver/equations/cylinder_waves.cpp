@@ -13,10 +13,12 @@ namespace flatspeckle::wave {
 
 namespace {
 
-// Beyond this |H_m| products with the weights might leave the range of double.
+// Limit of |H_m|, beyond which products with the weights of modes might overflow in double
+// precision.
 constexpr double safe = 1e200;
 
-// E_m and O_m of one displacement, m = 0 .. order, and by symmetry for negative m.
+// E_m and O_m of translate() for one displacement. They are stored for m = 0 .. order; those of
+// negative m follow by symmetry.
 template <typename Number>
 struct Pair {
   std::vector<Number> cosine, sine;
@@ -36,10 +38,11 @@ struct Pair {
     return minus ? direct - image : direct + image;
   }
 
-  // From d/ds H_n e^{i n phi} = (k/2) [H_{n-1} e^{i(n-1)phi} e^{i alpha} - H_{n+1} e^{i(n+1)phi}
-  // e^{-i alpha}] along the direction of angle alpha, over k.
+  // Returns the derivative of an outgoing mode along the direction of angle alpha, divided by k.
+  // With s the length in that direction, it follows from d/ds H_n e^{i n phi} = (k/2) [H_{n-1}
+  // e^{i(n-1)phi} e^{i alpha} - H_{n+1} e^{i(n+1)phi} e^{-i alpha}].
   template <typename Real>
-  Number slope(const Mode& mode, Real cos_alpha, Real sin_alpha) const {
+  Number derivative(const Mode& mode, Real cos_alpha, Real sin_alpha) const {
     const int n = mode.order;
     const Number along = mode.odd ? o(n - 1) - o(n + 1) : e(n - 1) - e(n + 1);
     const Number across = mode.odd ? e(n - 1) + e(n + 1) : -(o(n - 1) + o(n + 1));
@@ -47,7 +50,8 @@ struct Pair {
   }
 };
 
-// Of radial functions at one displacement, order 0 .. m.
+// Makes the Pair of one displacement from its radial functions (H_m or J_m) of orders m = 0, 1, ...
+// turn: e^{i theta}, with theta the angle of the displacement.
 template <typename Radial>
 Pair<ScaledComplex> scaled_pair(const std::vector<Radial>& radial, ExtendedComplex turn) {
   Pair<ScaledComplex> pair;
@@ -61,7 +65,7 @@ Pair<ScaledComplex> scaled_pair(const std::vector<Radial>& radial, ExtendedCompl
   return pair;
 }
 
-// Pairs beyond the range of double: m up to thousands.
+// Makes the Pair of H_m in Scaled numbers, whose range is sufficient for orders of thousands.
 Pair<ScaledComplex> scaled_pair(double k, Vec2 d, int order) {
   const long double x = d.x, z = d.z, r = std::sqrt(x * x + z * z);
   return scaled_pair(scaled_hankel(order, static_cast<double>(k * r)), {z / r, x / r});
@@ -75,7 +79,7 @@ Pair<ScaledComplex> regular_pair(double k, Vec2 d, int order) {
   return scaled_pair(at_centre, 1);
 }
 
-// H_m, cos(m theta) and sin(m theta) of many displacements: [m][displacement].
+// Values of H_m, cos(m theta) and sin(m theta) for many displacements: [m][displacement].
 class PairTable {
  public:
   PairTable(double k, std::span<const Vec2> displacements, int order)
@@ -121,7 +125,7 @@ class PairTable {
   std::vector<double> h_re_, h_im_, cosine_, sine_;
 };
 
-// A displacement and the largest order that is wanted of it.
+// A displacement and the largest order required for it.
 struct Displacement {
   Vec2 d;
   int order = 0;
@@ -131,7 +135,8 @@ bool is_zero(Vec2 d) {
   return d.x == 0 && d.z == 0;
 }
 
-// element(pair, i) for all displacements, a chunk at a time; a pair of zeros for none.
+// Calls element(pair, i) for all displacements, a chunk at a time. For a zero displacement both
+// functions of the pair are 0.
 template <typename Element>
 void for_each_pair(double k, const std::vector<Displacement>& displacements,
                    const Element& element) {
@@ -161,7 +166,8 @@ void for_each_pair(double k, const std::vector<Displacement>& displacements,
   }
 }
 
-// Weights one after the other: their product may underflow where the wave is large.
+// Multiplies by the weights one after the other, because their product may underflow if the wave is
+// large.
 Complex weighted(Complex wave, const ScaledReal& to, const ScaledReal& from) {
   return wave * static_cast<double>(to) * static_cast<double>(from);
 }
@@ -169,8 +175,8 @@ Complex weighted(const ScaledComplex& wave, const ScaledReal& to, const ScaledRe
   const auto result = static_cast<Complex>(wave * to * from);
   if (!std::isfinite(result.real()) || !std::isfinite(result.imag()))
     throw InputError(
-        "two scatterers are so close at this wavelength that translating their waves "
-        "leaves the range of numbers; widen the gap (min_gap)");
+        "two scatterers are so close at this wavelength that the translation of their waves "
+        "overflows; widen the gap (min_gap)");
   return result;
 }
 
@@ -240,7 +246,7 @@ void expand_plane_wave(double k, std::span<const ModeSet> receivers, Vec2 w, Com
     highest = std::max(highest, receiver.order);
     phases.push_back(k * dot(w, receiver.centre));
   }
-  std::vector<Complex> cosines, sines;  // times i^n
+  std::vector<Complex> cosines, sines;  // cos(n angle) and sin(n angle), times i^n
   const ExtendedComplex turn(w.z, w.x);
   ExtendedComplex phase = 1, power = 1;
   for (int n = 0; n <= highest; ++n) {
@@ -261,7 +267,7 @@ void expand_plane_wave(double k, std::span<const ModeSet> receivers, Vec2 w, Com
   }
 }
 
-// The value of the field at a point is the coefficient of J_0 about it.
+// Treats the points as receivers: the field at a point is the coefficient of J_0 about that point.
 void field_at(double k, std::span<const Vec2> points, const ModeSet& sender, Target out) {
   const Mode value{0, false, root_half};
   std::vector<ModeSet> receivers;
@@ -269,8 +275,8 @@ void field_at(double k, std::span<const Vec2> points, const ModeSet& sender, Tar
   translate(k, receivers, sender, out);
 }
 
-void slopes(double k, std::span<const Vec2> points, std::span<const Vec2> along,
-            const ModeSet& sender, Target out) {
+void directional_derivatives(double k, std::span<const Vec2> points, std::span<const Vec2> along,
+                             const ModeSet& sender, Target out) {
   std::vector<Displacement> displacements;
   for (const Vec2& point : points)
     displacements.push_back({point - sender.centre, sender.order + 1});
@@ -278,8 +284,8 @@ void slopes(double k, std::span<const Vec2> points, std::span<const Vec2> along,
     for (std::size_t column = 0; column < sender.modes.size(); ++column) {
       const Mode& mode = sender.modes[column];
       using Real = typename std::decay_t<decltype(pair.e(0))>::value_type;
-      const auto slope = pair.slope(mode, Real(along[i].z), Real(along[i].x));
-      out.data[out.ld * column + i] = weighted(slope, 2 * root_half, mode.weight);
+      const auto derivative = pair.derivative(mode, Real(along[i].z), Real(along[i].x));
+      out.data[out.ld * column + i] = weighted(derivative, 2 * root_half, mode.weight);
     }
   });
 }

@@ -9,57 +9,64 @@
 
 namespace flatspeckle::wave {
 
-/// One wave about a centre: with angles phi measured as in C2,
+/// A cylindrical wave about a centre. At distance r and angle phi (C2) from the centre it is
+/// proportional to
 ///   sqrt(2) H_n(k r) cos(n phi) or sqrt(2) H_n(k r) sin(n phi),  H_0(k r) for n = 0,
-/// or the same with J_n. These real standing waves and e^{i n phi} are related by a unitary
-/// transform. weight: what multiplies the wave, over sqrt(2); sqrt(1/2) for a bare H_0.
+/// or the corresponding regular wave with J_n. A unitary transform relates these real standing
+/// waves to those with e^{i n phi}. weight: the wave is sqrt(2) weight H_n(k r) {cos, sin}(n phi),
+/// so that H_0 itself has the weight sqrt(1/2).
 struct Mode {
   int order = 0;
-  bool odd = false;  ///< sin
+  bool odd = false;  ///< true for sin(n phi), false for cos(n phi)
   ScaledReal weight;
 };
 
-/// A centre and some of its modes.
+/// Modes about a common centre.
 struct ModeSet {
   Vec2 centre;
   std::span<const Mode> modes;
-  int order = 0;  ///< the largest one
+  int order = 0;  ///< largest order of the modes
 };
 
 inline constexpr long double root_half = 0.70710678118654752440084436210485L;
 
-/// Where a translation is written: element (row, column) at data[row + ld * column].
+/// Destination of a translation: element (row, column) is written to data[row + ld * column].
 struct Target {
   Complex* data = nullptr;
   std::size_t ld = 0;
 };
 
-/// Coefficients of the regular modes about each of the receivers for unit outgoing modes of the
-/// sender (Graf's addition theorem, C10, in real form). Rows run over the modes of all receivers,
-/// one after the other. With E_m = H_m cos(m theta), O_m = H_m sin(m theta) of the displacement
-/// from sender to receiver, cos p receives E_{n-p} + (-1)^p E_{n+p} from cos n and
-/// O_{n-p} + (-1)^p O_{n+p} from sin n; sin p receives -O_{n-p} + (-1)^p O_{n+p} and
-/// E_{n-p} - (-1)^p E_{n+p}. A receiver at the very place of the sender gets 0. Vectorised over
-/// receivers in double precision; pairs whose H_m would leave its range are done in Scaled numbers.
-/// Throws InputError where the result itself is out of range.
+/// Computes the coefficients of the regular modes about each receiver for unit outgoing modes of
+/// the sender (Graf's addition theorem, C10, in real form). Rows are the modes of all receivers,
+/// one receiver after the other; columns are the modes of the sender. Let E_m = H_m(k d) cos(m
+/// theta) and O_m = H_m(k d) sin(m theta), where d and theta are length and angle of the
+/// displacement from sender to receiver. Then the coefficient of the mode cos(p phi) of a receiver
+/// is E_{n-p} + (-1)^p E_{n+p} for the sender's mode cos(n phi), and O_{n-p} + (-1)^p O_{n+p} for
+/// sin(n phi). The coefficient of sin(p phi) is -O_{n-p} + (-1)^p O_{n+p} and E_{n-p} - (-1)^p
+/// E_{n+p}, respectively. A receiver at the position of the sender receives 0. Computed in double
+/// precision, vectorised over receivers; in Scaled numbers for displacements whose H_m would
+/// overflow. Throws InputError if the result itself is out of range.
 void translate(double k, std::span<const ModeSet> receivers, const ModeSet& sender, Target out);
 
-/// The same for unit regular modes of the sender: J_m in place of H_m. Its transpose takes outgoing
-/// modes of the receivers to outgoing modes about the sender's centre, beyond the receivers.
+/// Computes the same coefficients as translate(), but for unit regular modes of the sender: J_m
+/// replaces H_m. The transposed matrix converts outgoing modes of the receivers to outgoing modes
+/// about the sender's centre, which are valid farther from that centre than all receivers.
 void translate_regular(double k, std::span<const ModeSet> receivers, const ModeSet& sender,
                        Target out);
 
-/// The coefficients of `factor` times the plane wave along the unit vector w in unit regular modes
-/// of the receivers (C6): sqrt(2) weight i^n {cos, sin}(n angle) e^{i k w.r}, one after the other.
-/// With -w they take outgoing modes to the far field along w.
+/// Expands `factor` times the plane wave along the unit vector w in unit regular modes of the
+/// receivers (C6). `out` receives sqrt(2) weight i^n {cos, sin}(n angle) e^{i k w.r} for the modes
+/// of one receiver (at r) after the other. The coefficients for -w map amplitudes of outgoing modes
+/// to the far field along w.
 void expand_plane_wave(double k, std::span<const ModeSet> receivers, Vec2 w, Complex factor,
                        std::span<Complex> out);
 
-/// The sender's outgoing modes at points: rows are points.
+/// Evaluates the sender's outgoing modes at points. Rows are points, columns are modes.
 void field_at(double k, std::span<const Vec2> points, const ModeSet& sender, Target out);
 
-/// Derivatives of the sender's outgoing modes along unit vectors at points, over k.
-void slopes(double k, std::span<const Vec2> points, std::span<const Vec2> along,
-            const ModeSet& sender, Target out);
+/// Evaluates the directional derivatives of the sender's outgoing modes, divided by k: at
+/// points[i], along the unit vector along[i]. Rows are points, columns are modes.
+void directional_derivatives(double k, std::span<const Vec2> points, std::span<const Vec2> along,
+                             const ModeSet& sender, Target out);
 
 }  // namespace flatspeckle::wave

@@ -9,7 +9,8 @@ namespace flatspeckle::wave {
 
 namespace {
 
-// Keeps those found ordered by their images, and of equal scatterers the closest one.
+// Inserts a candidate into a list sorted by Neighbour::image. Of equal scatterers only the one with
+// the smallest Neighbour::image is kept.
 void enter(const Neighbour& candidate, const Placement& placement, std::size_t most,
            std::vector<Neighbour>& found) {
   const auto place = std::find_if(found.begin(), found.end(), [&](const Neighbour& other) {
@@ -48,8 +49,8 @@ double nearest_image(double a, double b, double d) {
   return c + std::hypot(c, a);
 }
 
-// Cells are widened for those that have nothing close enough to rule out all that lies farther
-// away.
+// The search begins with small cells. For each scatterer they are widened until no scatterer beyond
+// the searched cells can have a closer image than the neighbours found.
 std::vector<std::vector<Neighbour>> neighbours(const Placement& placement, std::size_t different) {
   std::vector<std::vector<Neighbour>> all(placement.size());
   std::vector<std::size_t> left;

@@ -16,8 +16,8 @@ ExtendedComplex interior_wavenumber(const TMatrixSystem& system, std::size_t dis
          static_cast<long double>(system.k());
 }
 
-// J_n(z) e^{iz} for n = 0 .. order and Im z >= 0, which does not overflow: from ratios, normalised
-// by e^{-iz} = J_0 + 2 sum_{n > 0} (-i)^n J_n.
+// Returns J_n(z) e^{iz} for n = 0 .. order and Im z >= 0, without overflow. Ratios of consecutive
+// orders give the J_n up to a factor, which follows from e^{-iz} = J_0 + 2 sum_{n > 0} (-i)^n J_n.
 std::vector<ExtendedComplex> scaled_bessel(int order, ExtendedComplex z) {
   std::vector<ExtendedComplex> j(order + 1, 0);
   j[0] = 1;
@@ -36,7 +36,8 @@ std::vector<ExtendedComplex> scaled_bessel(int order, ExtendedComplex z) {
   return j;
 }
 
-// cos(n phi) + i sin(n phi), n = 0 .. order; at the centre any angle will do.
+// Returns cos(n phi) + i sin(n phi) for n = 0 .. order, with phi the angle of the vector d and r
+// its length. If r = 0, phi is taken as 0.
 std::vector<Complex> turns(int order, Vec2 d, double r) {
   const Complex turn = r > 0 ? Complex(d.z, d.x) / r : Complex(1);
   std::vector<Complex> phases(order + 1, 1);
@@ -89,11 +90,11 @@ std::vector<RimWave> rim_waves(const Scatterer& cylinder, double k, int order) {
   std::vector<RimWave> waves(order + 1);
   for (int n = 0; n <= order; ++n) {
     if (t[n].value() == 0.0L) continue;
-    const ExtendedComplex slope = q * (static_cast<long double>(n) / mx - ratios[n]);
-    const ScaledComplex denominator = slope * h[n] - cylinder_derivative(h, n, x);
+    const ExtendedComplex derivative = q * (static_cast<long double>(n) / mx - ratios[n]);
+    const ScaledComplex denominator = derivative * h[n] - cylinder_derivative(h, n, x);
     waves[n].field =
         static_cast<ExtendedComplex>(sqrt(abs(t[n])) / t[n] * (wronskian / denominator));
-    waves[n].slope = slope * waves[n].field;
+    waves[n].derivative = derivative * waves[n].field;
   }
   return waves;
 }

@@ -9,22 +9,25 @@
 
 namespace flatspeckle::wave {
 
-/// What one order of a penetrable disk adds, for a unit unknown (t_matrix_system.h) and but for its
-/// angle, at the rim.
+/// Total field at the rim of a penetrable disk if one unknown beta_n of the disk (TMatrixSystem) is
+/// 1 and its other unknowns are 0. The angular factor, such as sqrt(2) cos(n phi), is left out.
 struct RimWave {
-  ExtendedComplex field;  ///< u
-  ExtendedComplex slope;  ///< du/dr / k that the outside must have: q / m of that inside (C7)
+  ExtendedComplex field;  ///< field u at the rim
+  /// du/dr / k just outside the rim. Just inside the rim it is m / q times this value (C7).
+  ExtendedComplex derivative;
 };
 
-/// Of n = 0 .. order of a disk of kind tm or te. The wave inside follows from continuity of u and
-/// the slope: with D = J_n'(mx) / J_n(mx), sigma / T_n times -(2i / pi x) / (q D H_n(x) - H_n'(x)).
+/// Returns the rim waves of orders n = 0 .. order of a disk of kind tm or te. From the continuity
+/// of u and of the derivative (C7), u = (sigma / T_n) (-2i / (pi x)) / (q D H_n(x) - H_n'(x)) with
+/// sigma = sqrt|T_n|, x = k radius, D = J_n'(mx) / J_n(mx), and m, q and H_n of C7.
 std::vector<RimWave> rim_waves(const Scatterer& cylinder, double k, int order);
 
-/// Whether a scatterer is not there at all: every T_n is 0 (index 1).
+/// Whether a scatterer has no effect at all: every T_n is 0 (index 1).
 bool is_transparent(const TMatrixSystem& system, std::size_t scatterer);
 
-/// The whole field at points inside a disk of kind tm or te, for a unit unknown of each of its
-/// modes: rows are points, columns modes. Not for transparent disks.
+/// Evaluates the total field at points inside a disk of kind tm or te. Rows are points; a column is
+/// the field if the unknown of one mode of the disk is 1 and its other unknowns are 0.
+/// Precondition: the disk is not transparent.
 void field_inside(const TMatrixSystem& system, std::size_t disk, std::span<const Vec2> points,
                   Target out);
 

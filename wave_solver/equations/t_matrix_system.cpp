@@ -23,7 +23,8 @@ namespace flatspeckle::wave {
 
 namespace {
 
-// Waves of one parity about a scatterer; with both centres on the z axis the parities do not mix.
+// Waves of one parity (cos or sin) about one scatterer of a pair. Both centres are on the z axis,
+// so that the parities do not mix.
 struct Side {
   std::vector<Mode> modes;
   std::vector<Complex> diagonal;
@@ -37,7 +38,7 @@ struct Side {
     }
   }
   ModeSet set() const { return {centre, modes, modes.empty() ? 0 : modes.back().order}; }
-  // -sigma a of the plane wave from an angle
+  // Writes the right-hand side -sigma a of the plane wave with the given angle.
   void light(double angle, double k, Complex* column) const {
     const Vec2 w = direction(angle);
     const Complex there = std::numbers::sqrt2 * std::polar(1.0, k * dot(w, centre));
@@ -50,7 +51,8 @@ struct Side {
   }
 };
 
-// beta of the first scatterer for some lights: [light][mode]; empty where no solution is found.
+// Returns the coefficients beta (TMatrixSystem) of the first scatterer of a pair for plane waves
+// from several directions: [light][mode]. Returns an empty result if no solution is found.
 std::vector<Complex> solved(const Side& first, const Side& second, double k) {
   const std::size_t rows = first.modes.size(), n = rows + second.modes.size();
   std::vector<Complex> matrix(n * n);
@@ -73,10 +75,11 @@ std::vector<Complex> solved(const Side& first, const Side& second, double k) {
   return beta;
 }
 
-/// What two scatterers by themselves make of plane waves: for the first one and n = 0 .. order, the
-/// largest |beta_n|, the coefficient of sigma psi_n (TMatrixSystem), over directions of the light.
-/// By reciprocity, leaving out order n changes far fields by about |beta_n|^2. t_first, t_second:
-/// T_n up to the orders to be solved for. Empty where no solution is found.
+/// Solves the equations of an isolated pair under plane waves. Returns, for each order n of the
+/// first scatterer, the largest coefficient |beta_n| (TMatrixSystem) over the directions of the
+/// light. By reciprocity, omitting order n changes far fields by about |beta_n|^2. t_first,
+/// t_second: T_n up to the highest orders that are included. Returns an empty result if no solution
+/// is found.
 std::vector<double> pair_response(const std::vector<ScaledComplex>& t_first,
                                   const std::vector<ScaledComplex>& t_second, double k,
                                   double distance) {
@@ -97,35 +100,38 @@ std::vector<double> pair_response(const std::vector<ScaledComplex>& t_first,
 
 constexpr double nowhere = std::numeric_limits<double>::infinity();
 
-// Orders beyond the oscillating ones of the first try.
+// Number of orders above oscillating_order() up to which pairs are solved in the first attempt.
 constexpr int first_orders = 16;
 
-// Whether a static image in the disk is stronger than its charge, (m^2 - 1) / (m^2 + 1) times.
-// Waves of high orders, gap plasmons, then run along a narrow gap.
+// Whether the electrostatic image that a charge has in the disk is stronger than the charge itself.
+// For index m the ratio of image to charge is (m^2 - 1) / (m^2 + 1). Waves of high orders (gap
+// plasmons) then propagate along a narrow gap.
 bool amplifies_images(const Scatterer& disk) {
   return disk.kind == Scatterer::Kind::te && (disk.index * disk.index).real() < 0;
 }
 
-// Orders beyond the oscillating ones up to which pairs are solved. The images in hard disks add up,
-// so that their bound is sharp; with gap plasmons there is no bound.
+// Returns the number of orders above oscillating_order() up to which pairs are solved, before
+// bounded_order() is used instead. Hard disks need few orders, because their images add up, so that
+// the bound is sharp. Gap plasmons need many, because no bound exists for them.
 int most_paired(const Scatterer& disk, bool plasmons) {
   if (plasmons) return 1024;
   return disk.kind == Scatterer::Kind::hard ? 64 : 512;
 }
 
-// For what pairs do not tell, all the others: measured on pairs and clusters.
-// Modes of large or dense disks resonate among many.
+// Returns the safety factor that accounts for scatterers outside a pair; its values were measured
+// on pairs and clusters. It grows with the size and the index of a disk, because modes of such
+// disks resonate collectively.
 double safety(const Scatterer& disk, double k) {
   const double x = k * disk.radius;
   if (!disk.is_penetrable()) return 20 + 2 * x;
   const double contrast = std::max(1.0, (disk.index * disk.index).real() - 1);
   return (8 + 2 * x) * contrast * contrast;
 }
-constexpr double lone_safety = 3;
+constexpr double single_safety = 3;
 constexpr double near_safety = 5;
 
-// For what the bound leaves out: many orders adding up; between hard disks the error grows with k
-// a.
+// Returns the safety factor for two effects that the bound of bounded_order() does not include:
+// many orders add up, and between hard disks the error grows with k radius.
 double bound_safety(const Scatterer& disk, double k) {
   const double x = disk.kind == Scatterer::Kind::hard ? k * disk.radius : 0;
   return 200 * (1 + x * x);
@@ -135,7 +141,8 @@ bool is_on_rim(const Scatterer& disk, double distance) {
   return distance <= disk.radius * (1 + 1e-9);
 }
 
-// log2 |H_n(k distance)|, n = 0 .. order; -infinity for nowhere.
+// Returns log2 |H_n(k distance)|, n = 0 .. order; -infinity if the distance is `nowhere`
+// (infinite).
 std::vector<double> log_hankel(int order, double k, double distance) {
   std::vector<double> logs(order + 1, -nowhere);
   if (distance == nowhere) return logs;
@@ -144,12 +151,12 @@ std::vector<double> log_hankel(int order, double k, double distance) {
   return logs;
 }
 
-// A distinct scatterer of a placement, with T_n as far as asked for up to now.
+// A distinct scatterer of a placement, with T_n up to the highest order requested so far.
 struct Species {
   Scatterer scatterer;
   double k = 0;
   int oscillating = 0;
-  double field = 0;  // root of sum (2 - [n=0]) |T_n|^2
+  double field = 0;  // square root of the sum of |T_n|^2 over n = -order .. order
   std::vector<ScaledComplex> t;
   std::vector<double> log_t;
 
@@ -165,7 +172,7 @@ struct Species {
     field = static_cast<double>(std::sqrt(sum));
   }
 
-  // log2 of the field inside, on the rim, of each order.
+  // Returns log2 |RimWave::field| for each order.
   std::vector<double> log_rim(int order) const {
     std::vector<double> logs;
     for (const RimWave& wave : rim_waves(scatterer, k, order))
@@ -179,8 +186,8 @@ struct Species {
   }
 };
 
-// Two species at a gap of 2^(step/8) times the smaller radius: gaps are rounded down, so that equal
-// disks share what is found out.
+// A pair of species, with a gap between their rims of 2^(step/8) times the smaller radius. Gaps are
+// rounded down to such values, so that many pairs share one solution.
 struct Contact {
   std::size_t first = 0, second = 0;
   int step = 0;
@@ -188,10 +195,10 @@ struct Contact {
   auto operator<=>(const Contact&) const = default;
 };
 constexpr double steps = 8;
-constexpr int first_step = -480;  // closer ones are in contact by rounding
-constexpr int last_step = 24;     // farther neighbours count as being there
+constexpr int first_step = -480;  // smaller gaps differ from contact only by rounding
+constexpr int last_step = 24;     // larger gaps are treated like this one
 
-// xi of the bipolar coordinates
+// Returns the bipolar coordinate xi of the first disk's rim (nearest_image).
 double xi(double radius, double other_radius, double distance) {
   return std::log(nearest_image(radius, other_radius, distance) / radius);
 }
@@ -215,7 +222,7 @@ class BasisOrders {
  private:
   std::size_t species_of(const Scatterer& scatterer) {
     if (scatterer.is_bulk())
-      throw InputError("scatterer", "hg", "the wave solver needs point, soft, hard, tm or te");
+      throw InputError("scatterer", "hg", "the wave solver requires point, soft, hard, tm or te");
     const auto known = std::find_if(species_.begin(), species_.end(), [&](const Species& species) {
       return species.scatterer == scatterer;
     });
@@ -249,7 +256,7 @@ class BasisOrders {
 
   int order_of(std::size_t j, const std::vector<Neighbour>& around) {
     const double sensor = nearest_sensor(j);
-    if (around.empty()) return lone_order(species_[species_of_[j]], sensor);
+    if (around.empty()) return single_order(species_[species_of_[j]], sensor);
     int order = 0;
     for (const Neighbour& neighbour : around)
       if (may_matter(j, neighbour, order))
@@ -257,16 +264,17 @@ class BasisOrders {
     return order;
   }
 
-  // Images of the order fade as (radius / image)^(2 order).
+  // Whether a neighbour may require a higher order than `order`. The effect of its images decays as
+  // (radius / Neighbour::image)^(2 order).
   bool may_matter(std::size_t j, const Neighbour& neighbour, int order) const {
     return order * std::log(neighbour.image / placement_[j].scatterer.radius) <
            -2 * std::log(tolerance_);
   }
 
-  int lone_order(Species& own, double sensor) {
+  int single_order(Species& own, double sensor) {
     for (int more = first_orders;; more *= 2)
-      if (const auto order =
-              order_within(own, lone_strength(own, own.oscillating + more), sensor, lone_safety))
+      if (const auto order = order_within(own, single_strength(own, own.oscillating + more), sensor,
+                                          single_safety))
         return *order;
   }
 
@@ -289,12 +297,12 @@ class BasisOrders {
     return bounded_order(j, contact, sensor);
   }
 
-  // Strengths are log2 of what bounds |beta_n|.
-  const std::vector<double>& lone_strength(Species& own, int size) {
+  // The functions below return "strengths": for each order n, log2 of an upper bound of |beta_n|.
+  const std::vector<double>& single_strength(Species& own, int size) {
     own.extend(size);
-    lone_.resize(size + 1);
-    for (int n = 0; n <= size; ++n) lone_[n] = own.log_t[n] / 2;
-    return lone_;
+    single_.resize(size + 1);
+    for (int n = 0; n <= size; ++n) single_[n] = own.log_t[n] / 2;
+    return single_;
   }
 
   const std::vector<double>& pair_strength(const Contact& contact, int size) {
@@ -304,7 +312,7 @@ class BasisOrders {
     const double distance = distance_of(contact), a = own.scatterer.radius,
                  b = other.scatterer.disk_radius();
     int other_size = 0;
-    if (b > 0) {  // as far along the series of images
+    if (b > 0) {  // so that both disks resolve the same number of images
       const double ratio = xi(a, b, distance) / xi(b, a, distance);
       const auto more = static_cast<int>(ratio * (size - own.oscillating));
       other_size = other.oscillating + std::clamp(more, first_orders, highest_order);
@@ -314,7 +322,8 @@ class BasisOrders {
     return strength;
   }
 
-  // (F |T_n|)^1/2 w_n of the header: images are as strong as the field that causes them.
+  // Returns log2 of the bound (F |T_n|)^(1/2) w_n of beta_n (symbols: basis()), which assumes that
+  // images are as strong as the field that causes them.
   const std::vector<double>& bound(const Contact& contact, int size) {
     auto& strength = bounds_[{contact, size}];
     if (!strength.empty()) return strength;
@@ -337,7 +346,8 @@ class BasisOrders {
     return strength;
   }
 
-  // The order beyond which little is left, if the strengths reach far enough to tell.
+  // Returns the lowest order that is sufficient by the criterion of basis(); nullopt if the
+  // strengths contain too few orders to determine it.
   std::optional<int> order_within(Species& own, const std::vector<double>& strength, double sensor,
                                   double safety_factor) const {
     if (strength.empty()) return std::nullopt;
@@ -372,13 +382,15 @@ class BasisOrders {
     }
   }
 
-  // 2 xi: images of images of a charge fall as e^{-2 xi n} of order n.
+  // Returns the rate 2 xi at which repeated images of a charge decay with the order n, as e^{-2 xi
+  // n}.
   double decay_of(const Contact& contact) const {
     return 2 * xi(species_[contact.first].scatterer.radius,
                   species_[contact.second].scatterer.disk_radius(), distance_of(contact));
   }
 
-  // The order that is needed if strengths of half the orders known fall like images from there on.
+  // Estimates the required order, with the assumption that strengths beyond half of the known
+  // orders decay like those of images.
   double least_order(const Contact& contact, const std::vector<double>& strength) const {
     const std::size_t half = strength.size() / 2;
     if (strength.empty()) return 0;
@@ -392,14 +404,14 @@ class BasisOrders {
 
   [[noreturn]] void refuse(std::size_t j, double order, int highest) const {
     const auto& [position, scatterer] = placement_[j];
-    throw InputError("radius", scatterer.radius,
-                     "the disk at (" + std::to_string(position.x) + ", " +
-                         std::to_string(position.z) +
-                         ") is so close to a neighbour that it needs basis order " +
-                         std::to_string(static_cast<long long>(std::ceil(std::min(order, 1e9)))) +
-                         ", more than " + std::to_string(highest) +
-                         (highest < highest_order ? " beside a TE disk of Re(index^2) < 0" : "") +
-                         "; widen the gap (min_gap) or allow a larger tolerance");
+    throw InputError(
+        "radius", scatterer.radius,
+        "the disk at (" + std::to_string(position.x) + ", " + std::to_string(position.z) +
+            ") is so close to a neighbour that it requires basis order " +
+            std::to_string(static_cast<long long>(std::ceil(std::min(order, 1e9)))) +
+            ", more than " + std::to_string(highest) +
+            (highest < highest_order ? " next to a TE disk with Re(index^2) < 0" : "") +
+            "; widen the gap (min_gap) or allow a larger tolerance");
   }
 
   const Placement& placement_;
@@ -407,8 +419,9 @@ class BasisOrders {
   std::span<const Vec2> sensors_;
   std::vector<std::size_t> species_of_;
   std::vector<Species> species_;
-  std::map<std::pair<Contact, int>, std::vector<double>> paired_, bounds_;  // by orders solved for
-  std::vector<double> lone_;
+  // Results of pair_strength() and bound(), by contact and highest order.
+  std::map<std::pair<Contact, int>, std::vector<double>> paired_, bounds_;
+  std::vector<double> single_;
   bool met_gap_plasmons_ = false;
 };
 
@@ -452,7 +465,8 @@ TMatrixSystem::TMatrixSystem(Placement placement, double k, double tolerance,
   }
 }
 
-// As a difference over a step that long double resolves, and far below the width of resonances.
+// Uses finite differences in k, with a relative step that long double resolves and that is far
+// below the width of resonances.
 std::vector<Complex> TMatrixSystem::radius_derivatives() const {
   constexpr double step = 0x1p-36;
   std::map<std::pair<std::size_t, int>, std::vector<Complex>> known;
@@ -478,7 +492,7 @@ std::vector<Complex> TMatrixSystem::radius_derivatives() const {
   return derivatives;
 }
 
-std::vector<Complex> TMatrixSystem::source_side(Vec2 source) const {
+std::vector<Complex> TMatrixSystem::source_right_hand_side(Vec2 source) const {
   require_outside(placement_, source);
   auto side = outside_row(source);
   for (Complex& value : side) value *= Complex(0, -0.25);

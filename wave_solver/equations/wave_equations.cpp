@@ -17,11 +17,11 @@
 
 namespace flatspeckle::wave {
 
-int systems_at_work() {
+int concurrent_systems() {
   return omp_in_parallel() ? omp_get_num_threads() : 1;
 }
 
-// Once they are at work, others have taken their share of the address space.
+// Inside a parallel region the other threads have already allocated their share of address space.
 double memory_of_system(int together) {
   constexpr double share = 0.9;
   const double address_space = address_space_left() / (omp_in_parallel() ? 1 : together);
@@ -35,15 +35,16 @@ void require_dense_memory(std::size_t unknowns, int together) {
   const auto whole = [](double value) { return std::to_string(static_cast<long long>(value)); };
   const bool many = together > 1;
   throw InputError("unknowns", unknowns,
-                   "the dense matrix needs " + whole(bytes) + " bytes, there are " + whole(memory) +
+                   "the dense matrix needs " + whole(bytes) +
+                       " bytes; available bytes: " + whole(memory) +
                        (many ? " for each of " + std::to_string(together) + " threads" : "") +
-                       "; take fewer scatterers, wider gaps" + (many ? ", fewer threads" : "") +
+                       "; use fewer scatterers, wider gaps" + (many ? ", fewer threads" : "") +
                        " or a larger tolerance");
 }
 
 namespace {
 
-constexpr std::size_t worth_threads = 300;  // unknowns
+constexpr std::size_t threads_pay_from = 300;  // number of unknowns from which threads save time
 
 }  // namespace
 
@@ -90,7 +91,8 @@ ModeSet WaveEquations::modes(std::size_t j) const {
           order(j)};
 }
 
-// Unknowns as mode sets, one for each run of one body.
+// The modes of a list of unknowns. Unknowns of the same body that follow one another in the list (a
+// run) form one ModeSet.
 struct WaveEquations::Listed {
   Listed(const WaveEquations& system, std::span<const std::size_t> unknowns) {
     modes.reserve(unknowns.size());
@@ -110,7 +112,7 @@ struct WaveEquations::Listed {
 
   std::vector<Mode> modes;
   std::vector<ModeSet> runs;
-  std::vector<std::size_t> bodies, first;  // of each run; its first place in the list
+  std::vector<std::size_t> bodies, first;  // for each run: its body; its first index in the list
 };
 
 void WaveEquations::entries(std::span<const std::size_t> rows, std::span<const std::size_t> columns,
@@ -144,7 +146,8 @@ std::vector<ModeSet> WaveEquations::all_modes() const {
   return all;
 }
 
-// Order 0 everywhere: plain arrays of distances.
+// Fills M if every body has a single unknown, of order 0. Hankel functions are evaluated for arrays
+// of distances.
 void WaveEquations::point_columns(Complex* matrix) const {
   const std::size_t size = unknowns();
   std::vector<double> strength(size);
@@ -164,7 +167,7 @@ void WaveEquations::point_columns(Complex* matrix) const {
     hankel0(std::span(distance).subspan(1), {column + 1, distance.size() - 1});
     for (std::size_t i = 1; i < distance.size(); ++i) column[i] *= strength[j] * strength[j + i];
   };
-  parallel_for((size + tile_side - 1) / tile_side, size > worth_threads, [&](std::size_t part) {
+  parallel_for((size + tile_side - 1) / tile_side, size > threads_pay_from, [&](std::size_t part) {
     const std::size_t begin = part * tile_side, end = std::min(begin + tile_side, size);
     for (std::size_t j = begin; j < end; ++j) fill(j);
     mirror_columns(matrix, size, begin, end);
@@ -174,7 +177,7 @@ void WaveEquations::point_columns(Complex* matrix) const {
 void WaveEquations::multipole_columns(Complex* matrix) const {
   const std::size_t size = unknowns();
   const auto all = all_modes();
-  parallel_for(all.size(), size > worth_threads, [&](std::size_t j) {
+  parallel_for(all.size(), size > threads_pay_from, [&](std::size_t j) {
     Complex* const corner = matrix + first_[j] * (size + 1);
     const std::size_t height = all[j].modes.size();
     for (std::size_t i = 0; i < height; ++i)
@@ -196,8 +199,8 @@ Entries WaveEquations::matrix() const {
   return matrix;
 }
 
-// Bodies one after the other whose columns make a block for BLAS; one at the least. Ends of
-// them, the first 0.
+// Divides the bodies into groups of consecutive bodies, whose columns of M form a block for BLAS.
+// Returns 0, followed by the end of each group.
 std::vector<std::size_t> WaveEquations::column_blocks() const {
   constexpr std::size_t most_columns = 64;
   std::vector<std::size_t> ends{0};
@@ -207,7 +210,7 @@ std::vector<std::size_t> WaveEquations::column_blocks() const {
   return ends;
 }
 
-// What the bodies' own parts of M make of x.
+// Adds to y the product of x and the diagonal blocks of M that belong to bodies begin .. end - 1.
 void WaveEquations::add_own(std::size_t begin, std::size_t end, const Complex* x,
                             Complex* y) const {
   for (std::size_t body = begin; body < end; ++body)
@@ -218,7 +221,8 @@ void WaveEquations::add_own(std::size_t begin, std::size_t end, const Complex* x
         y[row] += diagonal_[row] * x[row];
 }
 
-// M is symmetric: the columns of some bodies, transposed, make their rows of the product.
+// Computes the columns of M for one group of bodies at a time. Because M is symmetric, the
+// transpose of these columns is the group's rows of M, which give its rows of the product.
 std::vector<Complex> WaveEquations::apply(std::span<const Complex> x) const {
   const std::size_t size = unknowns();
   if (size == 0) return {};
@@ -239,7 +243,8 @@ std::vector<Complex> WaveEquations::apply(std::span<const Complex> x) const {
   return y;
 }
 
-// Of `factor` times waves that go by `sign` times the angles' directions: [wave][unknown].
+// Expands plane waves of amplitude `factor` in the regular modes of all bodies: [wave][unknown].
+// The waves travel along `sign` times the directions of the angles.
 std::vector<Complex> WaveEquations::plane_waves(std::span<const double> angles, double sign,
                                                 Complex factor) const {
   std::vector<Complex> waves(angles.size() * unknowns());
@@ -250,7 +255,7 @@ std::vector<Complex> WaveEquations::plane_waves(std::span<const double> angles, 
   return waves;
 }
 
-std::vector<Complex> WaveEquations::right_sides(std::span<const double> light_angles) const {
+std::vector<Complex> WaveEquations::right_hand_sides(std::span<const double> light_angles) const {
   return plane_waves(light_angles, 1, -1);
 }
 

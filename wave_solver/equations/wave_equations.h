@@ -15,7 +15,8 @@ namespace flatspeckle::wave {
 
 inline constexpr std::size_t tile_side = 32;
 
-/// body(i, j) for i < rows, j < columns, tile by tile: both [i][j] and [j][i] stay in cache.
+/// Calls body(i, j) for i < rows, j < columns, tile by tile, so that both a matrix and its
+/// transpose are accessed within the cache.
 template <typename Body>
 void for_each_tiled(std::size_t rows, std::size_t columns, const Body& body) {
   for (std::size_t j0 = 0; j0 < columns; j0 += tile_side)
@@ -24,8 +25,8 @@ void for_each_tiled(std::size_t rows, std::size_t columns, const Body& body) {
         for (std::size_t i = i0; i < std::min(i0 + tile_side, rows); ++i) body(i, j);
 }
 
-/// Copies columns begin .. end - 1 of the lower triangle of a column-major matrix onto the upper
-/// one, tile by tile.
+/// Copies columns begin .. end - 1 of the lower triangle of a column-major matrix to the upper
+/// triangle, tile by tile.
 inline void mirror_columns(Complex* matrix, std::size_t size, std::size_t begin, std::size_t end) {
   for (std::size_t row0 = begin; row0 < size; row0 += tile_side)
     for (std::size_t row = row0; row < std::min(row0 + tile_side, size); ++row)
@@ -38,27 +39,30 @@ inline void mirror_lower(std::vector<Complex>& matrix, std::size_t size) {
     mirror_columns(matrix.data(), size, column, std::min(column + tile_side, size));
 }
 
-/// Threads that solve systems of their own at this moment, this one included.
-int systems_at_work();
+/// Returns the number of threads that solve separate systems at this moment, including this one.
+int concurrent_systems();
 
-/// Bytes that each of some systems, solved together, may take.
-double memory_of_system(int together = systems_at_work());
+/// Returns the bytes available to each of `together` systems that are solved at the same time.
+double memory_of_system(int together = concurrent_systems());
 
-/// Throws InputError where the dense matrix of so many unknowns needs more.
-void require_dense_memory(std::size_t unknowns, int together = systems_at_work());
+/// Throws InputError if the dense matrix of `unknowns` unknowns needs more than memory_of_system().
+void require_dense_memory(std::size_t unknowns, int together = concurrent_systems());
 
-/// The multiple-scattering equations of bodies that answer regular waves with outgoing ones,
-/// b = T (a + S b) (C10), in the real standing waves of cylinder_waves.h and with b = sigma beta:
-///   M beta = -sigma a,   M = -sigma T^-1 sigma + sigma S sigma,
-/// the first part block by block, one for each body. What the bodies are is said by those who
-/// derive from this. M is complex symmetric. No body amplifies, -Re T^-1 >= 1, and Re S + 1 is a
-/// Gram matrix of waves, so the real part of M is positive semidefinite; Schur complements and real
-/// congruences keep that.
+/// The multiple-scattering equations b = T (a + S b) of bodies that scatter regular waves into
+/// outgoing waves (C10). In the real standing waves of cylinder_waves.h, and with b = sigma beta
+/// (sigma: diagonal scaling of the unknowns), they are
+///   M beta = -sigma a,   M = -sigma T^-1 sigma + sigma S sigma.
+/// The first term of M has one diagonal block per body; derived classes define the bodies. M is
+/// complex symmetric. Its real part is positive semidefinite, because no body has gain (-Re T^-1 >=
+/// 1) and Re S + 1 is a Gram matrix of waves. Schur complements and real congruences preserve this
+/// property.
 ///
-/// Unknowns run over bodies and, within each, over 0, cos 1, sin 1, cos 2, sin 2, .. order.
+/// Unknowns run over bodies and, within each body, over the waves of order 0, cos(phi), sin(phi),
+/// cos(2 phi), sin(2 phi), .. up to the highest order of the body.
 class WaveEquations {
  public:
-  /// All of it is within the radius, 0 for a point, and so are its waves' sources.
+  /// A scatterer. The scatterer and the sources of its waves lie within the radius, which is 0 for
+  /// a point.
   struct Body {
     Vec2 centre;
     double radius = 0;
@@ -68,41 +72,43 @@ class WaveEquations {
   std::size_t unknowns() const { return first_.back(); }
   std::span<const Body> bodies() const { return bodies_; }
   int order(std::size_t body) const;
-  /// First unknown of a body; first(bodies().size()) is unknowns().
+  /// Index of the first unknown of a body; first(bodies().size()) is unknowns().
   std::size_t first(std::size_t body) const { return first_[body]; }
   std::size_t body_of(std::size_t unknown) const { return body_of_[unknown]; }
-  /// sigma psi of each unknown of a body.
+  /// Modes of the unknowns of a body; their weights contain sigma.
   ModeSet modes(std::size_t body) const;
-  /// sigma^2
+  /// Returns sigma^2 of an unknown.
   double strength(std::size_t unknown) const;
 
   Complex diagonal(std::size_t unknown) const { return diagonal_[unknown]; }
-  /// M(rows, columns) into out[i + ld * j], for unknowns listed so that those of one body stand
-  /// side by side.
+  /// Writes the element of M in row rows[i] and column columns[j] to out[i + ld * j]. Unknowns of
+  /// one body must be listed consecutively.
   void entries(std::span<const std::size_t> rows, std::span<const std::size_t> columns,
                Complex* out, std::size_t ld) const;
-  /// Field at points of sigma psi of each column's unknown, into out[i + ld * j]. The points must
-  /// lie off the bodies concerned.
+  /// Writes to out[i + ld * j] the field at points[i] if the unknown columns[j] is 1 and all others
+  /// are 0. The points must lie outside the bodies of these unknowns.
   void outgoing(std::span<const Vec2> points, std::span<const std::size_t> columns, Complex* out,
                 std::size_t ld) const;
 
-  /// M, column by column. Threaded unless called from a parallel region.
+  /// Returns M, column by column. Threaded unless called from a parallel region.
   Entries matrix() const;
-  /// M x formed a block of columns at a time: [column][unknown].
+  /// Returns M x for one or more columns x, both [column][unknown]. M is computed a block of
+  /// columns at a time and is not stored.
   std::vector<Complex> apply(std::span<const Complex> x) const;
 
-  /// -sigma a of unit plane waves (C6): [light][unknown].
-  std::vector<Complex> right_sides(std::span<const double> light_angles) const;
-  /// What each unknown adds to the far-field amplitude at angles (C6): [view][unknown]. By
-  /// reciprocity a multiple of the right side of the light that comes from there.
+  /// Returns the right-hand sides -sigma a for unit plane waves (C6): [light][unknown].
+  std::vector<Complex> right_hand_sides(std::span<const double> light_angles) const;
+  /// Contribution of each unknown to the far-field amplitude at angles (C6): [view][unknown]. By
+  /// reciprocity each row is a multiple of the right-hand side for light from the direction of
+  /// view.
   std::vector<Complex> far_rows(std::span<const double> view_angles) const;
-  /// What each unknown adds to the scattered field at a point off all bodies.
+  /// Contribution of each unknown to the scattered field at a point outside all bodies.
   std::vector<Complex> outside_row(Vec2 point) const;
-  /// Either, of far and near views: [view][unknown].
+  /// Returns far_rows() or outside_row() for each view: [view][unknown].
   std::vector<Complex> view_rows(std::span<const View> views) const;
 
  protected:
-  using OwnBlock = std::shared_ptr<const std::vector<Complex>>;  // column-major
+  using OwnBlock = std::shared_ptr<const std::vector<Complex>>;  // square, column-major
 
   explicit WaveEquations(double k) : k_(k), first_{0} {}
   ~WaveEquations() = default;
@@ -111,19 +117,21 @@ class WaveEquations {
   WaveEquations& operator=(const WaveEquations&) = default;
   WaveEquations& operator=(WaveEquations&&) = default;
 
-  /// modes: of all unknowns of one more body, with sigma. The body's part of M is diagonal, or any
-  /// symmetric block.
+  /// Adds a body. modes: the modes of all its unknowns, with sigma in their weights. The diagonal
+  /// block of M that belongs to the body is given by its diagonal elements (diagonal) or, if it is
+  /// not diagonal, as a symmetric matrix (own).
   void add(const Body& body, std::span<const Mode> modes, std::span<const Complex> diagonal);
   void add(const Body& body, std::span<const Mode> modes, OwnBlock own);
 
  private:
   struct Listed;
   void add(const Body& body, std::span<const Mode> modes);
-  Complex own(std::size_t row, std::size_t column) const;  // of one body
+  // Element of M between two unknowns of the same body.
+  Complex own(std::size_t row, std::size_t column) const;
   void add_own(std::size_t begin, std::size_t end, const Complex* x, Complex* y) const;
   std::vector<ModeSet> all_modes() const;
   std::vector<std::size_t> column_blocks() const;
-  // M, in parts of columns with what is symmetric to them.
+  // These functions fill M in groups of columns and mirror them to the rows.
   void point_columns(Complex* matrix) const;
   void multipole_columns(Complex* matrix) const;
   std::vector<Complex> plane_waves(std::span<const double> angles, double sign,
@@ -134,7 +142,7 @@ class WaveEquations {
   std::vector<std::size_t> first_, body_of_;
   std::vector<Mode> modes_;
   std::vector<Complex> diagonal_;
-  std::vector<OwnBlock> own_;  // of each body; none where it is diagonal
+  std::vector<OwnBlock> own_;  // diagonal block of each body; null if only diagonal_ is used
 };
 
 }  // namespace flatspeckle::wave

@@ -13,11 +13,11 @@ namespace flatspeckle::wave {
 
 namespace {
 
-constexpr double below_rounding = -38;  // of a logarithm
+constexpr double below_rounding = -38;  // natural logarithm of a negligible value
 constexpr Complex imaginary{0, 1};
 
-/// cot z, tan(z / 2) and (z / sin z)^(1/2), the one that is 1 at z = 0: from its values above the
-/// real axis, where it has no cut.
+/// Values of cot z, tan(z / 2) and (z / sin z)^(1/2). The square root is the branch that is 1 at z
+/// = 0, continued through the upper half-plane, where it has no branch cut.
 struct Sines {
   Complex cotangent, half_tangent, root;
 
@@ -37,7 +37,8 @@ struct Sines {
     cotangent = std::cos(z) / sine;
     half_tangent = std::tan(0.5 * z);
     root = std::sqrt(z / sine);
-    if (z.real() > std::numbers::pi) from_exponential(z);  // beyond the cut of this root
+    if (z.real() > std::numbers::pi)
+      from_exponential(z);  // the square root above is on the wrong branch
   }
   void from_exponential(Complex z) {
     const Complex turn = std::exp(imaginary * z), square = turn * turn;
@@ -47,8 +48,9 @@ struct Sines {
   }
 };
 
-/// sigma of the direct ray of a parabolic guide: the least root of |v(0)|^2 = n^2. Newton's method
-/// from below rises to it.
+/// Returns the parameter sigma (C23) of the direct ray from p to q in a parabolic guide: the
+/// smallest sigma for which the ray has |v|^2 = n^2 at p (v = dx/dsigma). Newton's method, started
+/// below this sigma, converges monotonically.
 std::optional<double> sigma_in_guide(const IndexField& field, Vec2 p, Vec2 q) {
   const double deep = q.z - p.z, square = field.square(p);
   const double most = std::sqrt(std::max({square, field.square(q), field.origin * field.origin}));
@@ -58,11 +60,13 @@ std::optional<double> sigma_in_guide(const IndexField& field, Vec2 p, Vec2 q) {
     if (!(angle < std::numbers::pi)) return std::nullopt;
     const double half = std::sin(angle / 2), moved = q.x - p.x + 2 * p.x * half * half;
     const double across = field.alpha * moved / sine, along = deep / sigma;
-    const double slope = 2 * across * field.alpha * (field.alpha * p.x - across * cosine / sine) -
-                         2 * along * along / sigma;
-    if (!(slope < 0)) return std::nullopt;
-    const double excess = across * across + along * along - square, next = sigma - excess / slope;
-    if (std::abs(next - sigma) < 1e-9 * sigma) return next;  // the contour may be a little off
+    const double derivative =
+        2 * across * field.alpha * (field.alpha * p.x - across * cosine / sine) -
+        2 * along * along / sigma;
+    if (!(derivative < 0)) return std::nullopt;
+    const double excess = across * across + along * along - square,
+                 next = sigma - excess / derivative;
+    if (std::abs(next - sigma) < 1e-9 * sigma) return next;  // the contour tolerates a small error
     sigma = next;
   }
   return std::nullopt;
@@ -70,7 +74,7 @@ std::optional<double> sigma_in_guide(const IndexField& field, Vec2 p, Vec2 q) {
 
 std::vector<Vec2> sources_of(const CovarianceRequest& request) {
   if (!request.lights.all(Light::Kind::point))
-    throw InputError("index_field: of graded media the exact solver takes near_sources alone");
+    throw InputError("index_field: the exact solver of graded media requires near_sources only");
   std::vector<Vec2> sources;
   for (const Light& light : request.lights) sources.push_back(light.point);
   return sources;
@@ -80,14 +84,14 @@ std::vector<Vec2> sensors_of(const CovarianceRequest& request) {
   std::vector<Vec2> sensors;
   for (const View& view : request.views) {
     if (!view.near)
-      throw InputError("index_field: of graded media the exact solver takes near_sensors alone");
+      throw InputError("index_field: the exact solver of graded media requires near_sensors only");
     sensors.push_back(view.point);
   }
   return sensors;
 }
 
-/// Between any two of some places.
-double longest_way(const std::vector<Vec2>& places) {
+/// Returns the largest distance between two of the points.
+double longest_distance(const std::vector<Vec2>& places) {
   double longest = 0;
   for (const Vec2 a : places)
     for (const Vec2 b : places) longest = std::max(longest, length(a - b));
@@ -95,7 +99,7 @@ double longest_way(const std::vector<Vec2>& places) {
 }
 
 template <typename T>
-std::vector<T> joined(std::vector<T> list, const std::vector<T>& rest) {
+std::vector<T> concatenated(std::vector<T> list, const std::vector<T>& rest) {
   list.insert(list.end(), rest.begin(), rest.end());
   return list;
 }
@@ -105,7 +109,7 @@ std::vector<T> joined(std::vector<T> list, const std::vector<T>& rest) {
 GradedGreen::GradedGreen(const IndexField& field, double k, double longest) : field_(field), k_(k) {
   if (!field.is_quadratic())
     throw InputError("index_field", field.describe(),
-                     "has no exact solver; take linear or parabolic ones");
+                     "has no exact solver; use a linear or parabolic field");
   constexpr double fine = 0.04, most = 40, turn = 0.8;
   step_ = std::min(fine, 0.4 / std::sqrt(k * longest));
   for (double u = 0; u < most; u += step_) {
@@ -117,19 +121,21 @@ GradedGreen::GradedGreen(const IndexField& field, double k, double longest) : fi
 
 std::optional<double> GradedGreen::sigma(Vec2 p, Vec2 q) const {
   if (field_.kind == IndexField::Kind::parabolic) return sigma_in_guide(field_, p, q);
-  const Vec2 way = q - p;
-  const double square = dot(way, way), mean = (field_.square(p) + field_.square(q)) / 2,
-               root = mean * mean - dot(field_.slope, field_.slope) * square / 4;
+  const Vec2 separation = q - p;
+  const double square = dot(separation, separation),
+               mean = (field_.square(p) + field_.square(q)) / 2,
+               root = mean * mean - dot(field_.gradient, field_.gradient) * square / 4;
   if (!(root > 0 && mean > 0)) return std::nullopt;
   return std::sqrt(2 * square / (mean + std::sqrt(root)));
 }
 
 void GradedGreen::refuse(Vec2 p, Vec2 q) const {
   const auto text = [](Vec2 x) { return '(' + number_text(x.x) + ", " + number_text(x.z) + ')'; };
-  throw InputError("index_field", field_.describe(),
-                   "bends so much that between " + text(p) + " and " + text(q) +
-                       " no direct wave is apart from what comes back; take a weaker one, or a "
-                       "smaller box with its ends nearer");
+  throw InputError(
+      "index_field", field_.describe(),
+      "bends rays so much that the direct wave between " + text(p) + " and " + text(q) +
+          " cannot be separated from returning waves; use a weaker field, or a smaller "
+          "box with closer sources and sensors");
 }
 
 Complex GradedGreen::operator()(Vec2 p, Vec2 q) const {
@@ -137,21 +143,22 @@ Complex GradedGreen::operator()(Vec2 p, Vec2 q) const {
   if (!along) refuse(p, q);
   const double t0 = *along / (2 * k_);
   const bool guide = field_.kind == IndexField::Kind::parabolic;
-  const Vec2 way = q - p;
+  const Vec2 separation = q - p;
   const double mean = (field_.square(p) + field_.square(q)) / 2,
-               force = k_ * k_ * length(field_.slope);
-  const double across = guide ? way.z * way.z : dot(way, way),
+               force = k_ * k_ * length(field_.gradient);
+  const double across = guide ? separation.z * separation.z : dot(separation, separation),
                square = guide ? field_.origin * field_.origin : mean;
   const double near = across / (4 * t0), far = k_ * k_ * square * t0,
                cube = guide ? 0 : force * force * t0 * t0 * t0 / 12;
   const double omega = k_ * field_.alpha;
-  // The exponent, and what stands before it.
+  // Returns the integrand at the complex time t t0: the exponential times its prefactor. real:
+  // receives the real part of the exponent.
   const auto value = [&](Complex t, double& real) {
     Complex power = imaginary * (near / t + far * t - cube * t * t * t), before = 1;
     if (guide) {
       const Sines sines(2 * omega * t0 * t);
       power += imaginary * (omega / 2) *
-               (way.x * way.x * sines.cotangent - 2 * p.x * q.x * sines.half_tangent);
+               (separation.x * separation.x * sines.cotangent - 2 * p.x * q.x * sines.half_tangent);
       before = sines.root;
     }
     real = power.real();
@@ -180,7 +187,7 @@ GradedFields::GradedFields(const IndexField& field, double k, std::vector<Vec2> 
     : k_(k),
       sources_(std::move(sources)),
       sensors_(std::move(sensors)),
-      green_(field, k, longest_way(joined(joined(within, sources_), sensors_))) {
+      green_(field, k, longest_distance(concatenated(concatenated(within, sources_), sensors_))) {
   for (const Vec2 place : within)
     for (const auto* others : {&within, &std::as_const(sources_), &std::as_const(sensors_)})
       for (const Vec2 other : *others)
@@ -196,7 +203,8 @@ GradedFields graded_fields(const Scene& scene) {
           {{-half, 0}, {half, 0}, {-half, depth}, {half, depth}}};
 }
 
-/// H = -4 i G, which is H_0 without a field, of each scatterer at each point: [point][scatterer].
+/// Returns -4 i G between each point and each scatterer, [point][scatterer]. In a uniform medium -4
+/// i G is H_0.
 std::vector<Complex> GradedFields::rows(const Placement& placement,
                                         const std::vector<Vec2>& points) const {
   std::vector<Complex> rows;
@@ -217,11 +225,11 @@ std::vector<Complex> GradedFields::of(const Placement& placement) const {
       matrix[j * n + l] = matrix[l * n + j] =
           Complex(0, -4) * green_(placement[j].position, placement[l].position);
   }
-  auto sides = rows(placement, sources_);  // of G itself, and with the sign of M beta = -a
-  for (Complex& side : sides) side *= Complex(0, -0.25);
+  auto rhs = rows(placement, sources_);  // times -i/4 below: -G, the right-hand side -a
+  for (Complex& side : rhs) side *= Complex(0, -0.25);
   DenseFactor factor(std::move(matrix), n);
   const auto found =
-      transposed_product(rows(placement, sensors_), factor.solve(sides).data(), sources_.size(), n);
+      transposed_product(rows(placement, sensors_), factor.solve(rhs).data(), sources_.size(), n);
   require_finite(found);
   return found;
 }

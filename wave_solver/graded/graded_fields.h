@@ -10,39 +10,44 @@
 
 namespace flatspeckle::wave {
 
-/// The Green function (laplacian + k^2 n^2) G = -delta where n^2 is linear or parabolic
-/// (conventions, C34), without what comes back from where n^2 = 0, or after a focus: the integral
-/// over the propagator's time along a contour through the saddle of the direct ray, to rounding.
+/// The Green function of a linear or parabolic n^2, (laplacian + k^2 n^2) G = -delta (conventions,
+/// C34). It does not contain waves that return from where n^2 = 0 or after a focus. It is computed,
+/// accurate to rounding, as the integral over the time of the propagator along a contour through
+/// the saddle point of the direct ray.
 class GradedGreen {
  public:
-  /// longest: distance between any two points that it will be asked for. Throws InputError for
-  /// other fields.
+  /// longest: upper bound of the distance between the two points of an evaluation. Throws
+  /// InputError if n^2 is neither linear nor parabolic.
   GradedGreen(const IndexField& field, double k, double longest);
 
-  /// Throws InputError where the direct wave is not a function of its own: no ray joins the points,
-  /// or what comes back is as near.
+  /// Returns G for the points p and q. Throws InputError if the direct wave cannot be separated
+  /// from returning waves, or if no ray connects the points.
   Complex operator()(Vec2 p, Vec2 q) const;
 
  private:
-  std::optional<double> sigma(Vec2 p, Vec2 q) const;  ///< of the direct ray (C32)
+  std::optional<double> sigma(Vec2 p, Vec2 q) const;  ///< parameter of the direct ray (C32)
   [[noreturn]] void refuse(Vec2 p, Vec2 q) const;
 
   IndexField field_;
   double k_, step_;
-  /// The contour t = t0 time[j] from the saddle t0 upwards, and t0 / time[j] downwards.
+  /// Integration contour through the saddle point t0: points t0 time[j] on one side and t0 /
+  /// time[j] on the other, with quadrature weights for dt/t.
   std::vector<Complex> time_, weight_;
 };
 
-/// Exact fields of point scatterers where the index varies: Foldy and Lax's equations, coupled by
-/// the medium's own Green function (conventions, C31 and C34). Point sources, near sensors.
+/// Exact fields of point scatterers in a medium of varying index, by the Foldy-Lax equations with
+/// the Green function of that medium (conventions, C31 and C34). Lights are point sources, and
+/// views are near sensors.
 class GradedFields {
  public:
-  /// within: places that the scatterers lie between. Throws InputError for other fields than
-  /// GradedGreen has, and where it would not have all of it.
+  /// within: corners of the region that contains the scatterers. Throws InputError for index fields
+  /// that GradedGreen does not support, and if GradedGreen cannot compute the direct wave between a
+  /// corner and another corner, a source or a sensor.
   GradedFields(const IndexField& field, double k, std::vector<Vec2> sources,
                std::vector<Vec2> sensors, const std::vector<Vec2>& within);
 
-  /// Scattered field of a placement, [light][view]. Throws InputError as GradedGreen does.
+  /// Returns the scattered field of a placement, [light][view]. Throws under the conditions of
+  /// GradedGreen.
   std::vector<Complex> of(const Placement& placement) const;
 
  private:
@@ -53,7 +58,8 @@ class GradedFields {
   GradedGreen green_;
 };
 
-/// Of a scene in a box. Throws InputError for other lights and views too.
+/// Returns the GradedFields of a scene in a box. Throws InputError under the conditions of
+/// GradedFields, and if a light is not a point source or a view is not a near sensor.
 GradedFields graded_fields(const Scene& scene);
 
 extern const DatasetTable graded_table;

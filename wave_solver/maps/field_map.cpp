@@ -28,7 +28,8 @@ namespace flatspeckle::wave {
 
 namespace {
 
-// Pixels of one axis whose centres may lie within `distance` of `place`: first and one past last.
+// Pixels first .. last - 1 along one axis, whose centres may lie within `distance` of the
+// coordinate `place`.
 struct PixelRange {
   PixelRange(double low, double step, double place, double distance, std::size_t from,
              std::size_t count) {
@@ -76,11 +77,12 @@ std::vector<std::uint32_t> ring_of_pixels(const MapGrid& grid, const MapTile& ti
 const DatasetTable map_table{
     .name = "map",
     .rows = {{"map_z", Data::scale, "", "length", "depth of the pixels"},
-             {"map_x", Data::scale, "", "length", "transverse place of the pixels"},
+             {"map_x", Data::scale, "", "length", "transverse position of the pixels"},
              {"total_field", Data::complex, "light_angle map_z map_x", "1",
-              "incident and scattered field, also inside; 0 in soft and hard disks; on a point "
+              "total field, also inside disks; 0 in soft and hard disks; at a point "
               "scatterer the field that excites it"}},
-    .attributes = {{"total_field", "wavelength", "float64", "in vacuum"}}};
+    .attributes = {{"total_field", "wavelength", "float64",
+                    "wavelength in the medium around the scatterers"}}};
 
 namespace {
 
@@ -121,7 +123,8 @@ std::string write_map(ResultFile& file, const WaveSolution& solution, const MapG
 
 namespace {
 
-// field[light][point] += factor sum over columns of values[column][point] x[light][column].
+// Adds to field[light][point] `factor` times the sum over all columns of values[column][point]
+// x[light][column].
 void add_columns(std::span<const Complex> values, std::size_t points, const Complex* x,
                  std::size_t ldx, double factor, std::span<Complex> field) {
   if (points == 0 || values.empty()) return;
@@ -133,12 +136,13 @@ const Complex* coefficients(const WaveSolution& solution, std::size_t scatterer)
   return solution.coefficients(0).data() + solution.system().first(scatterer);
 }
 
-// Seconds for one ring of a kind, as measured: its sources in the sum, and the points to correct.
+// Returns the cost of one ring of a RingField in seconds, as measured: its point sources in the
+// HelmholtzSum, plus corrections at the points near it.
 double ring_cost(double ring_points, double modes, double near_points) {
   return 2e-6 * ring_points + near_points * (15e-9 * ring_points + 15e-9 * modes + 100e-9);
 }
 
-/// Scattered field of one scatterer at points outside it, added to field, [light][point].
+/// Adds the scattered field of one scatterer at points outside it to field, [light][point].
 void add_scattered(const WaveSolution& solution, std::size_t scatterer,
                    std::span<const Vec2> points, std::span<Complex> field) {
   const TMatrixSystem& system = solution.system();
@@ -150,8 +154,8 @@ void add_scattered(const WaveSolution& solution, std::size_t scatterer,
 }
 
 constexpr std::uint32_t no_place = ~std::uint32_t{0};
-constexpr std::size_t points_at_a_time =
-    256;  // points that stay in cache with the waves of a scatterer
+// Number of points whose waves from one scatterer fit into the cache.
+constexpr std::size_t points_at_a_time = 256;
 
 using Pixels = std::vector<std::uint32_t>;
 
@@ -164,13 +168,14 @@ std::vector<Vec2> positions(const MapGrid& grid, const MapTile& tile, const Pixe
 
 }  // namespace
 
-/// The scattered field of a solution at many points: rings of point sources
-/// stand for the scatterers wherever a point is beyond a clearance from their centres, so that a
-/// HelmholtzSum serves; nearer points are corrected one by one.
+/// Computes the scattered field of a solution at many points. Each scatterer is replaced by a ring,
+/// that is point sources on a circle (MultipoleRing), whose fields a HelmholtzSum adds up. The
+/// field of a ring is accurate beyond a distance from the scatterer's centre, the clearance; at
+/// nearer points the field is corrected point by point.
 class RingField {
  public:
-  /// tolerance: of the field, relative to its size; from 1e-12 on. area_per_point: how densely the
-  /// points will lie, which decides the clearances.
+  /// tolerance: relative error of the field, at least 1e-12. area_per_point: area per point at
+  /// which the field will be computed; the clearances are chosen from it.
   RingField(const WaveSolution& solution, double tolerance, double area_per_point)
       : solution_(solution), tolerance_(tolerance) {
     blas_single_thread();
@@ -188,13 +193,14 @@ class RingField {
     place_rings();
   }
 
-  /// False where rings for this tolerance would need too large charges.
+  /// Whether the charges on the rings are small enough for rounding errors to stay below the
+  /// tolerance.
   bool resolved() const { return largest_charge_ * smallest_tolerance < tolerance_; }
   double clearance(std::size_t scatterer) const { return ring(scatterer).clearance; }
   std::size_t sources() const { return positions_.size(); }
 
-  /// Field of all rings, [light][point]; none where the points are so few that a sum over all pairs
-  /// would be faster.
+  /// Returns the field of all rings, [light][point], or nullopt if there are so few points that a
+  /// direct sum over all pairs is faster.
   std::optional<std::vector<Complex>> sum(std::span<const Vec2> points) const {
     const double finer = std::max(tolerance_ / largest_charge_, smallest_tolerance);
     const HelmholtzSum sum(solution_.system().k(), positions_, points, finer);
@@ -202,7 +208,7 @@ class RingField {
     return sum(charges_);
   }
 
-  /// What a scatterer's own waves have more than its ring: [light][point].
+  /// Returns the field of a scatterer's own waves minus that of its ring: [light][point].
   std::vector<Complex> correction(std::size_t scatterer, std::span<const Vec2> points) const {
     std::vector<Complex> field(solution_.light_angles().size() * points.size());
     add_scattered(solution_, scatterer, points, field);
@@ -217,7 +223,8 @@ class RingField {
       if (distances[i] == 0) coincident.push_back(i);
     for (const std::size_t i : coincident) distances[i] = 1;
     hankel0(distances, waves);
-    for (const std::size_t i : coincident) waves[i] = 0;  // as in HelmholtzSum
+    // HelmholtzSum also omits pairs at distance 0.
+    for (const std::size_t i : coincident) waves[i] = 0;
     add_columns(waves, points.size(), &charges_[first], positions_.size(), -1, field);
     return field;
   }
@@ -229,7 +236,7 @@ class RingField {
     double clearance;
   };
   const ClearedRing& ring(std::size_t scatterer) const { return rings_[kind_[scatterer]]; }
-  // Scatterers of equal make and order share a ring.
+  // Equal scatterers with equal basis order share a ring.
   void find_kinds(std::vector<std::size_t>& examples) {
     const TMatrixSystem& system = solution_.system();
     const Placement& placement = system.placement();
@@ -286,17 +293,18 @@ class RingField {
   double tolerance_, largest_charge_ = 1;
   std::vector<std::uint32_t> kind_;
   std::vector<ClearedRing> rings_;
-  std::vector<std::size_t> first_;  // position of each scatterer's ring
+  std::vector<std::size_t> first_;  // index of the first source of each scatterer's ring
   std::vector<Vec2> positions_;
   std::vector<Complex> charges_;  // [light][position]
 };
 
-// The pixels of a tile: those in a disk by disk, the others in a list.
+// The pixels of a tile: a list of the pixels inside each disk, and one list of the pixels outside
+// all disks.
 struct FieldMap::Points {
-  std::vector<Pixels> inside;        // of each scatterer
-  Pixels outside;                    // pixel of each point outside
-  std::vector<std::uint32_t> place;  // of each pixel among those outside
-  std::vector<Vec2> positions;       // of those outside
+  std::vector<Pixels> inside;        // pixels inside each scatterer
+  Pixels outside;                    // pixels outside all disks
+  std::vector<std::uint32_t> place;  // index of each pixel in `outside`, or no_place
+  std::vector<Vec2> positions;       // positions of the pixels in `outside`
 };
 
 FieldMap::FieldMap(const WaveSolution& solution, const MapGrid& grid, double tolerance, Route route)
@@ -310,7 +318,7 @@ FieldMap::FieldMap(const WaveSolution& solution, const MapGrid& grid, double tol
 
 FieldMap::~FieldMap() = default;
 
-// Many pixels at once, because the fast route begins with a cost for all sources.
+// Tiles are large, because a RingField has, for each tile, a setup cost for all of its sources.
 std::vector<MapTile> FieldMap::tiles() const {
   constexpr std::size_t most = std::size_t{1} << 19, values = std::size_t{1} << 22;
   return wave::tiles(grid_, std::min(most, values / solution_.light_angles().size()));
@@ -325,7 +333,7 @@ std::string FieldMap::method() const {
   return text.str();
 }
 
-// A disk that the waves outside do not pass.
+// Whether a scatterer is a disk in which the field is not the sum of incident and scattered waves.
 bool FieldMap::is_solid(std::size_t scatterer) const {
   const TMatrixSystem& system = solution_.system();
   return system.placement()[scatterer].scatterer.is_disk() && !is_transparent(system, scatterer);
@@ -372,7 +380,7 @@ std::vector<Complex> FieldMap::field(const MapTile& tile) {
   return field;
 }
 
-// Scattered field, [light][point].
+// Returns the scattered field outside disks, [light][point].
 std::vector<Complex> FieldMap::outside(const MapTile& tile, const Points& points) {
   if (rings_) {
     if (auto field = rings_->sum(points.positions)) {

@@ -14,7 +14,7 @@
 
 namespace flatspeckle::wave {
 
-/// nx x nz equal pixels that cover a rectangle; a pixel stands for its centre.
+/// Grid of nx x nz equal pixels that cover a rectangle. Fields are evaluated at pixel centres.
 struct MapGrid {
   Vec2 low, high;
   std::size_t nx = 0, nz = 0;
@@ -28,50 +28,53 @@ struct MapGrid {
   }
 };
 
-/// Some rows and columns of a map.
+/// Rectangular part of a map: nx x nz pixels, the first of which is (ix, iz).
 struct MapTile {
   std::size_t ix = 0, iz = 0, nx = 0, nz = 0;
 
   std::size_t pixels() const { return nx * nz; }
 };
 
-/// Tiles are multiples of so many pixels a side, except at the ends of the map.
+/// Sides of tiles are multiples of this number of pixels, except at the edges of the map.
 inline constexpr std::size_t map_chunk = 64;
 
-/// Tiles that make up a map, of about so many pixels each, z-major.
+/// Divides a map into tiles of about the given number of pixels each, in z-major order.
 std::vector<MapTile> tiles(const MapGrid& grid, std::size_t pixels);
 
-/// Pixels of a tile, by their place z-major in it, at distances low <= r < high from a point.
+/// Returns the indices (z-major within the tile) of the pixels whose distance r from a point is low
+/// <= r < high.
 std::vector<std::uint32_t> ring_of_pixels(const MapGrid& grid, const MapTile& tile, Vec2 centre,
                                           double low, double high);
 
 class RingField;
 
 /// The total field u on a grid: incident and scattered waves outside the scatterers, the
-/// transmitted wave in disks of kind tm and te, 0 in soft and hard ones. On a point scatterer,
-/// where u is infinite, its own wave is left out: what stands there is the field that excites it. A
-/// pixel closer than `on_a_point` wavelengths counts as on it.
+/// transmitted wave in disks of kind tm and te, 0 in soft and hard disks. At a point scatterer u is
+/// infinite; there the map contains the field that excites the scatterer, without the wave that it
+/// scatters. A pixel closer than `on_a_point` wavelengths to a point scatterer counts as being at
+/// it.
 ///
-/// A tile is summed over all scatterers for each pixel or, where that is faster, by a RingField.
+/// The field of a tile is summed directly over all scatterers for each pixel or, if that is faster,
+/// by FFT over point sources that replace the scatterers (RingField).
 ///
-/// With the basis orders that map_sensors asks for, u is accurate to the solution's tolerance,
-/// outside the disks and inside.
+/// If the solution was computed with map_sensors() as SolveOptions::sensors, u is accurate to the
+/// tolerance of the solution outside and inside the disks.
 class FieldMap {
  public:
   static constexpr double on_a_point = 1e-8;
   enum class Route { fastest, direct };
 
-  /// Keeps a reference to the solution. tolerance: of the fast route, relative to the field.
+  /// Keeps a reference to the solution. tolerance: error of the sum by FFT, relative to the field.
   FieldMap(const WaveSolution& solution, const MapGrid& grid, double tolerance,
            Route route = Route::fastest);
   ~FieldMap();
 
   const MapGrid& grid() const { return grid_; }
-  /// Tiles in which to ask for the map so that little memory is needed.
+  /// Returns tiles small enough for field() to need little memory.
   std::vector<MapTile> tiles() const;
-  /// [light][z][x]. Threaded.
+  /// Returns the total field, [light][z][x]. Threaded.
   std::vector<Complex> field(const MapTile& tile);
-  /// How the tiles up to now were summed, in words.
+  /// Describes how many of the tiles computed so far were summed directly and by FFT.
   std::string method() const;
 
  private:
@@ -90,15 +93,16 @@ class FieldMap {
   std::size_t fast_tiles_ = 0, direct_tiles_ = 0;
 };
 
-/// Points near which a map asks for the field, one for each scatterer that it touches: sensors for
-/// SolveOptions, so that basis orders resolve the map up to the rims.
+/// Returns, for each disk, the point of the map that is nearest to it, or a point on its rim if the
+/// map touches the disk. With these points as SolveOptions::sensors, the basis orders are high
+/// enough for the whole map, up to the rims.
 std::vector<Vec2> map_sensors(const MapGrid& grid, const Placement& placement);
 
 extern const DatasetTable map_table;
 
 /// Writes total_field [light_angle, map_z, map_x] tile by tile, with progress on standard error,
-/// and returns how it was summed. The axis of lights must have been written. Throws Interrupted
-/// once a signal has come (catch_interrupts).
+/// and returns FieldMap::method(). The axis of lights must have been written. Throws Interrupted
+/// after a signal (catch_interrupts).
 std::string write_map(ResultFile& file, const WaveSolution& solution, const MapGrid& grid,
                       double tolerance);
 

@@ -39,7 +39,7 @@ std::vector<std::size_t> chosen(const std::vector<std::size_t>& from,
   return values;
 }
 
-// Rows of X of some unknowns, and back.
+// Copies the rows of X that belong to some unknowns into a block. scatter() copies them back.
 std::vector<Complex> gather(const Complex* x, const std::vector<std::size_t>& unknowns,
                             std::size_t columns) {
   std::vector<Complex> part(unknowns.size() * columns);
@@ -54,7 +54,8 @@ void scatter(const std::vector<Complex>& part, const std::vector<std::size_t>& u
     std::copy_n(&part[i * columns], columns, x + unknowns[i] * columns);
 }
 
-// C <- old C + factor A B, or A B^T, of a complex A and a real B, by the real view of A.
+// C <- old C + factor A B, or old C + factor A B^T, with complex A, real B and the factors `old`
+// and `factor`. BLAS receives A as a real matrix with twice the rows.
 void add_product(CBLAS_TRANSPOSE transpose, std::size_t rows, std::size_t columns,
                  std::size_t inner, double factor, const std::vector<Complex>& a,
                  const std::vector<double>& b, double old, std::vector<Complex>& c) {
@@ -64,7 +65,7 @@ void add_product(CBLAS_TRANSPOSE transpose, std::size_t rows, std::size_t column
               old, reinterpret_cast<double*>(c.data()), blas_size(2 * rows));
 }
 
-// C <- C - A B, or A B^T
+// C <- C - A B, or C - A B^T
 void subtract_product(CBLAS_TRANSPOSE transpose, std::size_t rows, std::size_t columns,
                       std::size_t inner, const std::vector<Complex>& a,
                       const std::vector<Complex>& b, std::size_t ldb, std::vector<Complex>& c) {
@@ -72,7 +73,7 @@ void subtract_product(CBLAS_TRANSPOSE transpose, std::size_t rows, std::size_t c
            c.data(), rows);
 }
 
-// X <- X L^-T (transposed) or X L^-1
+// X <- X L^-T (transpose = CblasTrans), or X L^-1
 void divide(CBLAS_TRANSPOSE transpose, std::size_t rows, std::size_t n,
             const std::vector<Complex>& l, std::vector<Complex>& x) {
   triangular_solve(CblasRight, CblasLower, transpose, rows, n, l.data(), n, x.data(), rows);
@@ -102,7 +103,8 @@ SkeletonElimination::SkeletonElimination(const std::vector<std::size_t>& unknown
       t_(interpolation.t),
       e_(submatrix(m, unknowns.size(), interpolation.skeleton, interpolation.redundant)),
       l_(submatrix(m, unknowns.size(), interpolation.redundant, interpolation.redundant)),
-      rest_(submatrix(m, unknowns.size(), interpolation.skeleton, interpolation.skeleton)) {
+      schur_complement_(
+          submatrix(m, unknowns.size(), interpolation.skeleton, interpolation.skeleton)) {
   const std::size_t s = skeleton_.size(), r = redundant_.size();
   if (r == 0) return;
   if (s > 0) congruence();
@@ -110,16 +112,17 @@ SkeletonElimination::SkeletonElimination(const std::vector<std::size_t>& unknown
     throw std::runtime_error("the multiple-scattering equations of a box are singular");
   if (s == 0) return;
   divide(CblasTrans, s, r, l_, e_);
-  subtract_square(s, r, e_.data(), rest_.data(), s);
-  mirror_lower(rest_, s);
+  subtract_square(s, r, e_.data(), schur_complement_.data(), s);
+  mirror_lower(schur_complement_, s);
 }
 
-// From M_SS, M_SR, M_RR in rest_, e_, l_ to Q in e_ and X_RR in the lower triangle of l_:
-// X_RR = M_RR - P T - (P T)^T with P^T = M_SR - M_SS T / 2.
+// Replaces M_SR in e_ by Q, and the lower triangle of M_RR in l_ by the lower triangle of X_RR
+// (symbols: SkeletonElimination). M_SS is in schur_complement_. X_RR is computed as
+// M_RR - P T - (P T)^T, with P^T = M_SR - M_SS T / 2.
 void SkeletonElimination::congruence() {
   const std::size_t s = skeleton_.size(), r = redundant_.size();
   std::vector<Complex> half(s * r), p(r * s), p_t(r * r);
-  add_product(CblasTrans, s, r, s, 0.5, rest_, t_, 0, half);
+  add_product(CblasTrans, s, r, s, 0.5, schur_complement_, t_, 0, half);
   for_each_tiled(
       r, s, [&](std::size_t i, std::size_t j) { p[i + r * j] = e_[j + s * i] - half[j + s * i]; });
   for (std::size_t i = 0; i < e_.size(); ++i) e_[i] -= 2.0 * half[i];
@@ -135,7 +138,7 @@ double SkeletonElimination::bytes() const {
                              sizeof(std::size_t) * (skeleton_.size() + redundant_.size()));
 }
 
-// b_R <- L^-1 (b_R - T^T b_S), b_S <- b_S - E b_R, each column of X a row here
+// b_R <- L^-1 (b_R - T^T b_S), b_S <- b_S - E b_R. In gathered blocks the columns of X are rows.
 void SkeletonElimination::forward(Complex* x, std::size_t columns) const {
   const std::size_t s = skeleton_.size(), r = redundant_.size();
   if (r == 0) return;
@@ -159,9 +162,10 @@ void SkeletonElimination::backward(Complex* x, std::size_t columns) const {
   scatter(x_r, redundant_, columns, x);
 }
 
-// Works up the tree. active_: of boxes below the current level their skeletons, of others, once
-// they are joined, all that they hold. rest_: of a box that was eliminated, what is left of its
-// block of M.
+// Builds the factors from the leaves upwards. active_: unknowns of each box that are not
+// eliminated. Before the box is processed they are all unknowns of a leaf, or the skeletons of both
+// halves of another box; afterwards they are the skeleton of the box. schur_complement_: Schur
+// complement of each processed box.
 class FastDirect::Builder {
  public:
   Builder(const WaveEquations& system, double tolerance, double memory)
@@ -171,7 +175,7 @@ class FastDirect::Builder {
         disks_(disks_of(system)),
         tree_(disks_, leaf_unknowns),
         active_(tree_.boxes().size()),
-        rest_(tree_.boxes().size()),
+        schur_complement_(tree_.boxes().size()),
         cpu_seconds_(tree_.boxes().size()) {
     for (std::size_t box = 0; box < active_.size(); ++box)
       if (tree_.boxes()[box].is_leaf()) active_[box] = own_unknowns(box);
@@ -197,7 +201,7 @@ class FastDirect::Builder {
     return unknowns;
   }
 
-  void join_halves(std::size_t level) {
+  void connect_halves(std::size_t level) {
     for (std::size_t box = tree_.level_begin(level); box < tree_.level_end(level); ++box) {
       if (tree_.boxes()[box].is_leaf()) continue;
       for (std::size_t half : {tree_.boxes()[box].child, tree_.boxes()[box].child + 1})
@@ -205,8 +209,8 @@ class FastDirect::Builder {
     }
   }
 
-  // With all unknowns eliminated a box would keep 16 n^2 bytes, with some of them less, what is
-  // left of its block included; while it is worked on it takes three times that.
+  // A box with n unknowns stores at most 16 n^2 bytes, including its Schur complement; the maximum
+  // is reached if all its unknowns are eliminated. During elimination it needs three times as much.
   void require_memory(std::size_t level, double held) const {
     double bytes = held, largest = 0;
     for (std::size_t box = tree_.level_begin(level); box < tree_.level_end(level); ++box) {
@@ -216,14 +220,16 @@ class FastDirect::Builder {
     }
     bytes += 3 * largest * omp_get_max_threads();
     if (bytes <= memory_) return;
-    throw InputError("unknowns", system_.unknowns(),
-                     "the fast direct solver may need " +
-                         std::to_string(static_cast<long long>(bytes)) + " bytes, it may have " +
-                         std::to_string(static_cast<long long>(memory_)) +
-                         "; take fewer scatterers or a larger tolerance");
+    throw InputError(
+        "unknowns", system_.unknowns(),
+        "the fast direct solver may need " + std::to_string(static_cast<long long>(bytes)) +
+            " bytes; available bytes: " + std::to_string(static_cast<long long>(memory_)) +
+            "; use fewer scatterers or a larger tolerance");
   }
 
-  // The box's block of M: kernel entries, but between unknowns of one half what is left of it.
+  // Returns the block of the remaining unknowns of a box. In a leaf it contains entries of M. In
+  // other boxes it contains the Schur complements of the two halves, and entries of M between the
+  // halves.
   std::vector<Complex> block(std::size_t box) {
     const std::span<const std::size_t> unknowns = active_[box];
     const std::size_t n = unknowns.size();
@@ -235,23 +241,24 @@ class FastDirect::Builder {
                         &m[j * (n + 1)], n);
     } else {
       const std::size_t half = tree_.boxes()[box].child, size = active_[half].size();
-      place_rest(half, m, n, 0);
-      place_rest(half + 1, m, n, size);
+      place_schur_complement(half, m, n, 0);
+      place_schur_complement(half + 1, m, n, size);
       system_.entries(unknowns.subspan(size), unknowns.first(size), &m[size], n);
     }
     mirror_lower(m, n);
     return m;
   }
 
-  void place_rest(std::size_t half, std::vector<Complex>& m, std::size_t n, std::size_t first) {
+  void place_schur_complement(std::size_t half, std::vector<Complex>& m, std::size_t n,
+                              std::size_t first) {
     const std::size_t size = active_[half].size();
     for (std::size_t j = 0; j < size; ++j)
-      std::copy_n(&rest_[half][j * size], size, &m[first + n * (first + j)]);
-    std::vector<Complex>().swap(rest_[half]);
+      std::copy_n(&schur_complement_[half][j * size], size, &m[first + n * (first + j)]);
+    std::vector<Complex>().swap(schur_complement_[half]);
   }
 
-  // Unknowns outside of a box, as they are before its level is begun, of disks whose rim is nearer
-  // to it than a distance.
+  // Returns the unknowns outside a box that are not yet eliminated when the box's level is
+  // processed, and that belong to disks whose rims are nearer to the box than `distance`.
   std::vector<std::size_t> near_unknowns(std::size_t box, double distance) const {
     const auto& boxes = tree_.boxes();
     const Rectangle& hull = boxes[box].hull;
@@ -278,16 +285,16 @@ class FastDirect::Builder {
     const double start = thread_cpu_seconds();
     const ActiveBox active{tree_.boxes()[box].hull, active_[box]};
     const auto near = near_unknowns(box, skeletonization_.distance(active));
-    // addressed by the box, so that no thread matters
+    // The random stream depends on the box, not on the thread.
     const auto interpolation = skeletonization_(active, near, RandomStream(0, 0, box));
     SkeletonElimination elimination(active_[box], block(box), interpolation);
-    rest_[box] = elimination.take_rest();
+    schur_complement_[box] = elimination.take_schur_complement();
     cpu_seconds_[box] = thread_cpu_seconds() - start;
     return elimination;
   }
 
   std::vector<SkeletonElimination> eliminate_level(std::size_t level, double held) {
-    join_halves(level);
+    connect_halves(level);
     require_memory(level, held);
     const std::size_t begin = tree_.level_begin(level);
     std::vector<SkeletonElimination> eliminations(tree_.level_end(level) - begin);
@@ -311,7 +318,7 @@ class FastDirect::Builder {
   }
 
   void factor_root(FastDirect& result) {
-    join_halves(0);
+    connect_halves(0);
     require_memory(0, result.statistics_.bytes);
     const double start = thread_cpu_seconds();
     const std::size_t n = active_[0].size();
@@ -330,7 +337,7 @@ class FastDirect::Builder {
   std::vector<SortedDisk> disks_;
   BoxTree tree_;
   std::vector<std::vector<std::size_t>> active_;
-  std::vector<std::vector<Complex>> rest_;
+  std::vector<std::vector<Complex>> schur_complement_;
   std::vector<double> cpu_seconds_;
 };
 

@@ -12,26 +12,28 @@
 
 namespace flatspeckle::wave {
 
-/// Elimination of those unknowns R of a box whose waves outside are told by its skeleton S. In the
-/// variables y_R = x_R, y_S = x_S + T x_R, a real congruence, the redundant ones do not reach
-/// beyond the box:
+/// Elimination of the redundant unknowns R of a box, whose waves outside the box are interpolated,
+/// by the matrix T of an Interpolation, from those of its skeleton S. In the variables y_R = x_R,
+/// y_S = x_S + T x_R (a real congruence), the redundant unknowns do not couple to unknowns outside
+/// the box. With
 ///   X_RR = M_RR - M_RS T - T^T M_SR + T^T M_SS T = L L^T,   Q = M_SR - M_SS T,   E = Q L^-T,
-/// and what is left of the box is M_SS - E E^T (Ho and Greengard 2012).
+/// the Schur complement of the box is M_SS - E E^T [ho2012].
 class SkeletonElimination {
  public:
   SkeletonElimination() = default;
-  /// unknowns: those of the box; m: the box's block of M, |unknowns| squared, symmetric. Throws
-  /// std::runtime_error where X_RR is singular.
+  /// unknowns: the unknowns of the box. m: the symmetric block of M for these unknowns. Throws
+  /// std::runtime_error if X_RR is singular.
   SkeletonElimination(const std::vector<std::size_t>& unknowns, const std::vector<Complex>& m,
                       const Interpolation& interpolation);
 
   const std::vector<std::size_t>& skeleton() const { return skeleton_; }
-  /// Memory that the factors occupy.
+  /// Memory of the factors, in bytes.
   double bytes() const;
-  /// M_SS - E E^T, full; to be taken once.
-  std::vector<Complex> take_rest() { return std::move(rest_); }
+  /// Moves M_SS - E E^T (both triangles) out of this object; to be called once.
+  std::vector<Complex> take_schur_complement() { return std::move(schur_complement_); }
 
-  /// The two halves of a solution, in place; x: [unknown][column], all unknowns of M.
+  /// Forward and backward substitution, in place, for the unknowns of this box. x: columns over all
+  /// unknowns of M, [unknown][column].
   void forward(Complex* x, std::size_t columns) const;
   void backward(Complex* x, std::size_t columns) const;
 
@@ -39,42 +41,45 @@ class SkeletonElimination {
   void congruence();
 
   std::vector<std::size_t> skeleton_, redundant_;
-  std::vector<double> t_;              // T^T, column-major
-  std::vector<Complex> e_, l_, rest_;  // column-major
+  std::vector<double> t_;                          // T^T, column-major
+  std::vector<Complex> e_, l_, schur_complement_;  // column-major
 };
 
 /// Direct solver of the multiple-scattering equations for large placements: recursive
-/// skeletonization of the complex symmetric M on a tree of boxes (Martinsson and Rokhlin 2005; Ho
-/// and Greengard 2012). Some unknowns of a box, about as many as its perimeter has half
-/// wavelengths, and more with log(1/tolerance), can tell all waves that leave it. The others are
-/// eliminated, and boxes are joined two by two until one is left.
+/// skeletonization of the complex symmetric M on a tree of boxes (Martinsson and Rokhlin
+/// [martinsson2005]; Ho and Greengard [ho2012]). A subset of the unknowns of a box (the skeleton)
+/// determines all waves that leave the box. The size of the skeleton is about the number of half
+/// wavelengths along the perimeter, and grows with log(1/tolerance). The other unknowns are
+/// eliminated, and boxes are merged in pairs until one box is left.
 ///
-/// Cost about N^(3/2), memory about N log N at fixed density, whether the scattering resonates or
-/// not. Error: M is replaced by a matrix that differs by about `tolerance` in norm; the relative
-/// residual of a solution is about that, its relative error larger by the condition of M.
-/// Elimination is without pivoting: residuals of many resonant scatterers stop falling before the
-/// tolerance does (16384 points: 5e-11 at 1e-10, 2e-9 at 1e-12). A step of refinement mends that.
+/// For N unknowns at fixed density, the cost grows about as N^(3/2) and the memory as N log N, with
+/// or without resonances. The solver replaces M by a matrix that differs from it by about
+/// `tolerance` in norm. The relative residual of a solution is about the same; its relative error
+/// is larger by the condition number of M. Elimination does not pivot. With many resonant
+/// scatterers the residual therefore does not decrease as far as the tolerance (16384 points:
+/// residual 5e-11 at tolerance 1e-10, but 2e-9 at 1e-12). One step of iterative refinement corrects
+/// this.
 class FastDirect {
  public:
   struct Level {
-    std::size_t boxes = 0;     ///< that were compressed at this level
-    std::size_t unknowns = 0;  ///< that they held, in sum
-    std::size_t skeleton = 0;  ///< that are left of them, in sum
-    std::size_t largest = 0;   ///< skeleton of one box
+    std::size_t boxes = 0;     ///< number of boxes compressed at this level
+    std::size_t unknowns = 0;  ///< unknowns of these boxes before compression
+    std::size_t skeleton = 0;  ///< unknowns of these boxes after compression
+    std::size_t largest = 0;   ///< largest skeleton of a box
   };
   struct Statistics {
-    double cpu_seconds = 0, wall_seconds = 0;  ///< of the factorization
-    double bytes = 0;                          ///< that the factors occupy
-    std::vector<Level> levels;                 ///< from the leaves upwards
-    std::size_t root = 0;                      ///< unknowns of the last, dense factor
+    double cpu_seconds = 0, wall_seconds = 0;  ///< time of the factorization
+    double bytes = 0;                          ///< memory of the factors
+    std::vector<Level> levels;                 ///< sizes of each level, from the leaves upwards
+    std::size_t root = 0;                      ///< unknowns of the last, dense factorization
   };
 
-  /// Factors M. Threaded over the boxes of a level, with the same result for any number of
-  /// threads. Throws InputError where more than `memory` bytes might be needed, before a level is
-  /// begun, and std::runtime_error for singular equations. 0 < tolerance < 1.
+  /// Factors M. Threaded over the boxes of a level; the result does not depend on the number of
+  /// threads. Throws InputError before a level that might need more than `memory` bytes, and
+  /// std::runtime_error for singular equations. Precondition: 0 < tolerance < 1.
   FastDirect(const WaveEquations& system, double tolerance, double memory = memory_of_system());
 
-  /// X <- M^-1 X, threaded likewise; x: [column][unknown].
+  /// Replaces x, [column][unknown], by M^-1 x. Threaded over the boxes of a level.
   void solve(std::span<Complex> x) const;
 
   const Statistics& statistics() const { return statistics_; }
@@ -84,9 +89,9 @@ class FastDirect {
   void solve_root(std::vector<Complex>& x, std::size_t columns) const;
 
   std::size_t unknowns_;
-  std::vector<std::vector<SkeletonElimination>> levels_;  // from the leaves upwards
+  std::vector<std::vector<SkeletonElimination>> levels_;  // boxes by level, from the leaves upwards
   std::vector<std::size_t> root_unknowns_;
-  std::vector<Complex> root_;  // its lower triangular factor
+  std::vector<Complex> root_;  // lower triangular factor for root_unknowns_
   Statistics statistics_;
 };
 

@@ -28,7 +28,7 @@ void BoxTree::add(std::size_t first, std::size_t last, std::size_t level,
     return Rectangle{disk.centre - reach, disk.centre + reach};
   };
   Rectangle hull = rims(first);
-  for (std::size_t place = first + 1; place < last; ++place) hull = hull.joined(rims(place));
+  for (std::size_t place = first + 1; place < last; ++place) hull = hull.united(rims(place));
   boxes_.push_back({hull, first, last, 0, level});
 }
 
@@ -39,7 +39,7 @@ void BoxTree::split(std::size_t box, std::span<const SortedDisk> disks, std::siz
   std::size_t unknowns = 0;
   for (std::size_t place = first; place < last; ++place) {
     const SortedDisk& disk = disks[order_[place]];
-    extent = extent.joined({disk.centre, disk.centre});
+    extent = extent.united({disk.centre, disk.centre});
     unknowns += disk.unknowns;
   }
   if (unknowns <= leaf_unknowns) return;
@@ -52,7 +52,7 @@ void BoxTree::split(std::size_t box, std::span<const SortedDisk> disks, std::siz
         return along_x ? centre.x < middle.x : centre.z < middle.z;
       });
   const auto half = static_cast<std::size_t>(cut - order_.begin());
-  if (half == first || half == last) return;  // common centres, or neighbouring numbers
+  if (half == first || half == last) return;  // centres are equal up to rounding
   boxes_[box].child = boxes_.size();
   const std::size_t level = boxes_[box].level + 1;
   add(first, half, level, disks);
@@ -61,9 +61,10 @@ void BoxTree::split(std::size_t box, std::span<const SortedDisk> disks, std::siz
 
 namespace {
 
-constexpr std::size_t chunk = 128;  // rows that are formed at a time
+constexpr std::size_t chunk = 128;  // rows computed at a time
 
-// What a unit field, at most, excites in a body: its equations' size. Of cos n and sin n, one.
+// Returns the largest response of a body to a unit field, which is the scale of the equations. Of
+// the modes cos(n phi) and sin(n phi) only one is counted.
 double largest_response(const WaveEquations& system) {
   double largest = 0;
   for (std::size_t j = 0; j < system.bodies().size(); ++j) {
@@ -75,15 +76,17 @@ double largest_response(const WaveEquations& system) {
   return largest;
 }
 
-// Samples that are eliminated together; those that at least are looked at to tell the error, since
-// each of them knows of some of the rows only.
+// Least number of samples from which errors are estimated. A single sample is not enough, because
+// it contains only some of the rows.
 constexpr std::size_t sample_window = 64;
 
+// Number of samples that are eliminated together.
 std::size_t panel_of(std::size_t columns) {
   return columns < 400 ? 8 : 16;
 }
 
-// LU of the transposed sketch, n rows (the columns of A) by samples; pivots take their order.
+// LU factorization of the transposed RowSketch of a matrix A. The rows of the factored matrix are
+// the n columns of A, permuted by order_; its columns are the samples.
 class PivotedLu {
  public:
   PivotedLu(std::vector<double> a, std::size_t n) : a_(std::move(a)), n_(n), order_(n) {
@@ -93,7 +96,7 @@ class PivotedLu {
   std::size_t rank() const { return pivots_.size(); }
   std::size_t samples() const { return a_.size() / n_; }
 
-  // Applies the pivots since number `from` to samples first .. last - 1.
+  // Applies the elimination steps from number `from` on to samples first .. last - 1.
   void update(std::size_t from, std::size_t first, std::size_t last) {
     const std::size_t depth = rank() - from, width = last - first;
     if (depth == 0 || width == 0) return;
@@ -109,7 +112,8 @@ class PivotedLu {
                 blas_size(n_), 1, block + rank(), blas_size(n_));
   }
 
-  // What is left of a column in the next samples, mean square, the largest of all columns.
+  // Returns, for the column of A with the largest residual, the mean square of that residual over
+  // the next `width` samples.
   double largest_left(std::size_t width) const {
     std::vector<double> squares(n_ - rank());
     for (std::size_t j = 0; j < width; ++j) {
@@ -119,7 +123,7 @@ class PivotedLu {
     return *std::max_element(squares.begin(), squares.end()) / static_cast<double>(width);
   }
 
-  // The next samples, up to date, choose a pivot each.
+  // Chooses one pivot in each of the next `width` samples, which must be up to date.
   void eliminate(std::size_t width) {
     const std::size_t from = rank();
     pivots_.resize(from + std::min(width, n_ - from));
@@ -134,7 +138,8 @@ class PivotedLu {
                      blas_size(from + 1), blas_size(rank()), pivots_.data(), 1);
   }
 
-  // T^T = L_2 L_1^-1
+  // Returns the skeleton and T^T = L_2 L_1^-1, where L_1 are the rows of L that belong to the
+  // skeleton, and L_2 the other rows.
   Interpolation interpolation() {
     const std::size_t rest = n_ - rank();
     if (rank() > 0 && rest > 0)
@@ -180,7 +185,7 @@ std::vector<Vec2> proxy_contour(const Rectangle& hull, double distance, double s
                         {{hull.low.x, hull.high.z}, {-1, 0}, hull.width()},
                         {hull.low, {0, -1}, hull.depth()}};
   std::vector<Vec2> points;
-  double s = step / 2;  // along a side, then along the arc that follows it
+  double s = step / 2;  // arc length along a side, then along the quarter circle after it
   for (const auto& [end, along, length] : sides) {
     const Vec2 outward{along.z, -along.x};
     for (; s < length; s += step) points.push_back(end + (s - length) * along + distance * outward);
@@ -198,9 +203,11 @@ Skeletonization::Skeletonization(const WaveEquations& system, double tolerance)
       logarithm_(-std::log(tolerance)),
       weight_(largest_response(system)) {}
 
-// Evanescent waves of the box fade as exp(-q distance): the contour needs about ln(1/tolerance) /
-// pi points per distance, against density times distance near rows. Measured: half as much again
-// costs less in rank than in rows.
+// Evanescent waves of the box decay as exp(-q distance), where q is the wavenumber along the
+// contour. On each piece of the contour that is as long as the distance, about ln(1/tolerance) / pi
+// points are needed; next to it there are about density distance^2 near unknowns. The distance is
+// chosen so that these two numbers are equal. The factor 1.5 was found by measurement: a larger
+// distance reduces the rank by more than the additional rows cost.
 double Skeletonization::distance(const ActiveBox& box) const {
   const double longer = std::max(box.hull.width(), box.hull.depth());
   const double shorter = std::min(box.hull.width(), box.hull.depth());
@@ -218,7 +225,8 @@ Interpolation Skeletonization::operator()(const ActiveBox& box, std::span<const 
   return interpolate(std::move(sketch), tolerance_);
 }
 
-// M is symmetric: the box's rows of the near columns are the near rows, transposed as wanted.
+// The rows of M of the near unknowns, restricted to the box's columns, are needed. Because M is
+// symmetric, they are computed as columns of M, restricted to the box's rows.
 void Skeletonization::add_near(const ActiveBox& box, std::span<const std::size_t> near,
                                RowSketch& sketch) const {
   const std::size_t n = box.unknowns.size();
@@ -230,8 +238,9 @@ void Skeletonization::add_near(const ActiveBox& box, std::span<const std::size_t
   }
 }
 
-// Two points a wavelength tell all travelling waves along the contour. Evanescent ones are resolved
-// up to exp(-q distance) = sqrt(tolerance), and folded onto slower ones beyond.
+// Two points per wavelength resolve all propagating waves along the contour. Evanescent waves are
+// resolved up to the wavenumber q along the contour for which exp(-q distance) = sqrt(tolerance);
+// waves of larger q are aliased to lower frequencies.
 void Skeletonization::add_contour(const ActiveBox& box, RowSketch& sketch) const {
   const double reach = distance(box);
   const double spacing = std::numbers::pi / std::max(system_.k(), logarithm_ / (2 * reach));
@@ -275,11 +284,12 @@ void RowSketch::add(std::span<const Complex> row) {
 Interpolation interpolate(RowSketch sketch, double tolerance) {
   const std::size_t columns = sketch.columns_, panel = panel_of(columns);
   if (columns == 0) return {};
-  // The mean square of a column over samples is spread / samples of its squared norm.
+  // The expected mean square of a column over the samples is spread / samples times the squared
+  // norm of the column.
   const double limit = tolerance * tolerance * static_cast<double>(RowSketch::spread) /
                        static_cast<double>(sketch.samples_);
   PivotedLu lu(std::move(sketch.sums_), columns);
-  std::size_t last = 0;  // samples that are up to date
+  std::size_t last = 0;  // number of samples to which all elimination steps are applied
   while (lu.rank() < columns) {
     if (lu.rank() + sample_window > last) {
       const std::size_t next = std::min(last + 2 * sample_window, lu.samples());

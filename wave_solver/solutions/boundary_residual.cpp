@@ -15,7 +15,7 @@ namespace {
 
 using Kind = Scatterer::Kind;
 
-// A disk and what comes closest to it.
+// A disk, with the gap to its closest neighbour and the direction towards it.
 struct Rim {
   std::size_t disk = 0;
   double gap = 0;
@@ -47,17 +47,17 @@ std::vector<Rim> narrowest(const Placement& placement) {
   return rims;
 }
 
-// A field and its derivative along r, divided by k.
+// A field u at a point of a rim, and du/dr / k with its radial derivative.
 struct RimField {
-  Complex field, slope;
+  Complex field, derivative;
 };
 
-// Scattered field and slope of all lights at points on a rim: [light][point].
+// Scattered field and its derivative (RimField) for all lights at points on a rim: [light][point].
 struct Traces {
-  std::vector<Complex> field, slope;
+  std::vector<Complex> field, derivative;
 };
 
-// Adds traces of scatterers whose unknowns stand side by side, by one product for all lights.
+// Adds the fields scattered by scatterers begin .. end - 1, with one matrix product for all lights.
 void add_traces(const WaveSolution& solution, std::size_t begin, std::size_t end,
                 std::span<const Vec2> points, std::span<const Vec2> normals, Traces& traces) {
   const TMatrixSystem& system = solution.system();
@@ -68,7 +68,7 @@ void add_traces(const WaveSolution& solution, std::size_t begin, std::size_t end
     const ModeSet sender = system.modes(j);
     const std::size_t at = (system.first(j) - first) * count;
     field_at(system.k(), points, sender, {&values[at], count});
-    slopes(system.k(), points, normals, sender, {&derivatives[at], count});
+    directional_derivatives(system.k(), points, normals, sender, {&derivatives[at], count});
   }
   const Complex* beta = &solution.coefficients(0)[first];
   const auto add = [&](const std::vector<Complex>& rows, std::vector<Complex>& sums) {
@@ -76,7 +76,7 @@ void add_traces(const WaveSolution& solution, std::size_t begin, std::size_t end
              rows.data(), count, beta, system.unknowns(), 1, sums.data(), count);
   };
   add(values, traces.field);
-  add(derivatives, traces.slope);
+  add(derivatives, traces.derivative);
 }
 
 Traces scattered_traces(const WaveSolution& solution, std::span<const Vec2> points,
@@ -107,15 +107,16 @@ RimField total_inside(std::span<const Complex> beta, const ModeSet& modes,
     const double turn = modes.modes[i].odd ? std::sin(n * angle) : std::cos(n * angle);
     const Complex factor = beta[i] * (n == 0 ? 1 : std::numbers::sqrt2) * turn;
     total.field += factor * Complex(waves[n].field);
-    total.slope += factor * Complex(waves[n].slope);
+    total.derivative += factor * Complex(waves[n].derivative);
   }
   return total;
 }
 
 double mismatch(Kind kind, const RimField& outside, const RimField& inside) {
   if (kind == Kind::soft) return std::abs(outside.field);
-  if (kind == Kind::hard) return std::abs(outside.slope);
-  return std::max(std::abs(outside.field - inside.field), std::abs(outside.slope - inside.slope));
+  if (kind == Kind::hard) return std::abs(outside.derivative);
+  return std::max(std::abs(outside.field - inside.field),
+                  std::abs(outside.derivative - inside.derivative));
 }
 
 double residual_on(const WaveSolution& solution, const Rim& rim) {
@@ -141,7 +142,7 @@ double residual_on(const WaveSolution& solution, const Rim& rim) {
       RimField outside =
           incident(system.k(), solution.light_angles()[light], points[i], normals[i]);
       outside.field += scattered.field[light * count + i];
-      outside.slope += scattered.slope[light * count + i];
+      outside.derivative += scattered.derivative[light * count + i];
       const RimField inside =
           penetrable ? total_inside(beta, system.modes(rim.disk), inside_waves, angles[i])
                      : RimField{};

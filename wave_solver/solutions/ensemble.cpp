@@ -36,19 +36,19 @@ FieldPlan field_plan(const Scene& scene, double tolerance) {
                          {{0, box.depth / 2}, radius}, tolerance);
 }
 
-// Solves placements for what a scene asks for.
+// Solves placements for the lights and views of a scene.
 struct PlacementFields {
   Scene scene;
   FieldPlan plan;
   SolveOptions options;
-  std::optional<GradedFields> graded;  // where the index varies
+  std::optional<GradedFields> graded;  // set if the refractive index varies in space
 
   PlacementFields(const Scene& of, double tolerance, Method method)
       : scene(of), plan(field_plan(of, tolerance)), options(batch_options(of, tolerance, method)) {
     if (scene.index && scene.index->is_around()) graded = graded_fields(scene);
   }
 
-  // In every channel of the request.
+  // Returns the fields of a placement in every channel of the request.
   std::vector<Complex> of(const Placement& placement) const {
     const CovarianceRequest& request = scene.request;
     const auto fields =
@@ -61,13 +61,15 @@ struct PlacementFields {
   }
 };
 
-// (sum u_a u_b* - sum u_a sum u_b* / n) / (n - 1); 0 while one sample shows no spread.
+// Returns the unbiased covariance of u_a and u_b, (sum u_a u_b* - sum u_a sum u_b* / n) / (n - 1)
+// for n samples; 0 for fewer than two samples.
 Complex sample_covariance(double samples, Complex products, Complex a, Complex b) {
   return samples < 2 ? 0 : (products - a * std::conj(b) / samples) / (samples - 1);
 }
 
-// Of one placement at all frequencies: u per channel, u_a u_b* per entry, then for each shift and
-// changing entry, with u_b at that frequency, u_b and u_a u_b*.
+// Accumulates the sums of placements at all frequencies: u of each channel and u_a u_b* of each
+// entry. Then, for each frequency shift and each entry that changes with it (changing_entries): u_b
+// and u_a u_b*, with u_b at the shifted frequency.
 class Ensemble {
  public:
   Ensemble(const Scene& scene, const std::vector<double>& shifts, double tolerance, Method method)
@@ -106,7 +108,8 @@ class Ensemble {
     return placement_covariance(request(), samples, sums);
   }
 
-  // [1 + shift][entry]
+  // Returns the covariances without a frequency shift, then the covariances for each shift: [1 +
+  // shift][entry].
   std::vector<Complex> all(double samples, std::span<const Complex> sums) const {
     auto values = covariance(samples, sums);
     for (std::size_t s = 0; s < others_.size(); ++s) {
@@ -127,7 +130,8 @@ class Ensemble {
   std::vector<PlacementFields> others_;
 };
 
-// Centres of disks are anywhere in the box; some placement would cover what is within a radius.
+// Throws InputError if a disk may cover the point. The centre of a disk may be anywhere in the box.
+// A point less than one radius outside the box can therefore still be covered.
 void require_uncovered(const Scene& scene, const std::string& key, Vec2 point) {
   const Domain& box = scene.domain;
   const Vec2 beyond{std::max(0.0, std::abs(point.x) - box.width / 2),
@@ -135,24 +139,26 @@ void require_uncovered(const Scene& scene, const std::string& key, Vec2 point) {
   const double radius = scene.scatterer.disk_radius();
   if (length(beyond) < radius)
     throw InputError(key, "(" + number_text(point.x) + ", " + number_text(point.z) + ")",
-                     "a cylinder may cover it; the exact solver needs points a radius (" +
-                         number_text(radius) + ") and more outside of the box");
+                     "must be at least a radius (" + number_text(radius) +
+                         ") outside the box for the exact solver, because a cylinder may cover it");
 }
 
 void require_solvable(const Scene& scene) {
   if (scene.domain.kind == Domain::Kind::slab)
-    throw InputError("domain", "slab", "the wave solver needs a box");
+    throw InputError("domain", "slab", "the wave solver requires a box");
   if (scene.profile && scene.placement.kind == PlacementRule::Kind::equilibrium)
-    throw InputError("placement", "equilibrium", "is of media that do not vary: take hard_disk");
+    throw InputError("placement", "equilibrium",
+                     "requires a medium without layers or density maps; use hard_disk");
   if (scene.scatterer.is_bulk())
-    throw InputError("scatterer", "hg", "the wave solver needs point, soft, hard, tm or te");
+    throw InputError("scatterer", "hg", "the wave solver requires point, soft, hard, tm or te");
   for (const View& view : scene.request.views)
     if (view.near) require_uncovered(scene, "near_sensors", view.point);
   for (const Light& light : scene.request.lights)
     if (light.kind == Light::Kind::point) require_uncovered(scene, "near_sources", light.point);
 }
 
-// What placements have at the least: disks, orders that their neighbours ask for as well.
+// Throws InputError if the memory is certainly insufficient. The estimate is a lower bound: it uses
+// the basis orders of isolated disks, and neighbours may require higher orders.
 void require_memory(const Scene& scene, double tolerance) {
   const bool disk = scene.scatterer.is_disk();
   const int order = disk ? isolated_order(scene.scatterer, scene.k, tolerance) : 0;
@@ -183,7 +189,7 @@ FrequencyJob frequency_job(const Scene& scene, const std::vector<double>& shifts
   require_solvable(scene);
   require_placeable(scene.placement);
   require_memory(scene, tolerance);
-  blas_single_thread();  // says now what it lacks
+  blas_single_thread();  // throws before the run if BLAS lacks memory
   const auto ensemble = std::make_shared<const Ensemble>(scene, shifts, tolerance, method);
   const auto estimator = [&](auto of) -> Estimator {
     return [=](double samples, std::span<const Complex> sums) {

@@ -10,24 +10,24 @@
 
 namespace flatspeckle::wave {
 
-/// The exact solver as batches for the runner: batch = one placement drawn with (seed, number) and
-/// solved for the lights of the request. Sums are [channel] u, then [entry] u_a conj(u_b); mean and
-/// covariance are read from them with the sample mean removed, unbiased (C12).
-/// tolerance: of every placement's fields (SolveOptions).
-/// Throws InputError for a slab and the bulk, which have no finite placement and no T-matrix, and
-/// for near sensors and sources that a cylinder may cover, and where the matrices of all threads
-/// surely need more memory than there is.
+/// Makes the job of the exact solver for the runner. A batch is one placement, drawn with the
+/// random numbers of (seed, batch number) and solved for the lights of the request. It adds to the
+/// sums the field u of each channel, then u_a conj(u_b) of each entry. Estimates of mean and
+/// covariance from these sums are unbiased (C12). tolerance: error of every placement's fields
+/// (SolveOptions). Throws InputError for a slab, which has no finite placement; for phase functions
+/// of the bulk, which have no T-matrix; for near sensors and sources that a cylinder may cover; and
+/// if the matrices of all threads certainly exceed the available memory.
 FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance,
                   Method method = Method::automatic);
 
-/// Returns the covariance of each entry from such sums; 0 while one sample shows no spread.
+/// Returns the covariance of each entry from the sums of wave_job(); 0 for fewer than two samples.
 std::vector<Complex> placement_covariance(const CovarianceRequest& request, double samples,
                                           std::span<const Complex> sums);
 
-/// The same, each placement solved at shifted frequencies too (conventions, C39; checked by
-/// check_frequency_shifts()). all: the entries, then those with the second field at each shifted
-/// frequency, [1 + shift][entry], 0 where entries do not change. Disks and points keep radius,
-/// index and phase shift.
+/// Job that also solves each placement at shifted frequencies (conventions, C39), which
+/// check_frequency_shifts() must accept. all: estimates the covariances [1 + shift][entry], first
+/// without a shift, then with the second field at each shifted frequency; 0 for entries beyond
+/// changing_entries(). Disks and points keep their radius, index and phase shift.
 struct FrequencyJob {
   FieldJob field;
   Estimator all;

@@ -21,9 +21,10 @@ namespace flatspeckle::wave {
 
 namespace {
 
-constexpr std::size_t few = 8;  // fewer lights are not worth the trouble
+constexpr std::size_t few = 8;  // up to this number of lights a LightBasis saves little
 
-// The largest |J_n| within the circle, n = 0, 1, .. until it is negligible.
+// Returns upper bounds of |J_n(k r)| within the circle k r <= x, for n = 0, 1, .. until they are
+// negligible.
 std::vector<double> wave_sizes(double x, double tolerance) {
   std::vector<double> sizes;
   const int start = static_cast<int>(std::ceil(x));
@@ -36,7 +37,8 @@ std::vector<double> wave_sizes(double x, double tolerance) {
   return sizes;
 }
 
-// Column-major: rows n = -M .. M of size_n i^n e^{-i n angle}, columns lights.
+// Returns the expansion coefficients of plane waves, sizes_n i^n e^{-i n angle} (wave_sizes()), as
+// a column-major matrix with one row for each n = -M .. M and one column for each light.
 std::vector<Complex> coefficients(std::span<const double> angles,
                                   const std::vector<double>& sizes) {
   const int most = static_cast<int>(sizes.size()) - 1;
@@ -55,33 +57,37 @@ LightBasis source_basis(const Lights& lights) {
   LightBasis basis;
   for (const Light& light : lights) {
     if (!is_source(light))
-      throw InputError("near sources and plane waves or beams: solve for one kind at a time");
+      throw InputError(
+          "near sources cannot be combined with plane waves or beams; solve for one kind at a "
+          "time");
     basis.sources.push_back(light.point);
   }
   return basis;
 }
 
-// A plane wave of a light.
+// A plane wave that is part of a light.
 struct Wave {
   double angle;
   Complex weight;
 };
+// Contribution of a plane wave to one of the lights (index `light`).
 struct Part {
   std::size_t light;
   Complex weight;
 };
 
-// With the transverse wavenumber q, a beam of waist w has the spectrum
+// Expands a light in plane waves. A beam of waist w has at its focus the spectrum
 //   w / (2 sqrt(pi)) exp(-q^2 w^2 / 4)
-// at its focus. Equal steps of q repeat the beam sideways, beyond the circle.
+// of the transverse wavenumber q. Equal steps of q make the beam periodic across its axis; its
+// periodic copies lie outside the circle.
 std::vector<Wave> waves_of(const Light& light, double k, const Circle& circle, double tolerance) {
   if (light.kind == Light::Kind::plane) return {{light.angle, 1}};
-  const Vec2 way = circle.centre - light.point, axis = direction(light.angle);
-  const double waist = light.waist, reach = length(way) + circle.radius;
+  const Vec2 offset = circle.centre - light.point, axis = direction(light.angle);
+  const double waist = light.waist, reach = length(offset) + circle.radius;
   const double width = waist * std::hypot(1, 2 * reach / (k * waist * waist));
-  constexpr double negligible = 6;  // widths
-  const double aside = std::abs(way.x * axis.z - way.z * axis.x) + circle.radius;
-  const double step = 2 * std::numbers::pi / (aside + negligible * width);
+  constexpr double negligible = 6;  // the field is negligible this many widths from the axis
+  const double lateral = std::abs(offset.x * axis.z - offset.z * axis.x) + circle.radius;
+  const double step = 2 * std::numbers::pi / (lateral + negligible * width);
   const double highest = std::min(0.999 * k, 2 / waist * std::sqrt(std::log(1e3 / tolerance)));
   const int count = static_cast<int>(highest / step);
   std::vector<Wave> waves;
@@ -94,8 +100,8 @@ std::vector<Wave> waves_of(const Light& light, double k, const Circle& circle, d
   return waves;
 }
 
-constexpr double best_product = 1e-12;  // the least tolerance of FastProduct
-constexpr double rough_factor = 1e-6;   // finer ones cost more than the refinement that they save
+constexpr double best_product = 1e-12;  // smallest tolerance of FastProduct
+constexpr double rough_factor = 1e-6;   // smallest tolerance of FastDirect that saves time
 
 double root_mean_square(const std::vector<double>& values) {
   double sum = 0;
@@ -137,7 +143,7 @@ LightBasis light_basis(std::span<const double> angles, double k, const Circle& c
   lapack_int rank = 0;
   while (rank < std::min(rows, columns) && diagonal(rank) > tolerance) ++rank;
   if (10 * rank > 9 * columns) return all;
-  // The columns left out are R11^-1 R12 of those kept.
+  // The omitted columns are the kept ones times R11^-1 R12.
   triangular_solve(CblasLeft, CblasUpper, CblasNoTrans, rank, columns - rank, matrix.data(), rows,
                    &matrix[rank * rows], rows);
   LightBasis basis;
@@ -189,7 +195,8 @@ std::vector<Complex> expanded(const LightBasis& basis, std::vector<Complex> colu
   return all;
 }
 
-// Fields at the rims and inside of disks amplify what is left of the equations.
+// The tolerance is lower if there are sensors, because fields at the rims and inside disks amplify
+// the residual of the equations.
 EquationSolver solver_of(const WaveEquations& equations, const SolveOptions& options) {
   const Method method = options.method == Method::automatic
                             ? method_for(equations.unknowns(), options.tolerance)
@@ -205,17 +212,18 @@ double norm_of(const std::vector<Complex>& values) {
   return std::sqrt(squares);
 }
 
-// A rounding e of a radius changes M by e |T|/T d ln T / d ln(radius) on its diagonal, one of the
-// sides likewise; to first order, M^-1 of that and a solution is what the solution changes by. Of
-// the first of their combinations().
+// Returns the relative change of far fields due to rounding. A relative rounding error e of a
+// radius changes the diagonal of M by e |T|/T d ln T / d ln(radius); right-hand sides change by
+// their own relative rounding error. To first order the solution changes by M^-1 times these
+// changes. Only the first of the combinations() of solutions and right-hand sides is used.
 double rounding_of(const WaveEquations& equations, EquationSolver& solver,
-                   const std::vector<Complex>& sides, const std::vector<Complex>& solution,
+                   const std::vector<Complex>& rhs, const std::vector<Complex>& solution,
                    std::span<const Complex> radius_derivatives) {
   constexpr double rounding = std::numeric_limits<double>::epsilon();
   const std::size_t n = equations.unknowns();
-  if (n == 0 || sides.empty()) return 0;
+  if (n == 0 || rhs.empty()) return 0;
   RandomStream random(0, 0, 0);
-  auto x = combinations(solution, n), changes = combinations(sides, n);
+  auto x = combinations(solution, n), changes = combinations(rhs, n);
   x.resize(n);
   changes.resize(n);
   for (std::size_t i = 0; i < changes.size(); ++i) {
@@ -240,18 +248,19 @@ LightSolution solve_lights(const WaveEquations& equations, const std::vector<dou
                            std::span<const Complex> radius_derivatives) {
   const auto basis = light_basis(light_angles, equations.k(), circle, options.tolerance);
   EquationSolver solver = solver_of(equations, options);
-  const auto sides = equations.right_sides(basis.angles);
-  LightSolution found{solver.solve(sides, options.diagnose), {}, {}};
+  const auto rhs = equations.right_hand_sides(basis.angles);
+  LightSolution found{solver.solve(rhs, options.diagnose), {}, {}};
   if (options.diagnose) {
-    std::vector<double> weights;  // those times their roots are rows of the unscaled equations
+    // The unscaled equations are the scaled ones times the square roots of these weights.
+    std::vector<double> weights;
     for (std::size_t i = 0; i < equations.unknowns(); ++i) weights.push_back(equations.strength(i));
-    found.diagnosis.residual = relative_size(solver.remainder(), sides, weights);
+    found.diagnosis.residual = relative_size(solver.combined_residual(), rhs, weights);
     found.diagnosis.condition = solver.condition();
   }
   found.method = solver.description();
   if (!radius_derivatives.empty())
     found.diagnosis.rounding = {
-        rounding_of(equations, solver, sides, found.coefficients, radius_derivatives),
+        rounding_of(equations, solver, rhs, found.coefficients, radius_derivatives),
         options.tolerance};
   found.coefficients = expanded(basis, std::move(found.coefficients), equations.unknowns());
   return found;
@@ -276,52 +285,53 @@ EquationSolver::EquationSolver(const WaveEquations& system, Method method, doubl
 
 EquationSolver::~EquationSolver() = default;
 
-std::vector<Complex> EquationSolver::solve(const std::vector<Complex>& sides, bool condition) {
+std::vector<Complex> EquationSolver::solve(const std::vector<Complex>& rhs, bool condition) {
   if (fast_)
-    if (auto x = refined(sides)) return std::move(*x);
-  if (!dense_) return by_gmres(sides);
-  auto x = dense_->solve(sides, condition);
-  remainder_ = dense_->remainder();
+    if (auto x = refined(rhs)) return std::move(*x);
+  if (!dense_) return by_gmres(rhs);
+  auto x = dense_->solve(rhs, condition);
+  combined_residual_ = dense_->combined_residual();
   description_ = dense_->is_pivoted() ? "dense LU with pivoting" : "dense L L^T without pivoting";
   return x;
 }
 
-std::vector<Complex> EquationSolver::solve_roughly(std::vector<Complex> sides) {
-  if (!fast_) return solve(sides);
-  fast_->solve(sides);
-  return sides;
+std::vector<Complex> EquationSolver::solve_roughly(std::vector<Complex> rhs) {
+  if (!fast_) return solve(rhs);
+  fast_->solve(rhs);
+  return rhs;
 }
 
-// Columns of norm 1 each, so that none is neglected beside others.
-std::optional<std::vector<Complex>> EquationSolver::refined(std::vector<Complex> sides) {
+// Solves with FastDirect and iterative refinement; nullopt if refinement does not converge.
+// Right-hand sides are scaled to norm 1, so that none is negligible compared with others.
+std::optional<std::vector<Complex>> EquationSolver::refined(std::vector<Complex> rhs) {
   const std::size_t n = system_.unknowns();
-  auto norms = column_norms(sides, n);
+  auto norms = column_norms(rhs, n);
   std::replace(norms.begin(), norms.end(), 0.0, 1.0);
-  for (std::size_t i = 0; i < sides.size(); ++i) sides[i] /= norms[i / n];
-  const auto sums = combinations(sides, n);
-  auto x = sides;
+  for (std::size_t i = 0; i < rhs.size(); ++i) rhs[i] /= norms[i / n];
+  const auto sums = combinations(rhs, n);
+  auto x = rhs;
   fast_->solve(x);
   double before = std::numeric_limits<double>::infinity();
   for (int step = 0;; ++step) {
-    remainder_ = subtracted(sums, combinations(x, n));
-    const double now = relative_size(remainder_, sides, std::vector<double>(n, 1));
+    combined_residual_ = subtracted(sums, combinations(x, n));
+    const double now = relative_size(combined_residual_, rhs, std::vector<double>(n, 1));
     description_ = "recursive skeletonization, refined " + std::to_string(step) +
                    " times, residual " + scientific(now);
     if (now <= tolerance_ / 2) break;
     if (!(now < before / 2)) return std::nullopt;
     before = now;
-    auto correction = subtracted(sides, x);
+    auto correction = subtracted(rhs, x);
     fast_->solve(correction);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction[i];
   }
   for (std::size_t i = 0; i < x.size(); ++i) x[i] *= norms[i / n];
   const double norm = root_mean_square(norms);
-  for (Complex& left : remainder_) left *= norm;
+  for (Complex& left : combined_residual_) left *= norm;
   return x;
 }
 
-// With the fast factor as preconditioner.
-std::vector<Complex> EquationSolver::by_gmres(const std::vector<Complex>& sides) {
+// Solves by GMRES. The preconditioner is FastDirect, if it was constructed (Method::fast).
+std::vector<Complex> EquationSolver::by_gmres(const std::vector<Complex>& rhs) {
   GmresOptions options{.tolerance = tolerance_};
   if (fast_)
     options.preconditioner = [this](std::span<const Complex> x) {
@@ -330,7 +340,7 @@ std::vector<Complex> EquationSolver::by_gmres(const std::vector<Complex>& sides)
       return y;
     };
   auto result = gmres([this](std::span<const Complex> x) { return (*product_)(x); },
-                      system_.unknowns(), sides, options);
+                      system_.unknowns(), rhs, options);
   double worst = 0;
   for (double residual : result.residuals) worst = std::max(worst, residual);
   const int steps =
@@ -338,15 +348,15 @@ std::vector<Complex> EquationSolver::by_gmres(const std::vector<Complex>& sides)
   description_ = (fast_ ? "recursive skeletonization and block GMRES, " : "block GMRES, ") +
                  std::to_string(steps) + " fast products, residual " + scientific(worst);
   if (!(worst <= 100 * tolerance_))
-    throw std::runtime_error("not solved: " + description_ + ", asked for " +
-                             scientific(tolerance_) +
-                             (fast_ ? "" : "; take --solver fast, which does not iterate"));
+    throw std::runtime_error("the multiple-scattering equations were not solved: " + description_ +
+                             ", required " + scientific(tolerance_) +
+                             (fast_ ? "" : "; use --solver fast, which is a direct method"));
   const std::size_t n = system_.unknowns();
-  remainder_ = subtracted(combinations(sides, n), combinations(result.x, n));
+  combined_residual_ = subtracted(combinations(rhs, n), combinations(result.x, n));
   return std::move(result.x);
 }
 
-// b - M x
+// Returns b - M x.
 std::vector<Complex> EquationSolver::subtracted(std::vector<Complex> b,
                                                 const std::vector<Complex>& x) const {
   const auto y = (*product_)(x);

@@ -20,42 +20,46 @@ class DenseFactor;
 class FastDirect;
 class FastProduct;
 
-/// How the equations are solved: `dense` by a factored matrix, `fast` by recursive skeletonization,
-/// refined with the fast product, `krylov` by GMRES with that product alone (weak scattering).
+/// Method that solves the equations. `dense` factors the matrix. `fast` uses recursive
+/// skeletonization (FastDirect), refined with FastProduct. `krylov` uses GMRES with FastProduct
+/// alone, which is suitable for weak scattering.
 enum class Method { automatic, dense, fast, krylov };
 
-/// What `automatic` means. The fast method is quicker from about 1000 unknowns on; the dense one
-/// leaves residuals of rounding and tells the condition, and is kept for longer where that is
-/// asked.
+/// Returns the method that `automatic` selects. The fast method is quicker from about 1000 unknowns
+/// on. The dense method reaches residuals at the level of rounding and estimates the condition
+/// number. If the tolerance is small, the dense method is therefore used up to a larger number of
+/// unknowns.
 Method method_for(std::size_t unknowns, double tolerance);
 
-/// M beta = r, factored once for many right sides.
+/// Solver of M beta = r, factored once for many right-hand sides.
 class EquationSolver {
  public:
-  /// Keeps a reference to the system. tolerance: asked of the residual of fast and krylov, from
-  /// 1e-12 on; dense leaves that of rounding. Throws InputError where memory does not suffice.
+  /// Keeps a reference to the system. tolerance: required residual of the methods fast and krylov,
+  /// at least 1e-12. The residual of the method dense is always at the level of rounding. Throws
+  /// InputError if memory does not suffice.
   EquationSolver(const WaveEquations& system, Method method, double tolerance);
   ~EquationSolver();
 
-  /// sides: [column][unknown]; condition: also estimate it, where the method can. Throws
-  /// std::runtime_error where no finite solution is found, or a residual stays more than a hundred
-  /// times above the tolerance.
-  std::vector<Complex> solve(const std::vector<Complex>& sides, bool condition = false);
-  /// Solves them to two digits and more, where the method has such a solution that costs less.
-  std::vector<Complex> solve_roughly(std::vector<Complex> sides);
+  /// Solves for right-hand sides rhs, [column][unknown]. condition: whether to estimate the
+  /// condition number as well, if the method can. Throws std::runtime_error if no finite solution
+  /// is found, or if a residual exceeds the tolerance by more than a factor of 100.
+  std::vector<Complex> solve(const std::vector<Complex>& rhs, bool condition = false);
+  /// Solves with a relative error of at most about 1 %. The method fast omits refinement, which
+  /// saves time.
+  std::vector<Complex> solve_roughly(std::vector<Complex> rhs);
 
-  /// What is left of the last sides, by combinations() of them; by the fast product or, where the
-  /// method is dense, by the matrix that was factored.
-  const std::vector<Complex>& remainder() const { return remainder_; }
-  /// In the Frobenius norm, an estimate; -1 for methods that do not tell. Of the last solve that
-  /// was asked for it.
+  /// Residual of the last solve, for combinations() of its right-hand sides and solutions. It is
+  /// computed with the fast product or, for method dense, with the matrix that was factored.
+  const std::vector<Complex>& combined_residual() const { return combined_residual_; }
+  /// Estimated condition number in the Frobenius norm, from the last solve() with condition = true;
+  /// -1 for methods that do not estimate it.
   double condition() const;
-  /// What was done, in words.
+  /// Description of the method, steps and residual of the last solution.
   const std::string& description() const { return description_; }
 
  private:
-  std::optional<std::vector<Complex>> refined(std::vector<Complex> sides);
-  std::vector<Complex> by_gmres(const std::vector<Complex>& sides);
+  std::optional<std::vector<Complex>> refined(std::vector<Complex> rhs);
+  std::vector<Complex> by_gmres(const std::vector<Complex>& rhs);
   std::vector<Complex> subtracted(std::vector<Complex> b, const std::vector<Complex>& x) const;
 
   const WaveEquations& system_;
@@ -63,19 +67,21 @@ class EquationSolver {
   std::unique_ptr<DenseFactor> dense_;
   std::unique_ptr<FastDirect> fast_;
   std::unique_ptr<FastProduct> product_;
-  std::vector<Complex> remainder_;
+  std::vector<Complex> combined_residual_;
   std::string description_;
 };
 
-/// A few of many plane waves, of which the others are combinations within a circle: never more than
-/// about 2 k R + 50, however many lights there are, and fewer where they come from a narrow range.
+/// Basis of many plane waves: a few of these waves, chosen so that, within a circle of radius R,
+/// all others are linear combinations of them. The size of the basis is at most about 2 k R + 50
+/// for any number of lights, and less for a narrow range of angles.
 struct LightBasis {
   std::vector<double> angles;
-  std::vector<Complex> weights;  ///< [light][basis]; empty where every light stands for itself
-  std::vector<Vec2> sources;     ///< point sources, which have no plane waves beside them
+  /// Coefficients of each light, [light][basis wave]; empty if every light is in the basis.
+  std::vector<Complex> weights;
+  std::vector<Vec2> sources;  ///< point sources; if there are any, angles is empty
 
   std::size_t size() const { return angles.size() + sources.size(); }
-  /// Of the lights that it stands for.
+  /// Number of the lights that the basis represents.
   std::size_t count() const { return weights.empty() ? size() : weights.size() / size(); }
 };
 
@@ -84,61 +90,64 @@ struct Circle {
   double radius = 0;
 };
 
-/// Around the rims of all disks.
+/// Returns a circle that encloses all points and disks, rims included.
 Circle enclosing_circle(const Placement& placement);
 
-/// Column-pivoted QR of the waves' Bessel coefficients on the circle (J_n decays beyond k R); what
-/// it leaves out is below tolerance of a unit wave. Falls back to all lights where that saves
-/// little.
+/// Chooses a basis by column-pivoted QR of the waves' Bessel coefficients on the circle; the
+/// coefficients J_n(k R) decay for n > k R. The error is below tolerance relative to a unit wave.
+/// Returns all lights as basis if a smaller basis would save little.
 LightBasis light_basis(std::span<const double> angles, double k, const Circle& circle,
                        double tolerance);
-/// Of any lights: a Gaussian beam is the superposition of plane waves that has the beam's field
-/// across its focus, but for what does not propagate. Throws InputError for point sources mixed
-/// with others.
+/// Returns a basis of arbitrary lights. A Gaussian beam is the superposition of propagating plane
+/// waves that has the beam's field across its focus; evanescent waves are omitted. Throws
+/// InputError if point sources are mixed with other lights.
 LightBasis basis_of(const Lights& lights, double k, const Circle& circle, double tolerance);
 
 struct SolveOptions {
-  /// Relative accuracy asked of far fields, and of near fields at `sensors`; sets the basis orders.
+  /// Relative accuracy of far fields, and of near fields at `sensors`; determines the basis orders.
   double tolerance = 1e-12;
   std::vector<Vec2> sensors;
-  /// Also estimate residual, condition and boundary residual.
+  /// Whether to compute the Diagnosis: residual, condition number, boundary residual and
+  /// invariants.
   bool diagnose = true;
   Method method = Method::automatic;
 };
 
-/// How far a solution can be trusted; NaN-free, -1 where it was not asked for.
+/// Error measures of a solution. They are never NaN. A measure that was not requested is -1.
 struct Diagnosis {
-  /// ||b - T(a + S b)|| / ||T a||, over all lights (C10); of many an estimate
+  /// Residual ||b - T(a + S b)|| / ||T a|| over all lights (C10). For many lights it is an
+  /// estimate.
   double residual = -1;
-  double condition = -1;          ///< of the scaled matrix, in the Frobenius norm (an estimate)
-  double boundary_residual = -1;  ///< of the fields at the rims (boundary_residual.h)
-  /// Relative change of the fields from lower orders, where gap plasmons may resonate. The limit of
-  /// this and of the next is the tolerance.
+  double condition = -1;          ///< estimated condition number of the scaled matrix (Frobenius)
+  double boundary_residual = -1;  ///< mismatch of the fields at rims (boundary_residual.h)
+  /// Relative change of the fields when the basis orders are raised, measured if gap plasmons may
+  /// resonate. The limit of `truncation` and of `rounding` is the tolerance.
   Invariant truncation = {};
-  /// Relative change of the far fields where radii and sides change by a rounding.
+  /// Relative change of the far fields if radii and right-hand sides change by a rounding error.
   Invariant rounding = {};
-  Invariant power = {};  ///< solution_invariants.h
+  Invariant power = {};  ///< power balance (solution_invariants.h)
 
   bool keeps_invariants() const { return truncation.holds() && rounding.holds() && power.holds(); }
 };
 
-/// beta under unit plane waves.
+/// Solution beta of WaveEquations under unit plane waves.
 struct LightSolution {
-  std::vector<Complex> coefficients;  ///< [light][unknown]
-  Diagnosis diagnosis;                ///< without the boundary residual
-  std::string method;                 ///< in words
+  std::vector<Complex> coefficients;  ///< beta, [light][unknown]
+  Diagnosis diagnosis;                ///< only residual, condition and rounding are set
+  std::string method;                 ///< description of the method used
 };
 
-/// circle: that holds all bodies. radius_derivatives: of the logarithm of each unknown's T-matrix
-/// element by that of the radius (TMatrixSystem); where given, rounding is measured. Throws as
-/// EquationSolver does.
+/// Solves for unit plane waves. circle: a circle that encloses all bodies. radius_derivatives: d ln
+/// T / d ln(radius) of each unknown (TMatrixSystem); if given, the sensitivity to rounding is
+/// measured. Throws under the conditions of EquationSolver.
 LightSolution solve_lights(const WaveEquations& equations, const std::vector<double>& light_angles,
                            const Circle& circle, const SolveOptions& options,
                            std::span<const Complex> radius_derivatives = {});
 
+/// Returns a solver with the method and tolerance that the options select.
 EquationSolver solver_of(const WaveEquations& equations, const SolveOptions& options);
 
-/// Columns of the basis, n long, to those of all lights.
+/// Computes the solutions (columns of length n) for all lights from the solutions for the basis.
 std::vector<Complex> expanded(const LightBasis& basis, std::vector<Complex> columns, std::size_t n);
 
 }  // namespace flatspeckle::wave

@@ -13,7 +13,8 @@ namespace flatspeckle::wave {
 
 namespace {
 
-// Of a unit wave: what each unknown of a scatterer absorbs for a coefficient of size 1.
+// Returns, for each unknown of a scatterer, the power that the scatterer absorbs if this unknown
+// has the absolute value 1.
 std::vector<double> absorption_of(const TMatrixSystem& system, std::size_t j) {
   const Scatterer& own = system.placement()[j].scatterer;
   std::vector<double> absorbed(system.first(j + 1) - system.first(j));
@@ -24,12 +25,12 @@ std::vector<double> absorption_of(const TMatrixSystem& system, std::size_t j) {
   for (std::size_t i = 0; i < absorbed.size(); ++i) {
     const RimWave& wave = waves[(i + 1) / 2];
     absorbed[i] = static_cast<double>(-2 * std::numbers::pi_v<long double> * own.radius *
-                                      (std::conj(wave.field) * wave.slope).imag());
+                                      (std::conj(wave.field) * wave.derivative).imag());
   }
   return absorbed;
 }
 
-// [unknown]
+// Returns the same absorbed powers for the unknowns of all scatterers: [unknown].
 std::vector<double> absorption_of(const TMatrixSystem& system) {
   std::vector<double> absorbed;
   for (std::size_t j = 0; j < system.placement().size(); ++j) {
@@ -39,7 +40,8 @@ std::vector<double> absorption_of(const TMatrixSystem& system) {
   return absorbed;
 }
 
-// Directions in which |A|^2, of angular orders up to about 2 k R, is integrated exactly.
+// Returns equally spaced directions, as many as are required to integrate |A|^2 exactly. |A|^2
+// contains angular orders up to about 2 k R.
 std::vector<double> directions_around(const TMatrixSystem& system) {
   const double size = system.k() * enclosing_circle(system.placement()).radius;
   const int count = 2 * static_cast<int>(size + 10 * std::cbrt(size) + 20);
@@ -48,7 +50,7 @@ std::vector<double> directions_around(const TMatrixSystem& system) {
   return angles;
 }
 
-// The integral of |A|^2 over all directions, of each of these lights.
+// Returns the integral of |A|^2 over all directions for each light in the list.
 std::vector<double> scattered_powers(const WaveSolution& solution,
                                      const std::vector<std::size_t>& lights) {
   constexpr std::size_t at_once = 128;

@@ -5,12 +5,13 @@
 
 namespace flatspeckle::wave {
 
-/// |extinction - scattering - absorption| of the whole placement over its extinction, the worst of
-/// a few lights. Extinction is that of the forward amplitude (C9), scattering the integral of |A|^2
-/// over all directions, and absorption the flux through the rims of absorbing disks in terms of the
-/// waves inside (rim_waves.h); none of disks and points that do not absorb. It holds at any basis
-/// order. The limit is what rounding and the residual of the equations explain. tolerance: of the
-/// solution, which many lights are combined to.
+/// Returns |extinction - scattering - absorption| / extinction of the whole placement: the largest
+/// value over a few of the lights. Extinction follows from the forward amplitude (C9). Scattering
+/// is the integral of |A|^2 over all directions. Absorption is the power absorbed by points, plus
+/// the flux through the rims of absorbing disks, which follows from the waves inside (rim_waves.h).
+/// The balance holds at any basis order. The limit of the Invariant is the imbalance that rounding
+/// and the residual of the equations explain. tolerance: tolerance of the solution, which also
+/// limits the error of a LightBasis.
 Invariant power_balance(const WaveSolution& solution, double tolerance);
 
 }  // namespace flatspeckle::wave

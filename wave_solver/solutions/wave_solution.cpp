@@ -20,23 +20,23 @@ namespace flatspeckle::wave {
 
 const DatasetTable spectrum_table{
     "solve at several wavelengths",
-    {{"wavelength", Data::scale, "", "length", "around the scatterers"},
+    {{"wavelength", Data::scale, "", "length", "wavelength outside the scatterers"},
      {"far_field", Data::complex, "wavelength light_angle view_angle", "length^(1/2)",
       "far-field amplitude A, phase origin at r = 0"},
      {"near_field", Data::complex, "wavelength light_angle sensor", "1",
       "scattered field, without the incident wave"},
-     {"solve/unknowns", Data::count, "wavelength", "1", "of the equations"},
-     {"solve/highest_order", Data::count, "wavelength", "1", "highest angular order of all"},
+     {"solve/unknowns", Data::count, "wavelength", "1", "number of unknowns of the equations"},
+     {"solve/highest_order", Data::count, "wavelength", "1", "highest angular order"},
      {"solve/residual", Data::real, "wavelength", "1",
       "relative residual of the unscaled equations"},
      {"solve/boundary_residual", Data::real, "wavelength", "1",
-      "largest mismatch of the boundary conditions, unit incident waves"},
+      "largest mismatch of the boundary conditions, for unit incident waves"},
      {"invariants/power", Data::invariant, "wavelength", "1",
-      "difference between extinction and scattering with absorption, over the extinction"},
+      "|extinction - scattering - absorption| / extinction"},
      {"invariants/rounding", Data::invariant, "wavelength", "1",
-      "relative change of the fields with all radii rounded"},
+      "relative change of the far fields if all radii change by a rounding error"},
      {"invariants/truncation", Data::invariant, "wavelength", "1",
-      "relative change of the fields from lower orders, where gap plasmons may resonate"}}};
+      "relative change of the fields when orders are raised, if gap plasmons may resonate"}}};
 
 Spectrum::Spectrum(const std::vector<double>& view_angles, const std::vector<Vec2>& sensors)
     : far_views_(column(view_angles, far_view)), near_sensors_(column(sensors, near_sensor)) {}
@@ -106,15 +106,15 @@ const DatasetTable solution_table{
      {"solve/basis_order", Data::count, "scatterer", "1", "highest angular order per scatterer"},
      {"solve/residual", Data::real, "", "1", "relative residual of the unscaled equations"},
      {"solve/condition", Data::real, "", "1",
-      "condition of the scaled matrix, Frobenius norm, estimated"},
+      "estimated condition number of the scaled matrix, in the Frobenius norm"},
      {"solve/boundary_residual", Data::real, "", "1",
-      "largest mismatch of the boundary conditions, unit incident waves"},
+      "largest mismatch of the boundary conditions, for unit incident waves"},
      {"invariants/power", Data::invariant, "", "1",
-      "difference between extinction and scattering with absorption, over the extinction"},
+      "|extinction - scattering - absorption| / extinction"},
      {"invariants/rounding", Data::invariant, "", "1",
-      "relative change of the fields with all radii rounded"},
+      "relative change of the far fields if all radii change by a rounding error"},
      {"invariants/truncation", Data::invariant, "", "1",
-      "relative change of the fields from lower orders, where gap plasmons may resonate"}}};
+      "relative change of the fields when orders are raised, if gap plasmons may resonate"}}};
 
 namespace {
 
@@ -130,7 +130,7 @@ bool all_far(std::span<const View> views) {
   return std::none_of(views.begin(), views.end(), [](const View& view) { return view.near; });
 }
 
-// What each unknown adds in each view: [view][unknown].
+// Returns the contribution of each unknown to the field in each view: [view][unknown].
 std::vector<Complex> view_rows(const TMatrixSystem& system, std::span<const View> views) {
   if (all_far(views)) return system.far_rows(column(views, &View::angle));
   for (const View& view : views)
@@ -138,7 +138,8 @@ std::vector<Complex> view_rows(const TMatrixSystem& system, std::span<const View
   return system.view_rows(views);
 }
 
-// Orders grow by these where those of pairs are to be confirmed.
+// If gap plasmons may resonate, the equations are solved again with basis orders raised by these
+// factors, one after the other, until the fields no longer change.
 const std::vector<double> confirming_growths{1.25, 1.6, 2};
 
 double relative_change(const std::vector<Complex>& before, const std::vector<Complex>& after) {
@@ -150,7 +151,8 @@ double relative_change(const std::vector<Complex>& before, const std::vector<Com
   return sizes > 0 ? std::sqrt(changes / sizes) : 0;
 }
 
-// Far ones around, or the sensors off the scatterers.
+// Return the views at which solutions with different orders are compared: far views in directions
+// all around, and the sensors outside the scatterers.
 std::vector<View> confirming_far_views() {
   constexpr int around = 16;
   std::vector<View> views;
@@ -175,14 +177,14 @@ double relative_change(const WaveSolution& before, const WaveSolution& after,
                   of(confirming_near_views(after.system().placement(), options.sensors)));
 }
 
-// Of the waves and sources of a basis: [basis][unknown].
-std::vector<Complex> right_sides(const TMatrixSystem& system, const LightBasis& basis) {
-  auto sides = system.right_sides(basis.angles);
+// Returns the right-hand sides of the waves and sources of a basis: [basis][unknown].
+std::vector<Complex> right_hand_sides(const TMatrixSystem& system, const LightBasis& basis) {
+  auto rhs = system.right_hand_sides(basis.angles);
   for (const Vec2& source : basis.sources) {
-    const auto side = system.source_side(source);
-    sides.insert(sides.end(), side.begin(), side.end());
+    const auto side = system.source_right_hand_side(source);
+    rhs.insert(rhs.end(), side.begin(), side.end());
   }
-  return sides;
+  return rhs;
 }
 
 void write_views(ResultFile& file, const std::string& name, const WaveSolution& solution,
@@ -278,10 +280,11 @@ WaveSolution solve(const Placement& placement, double k, const std::vector<doubl
 FieldPlan make_field_plan(const Lights& lights, std::vector<View> views, double k,
                           const Circle& circle, double tolerance) {
   FieldPlan plan{basis_of(lights, k, circle, tolerance), {}, std::move(views)};
-  if (plan.lights.size() > 1 && all_far(plan.views)) {  // else it is solved for the light
+  if (plan.lights.size() > 1 && all_far(plan.views)) {  // a single light is solved for directly
     std::vector<double> angles;
     for (const View& view : plan.views) angles.push_back(view.angle + std::numbers::pi);
-    plan.far_views = light_basis(angles, k, circle, tolerance);  // of the lights from there
+    // By reciprocity this is a basis of plane waves that come from the view directions.
+    plan.far_views = light_basis(angles, k, circle, tolerance);
     for (double& angle : plan.far_views.angles) angle -= std::numbers::pi;
   }
   return plan;
@@ -289,19 +292,20 @@ FieldPlan make_field_plan(const Lights& lights, std::vector<View> views, double 
 
 namespace {
 
-// With R the rows of the views and L the right sides of the lights, R^T M^-1 L either way round.
+// Returns R^T M^-1 L, where R are the rows of the views and L the right-hand sides of the lights.
+// The equations are solved for R or for L, whichever has fewer columns.
 std::vector<Complex> fields_of(const TMatrixSystem& system, const FieldPlan& plan,
                                const SolveOptions& options) {
   const std::size_t n = system.unknowns();
   const bool compressed = !plan.far_views.weights.empty();
   const auto views = compressed ? far_views(plan.far_views.angles) : plan.views;
-  const auto rows = view_rows(system, views), sides = right_sides(system, plan.lights);
+  const auto rows = view_rows(system, views), rhs = right_hand_sides(system, plan.lights);
   const std::size_t lights = plan.lights.size();
   if (n == 0) return std::vector<Complex>(plan.views.size() * plan.lights.count());
   EquationSolver solver = solver_of(system, options);
   auto fields = views.size() < lights
-                    ? transposed_product(solver.solve(rows), sides.data(), lights, n)
-                    : transposed_product(rows, solver.solve(sides).data(), lights, n);
+                    ? transposed_product(solver.solve(rows), rhs.data(), lights, n)
+                    : transposed_product(rows, solver.solve(rhs).data(), lights, n);
   fields = expanded(plan.lights, std::move(fields), views.size());  // [light][basis view]
   if (compressed)
     fields =
@@ -328,10 +332,11 @@ std::vector<Complex> scattered_fields(const Placement& placement, double k, cons
     change = relative_change(before, fields);
     if (change <= options.tolerance) return fields;
   }
-  throw InputError("tolerance", options.tolerance,
-                   "narrow gaps beside TE disks of Re(index^2) < 0 resonate: higher orders still "
-                   "change the fields by " +
-                       number_text(change) + "; widen the gap (min_gap) or allow that");
+  throw InputError(
+      "tolerance", options.tolerance,
+      "narrow gaps next to TE disks with Re(index^2) < 0 resonate: higher orders still "
+      "change the fields by " +
+          number_text(change) + "; widen the gap (min_gap) or allow a tolerance of this size");
 }
 
 void write_solution(ResultFile& file, const WaveSolution& solution,

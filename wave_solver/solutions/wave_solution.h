@@ -12,8 +12,8 @@
 
 namespace flatspeckle::wave {
 
-/// The exact scattered field of one placement under unit plane waves. Light and view angles in
-/// radians (C2), positions in the placement's unit.
+/// The exact scattered field of one placement under unit plane waves. Light and view angles are in
+/// radians (C2), positions in the placement's unit of length.
 class WaveSolution {
  public:
   /// coefficients: beta of TMatrixSystem, [light][unknown].
@@ -24,18 +24,18 @@ class WaveSolution {
   const std::vector<double>& light_angles() const { return light_angles_; }
   std::vector<int> basis_order() const;
   const Diagnosis& diagnosis() const { return diagnosis_; }
-  /// How the equations were solved, in words.
+  /// Description of the method that solved the equations.
   const std::string& method() const { return method_; }
-  /// beta of a light: [unknown].
+  /// Coefficients beta for a light: [unknown].
   std::span<const Complex> coefficients(std::size_t light) const;
 
   /// Far-field amplitude A of the whole placement (C4), phase origin r = 0.
   Complex far_field(double view_angle, std::size_t light = 0) const;
-  /// Scattered field, without the incident one. Throws InputError for a point inside a scatterer.
+  /// Scattered field, without the incident field. Throws InputError for a point inside a scatterer.
   Complex near_field(Vec2 point, std::size_t light = 0) const;
-  /// Either, for all lights: [light][view].
+  /// Far or near fields for all lights: [light][view].
   std::vector<Complex> fields(std::span<const View> views) const;
-  /// Of one light: [view].
+  /// Far or near fields for one light: [view].
   std::vector<Complex> fields(std::span<const View> views, std::size_t light) const;
 
  private:
@@ -51,22 +51,23 @@ class WaveSolution {
   Diagnosis diagnosis_;
 };
 
-/// Throws InputError for overlapping scatterers, disks too close to resolve, or too little memory;
-/// std::runtime_error where no finite solution is found.
+/// Solves the multiple scattering of a placement. Throws InputError for overlapping scatterers,
+/// disks too close to resolve, or too little memory; std::runtime_error if no finite solution is
+/// found.
 WaveSolution solve(const Placement& placement, double k, const std::vector<double>& light_angles,
                    const SolveOptions& options = {});
 
 extern const DatasetTable solution_table;
-/// Writes the fields in these directions and at these points (either may be empty) with their axes,
-/// the placement, and how far the solution can be trusted.
+/// Writes the fields in the directions view_angles and at the points `sensors` (either list may be
+/// empty) with their axes, the placement, and the diagnosis.
 void write_solution(ResultFile& file, const WaveSolution& solution,
                     const std::vector<double>& view_angles, const std::vector<Vec2>& sensors);
 
-/// Positions and radii.
+/// Writes the positions and radii of the scatterers.
 void write_placement(ResultFile& file, const Placement& placement);
 
-/// What lights and views need of a placement within a circle, found once for a whole ensemble: the
-/// few of many lights, or of many far views, that stand for all (LightBasis).
+/// Lights and views of an ensemble of placements within a circle, with a LightBasis of the lights
+/// and one of the far views, computed once for all placements.
 struct FieldPlan {
   LightBasis lights, far_views;
   std::vector<View> views;
@@ -74,25 +75,25 @@ struct FieldPlan {
 FieldPlan make_field_plan(const Lights& lights, std::vector<View> views, double k,
                           const Circle& circle, double tolerance);
 
-/// Fields of a placement, [light][view], without diagnosis; by reciprocity the equations are solved
-/// for the fewer of lights and views.
+/// Returns the fields of a placement, [light][view], without diagnosis. The equations are solved
+/// for the lights or, by reciprocity, for the views, whichever are fewer.
 std::vector<Complex> scattered_fields(const Placement& placement, double k, const FieldPlan& plan,
                                       const SolveOptions& options);
 
-/// Fields of one placement at several wavelengths, one after the other, and how far each solution
-/// can be trusted: [wavelength][light][view].
+/// Fields [wavelength][light][view] of one placement at several wavelengths, which are added one
+/// after the other, and the diagnosis of each solution.
 class Spectrum {
  public:
   Spectrum(const std::vector<double>& view_angles, const std::vector<Vec2>& sensors);
 
   void add(double wavelength, const WaveSolution& solution);
 
-  /// With axes and placement.
+  /// Writes all fields with their axes, the diagnosis of each solution, and the placement.
   void write(ResultFile& file) const;
 
-  /// The worst residual so far.
+  /// Largest residual so far.
   double residual() const;
-  /// Of the largest system so far.
+  /// Number of unknowns of the largest system so far.
   std::size_t unknowns() const;
 
  private:

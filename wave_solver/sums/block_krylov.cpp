@@ -14,27 +14,27 @@ namespace flatspeckle::wave {
 
 namespace {
 
-// Norms of right sides; 1 for a vanishing one.
+// Returns the norm of each right-hand side, or 1 if that norm is 0.
 std::vector<double> units(std::span<const Complex> b, std::size_t unknowns) {
   auto norms = column_norms(b, unknowns);
   std::replace(norms.begin(), norms.end(), 0.0, 1.0);
   return norms;
 }
 
-std::vector<Complex> remainder(const BlockMap& a, std::span<const Complex> x,
-                               std::span<const Complex> b) {
+std::vector<Complex> residual_of(const BlockMap& a, std::span<const Complex> x,
+                                 std::span<const Complex> b) {
   auto left = a(x);
   for (std::size_t i = 0; i < b.size(); ++i) left[i] = b[i] - left[i];
   return left;
 }
 
-std::vector<double> relative(std::span<const Complex> remainder, std::span<const double> units) {
-  auto norms = column_norms(remainder, remainder.size() / units.size());
+std::vector<double> relative(std::span<const Complex> residual, std::span<const double> units) {
+  auto norms = column_norms(residual, residual.size() / units.size());
   for (std::size_t j = 0; j < norms.size(); ++j) norms[j] /= units[j];
   return norms;
 }
 
-// One block of right sides.
+// GMRES for one block of right-hand sides.
 class Block {
  public:
   Block(const BlockMap& a, std::size_t unknowns, std::span<const Complex> b,
@@ -73,7 +73,7 @@ class Block {
                                    : std::vector<Complex>(v.begin(), v.end());
   }
 
-  // Searches one Krylov space, in units in which every right side has norm 1.
+  // Minimises the residual over one Krylov space. The right-hand sides are scaled to norm 1.
   void cycle() {
     ColumnMajor start = residual_;
     for (std::size_t j = 0; j < start.columns; ++j)
@@ -98,7 +98,8 @@ class Block {
       add_correction(basis.combine(y));
   }
 
-  // Appends A times the last `width` vectors; returns how many new directions that gave.
+  // Extends the Krylov basis by A times its last `width` vectors. Returns the number of new basis
+  // vectors.
   std::size_t extend(KrylovBasis& basis, HessenbergLeastSquares& problem, std::size_t width,
                      double drop) const {
     ColumnMajor w(x_.rows, width);
@@ -106,7 +107,8 @@ class Block {
     const double scale = cblas_dznrm2(static_cast<int>(w.data.size()), w.data.data(), 1);
     ColumnMajor inside = basis.project_out(w);
     ColumnMajor s = orthonormalize(w, drop * scale);
-    // Again, since what is left may be small and mostly rounding within the span.
+    // The projection is repeated, because w may now be small and consist mostly of rounding errors
+    // in the span of the basis.
     const ColumnMajor inside_again = product(basis.project_out(w), s);
     for (std::size_t i = 0; i < inside.data.size(); ++i) inside.data[i] += inside_again.data[i];
     s = product(orthonormalize(w, 0), s);
@@ -126,7 +128,7 @@ class Block {
       for (std::size_t i = 0; i < x_.rows; ++i) x_(i, j) += norms_[j] * correction[j * x_.rows + i];
   }
 
-  void update_residual() { residual_.data = remainder(a_, x_.data, b_); }
+  void update_residual() { residual_.data = residual_of(a_, x_.data, b_); }
 
   const BlockMap& a_;
   std::span<const Complex> b_;
@@ -138,20 +140,20 @@ class Block {
 
 void check(lapack_int info) {
   if (info != 0)
-    throw std::runtime_error("gmres: the matrix gave what is not finite, or LAPACK failed");
+    throw std::runtime_error("gmres: a product with the matrix is not finite, or LAPACK failed");
 }
 
 }  // namespace
 
-GmresResult gmres(const BlockMap& a, std::size_t unknowns, std::span<const Complex> right_sides,
-                  const GmresOptions& options) {
+GmresResult gmres(const BlockMap& a, std::size_t unknowns,
+                  std::span<const Complex> right_hand_sides, const GmresOptions& options) {
   GmresResult result;
   if (unknowns == 0) return result;
-  FS_EXPECT(right_sides.size() % unknowns == 0);
+  FS_EXPECT(right_hand_sides.size() % unknowns == 0);
   blas_single_thread();
   const std::size_t most = unknowns * static_cast<std::size_t>(options.block);
-  for (std::size_t at = 0; at < right_sides.size(); at += most) {
-    const auto b = right_sides.subspan(at, std::min(most, right_sides.size() - at));
+  for (std::size_t at = 0; at < right_hand_sides.size(); at += most) {
+    const auto b = right_hand_sides.subspan(at, std::min(most, right_hand_sides.size() - at));
     Block block(a, unknowns, b, options);
     block.solve();
     const auto residuals = block.residuals();
@@ -207,7 +209,7 @@ std::span<const Complex> KrylovBasis::last(std::size_t count) const {
   return std::span(data_).last(count * rows_);
 }
 
-// In slices of rows of fixed size.
+// Slices of rows have a fixed size, so that the result does not depend on the number of threads.
 ColumnMajor KrylovBasis::project_out(ColumnMajor& w) const {
   constexpr std::size_t slice = 4096;
   const std::size_t slices = (rows_ + slice - 1) / slice;

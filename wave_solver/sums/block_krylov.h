@@ -9,33 +9,35 @@
 
 namespace flatspeckle::wave {
 
-/// A linear map of blocks of columns, [column][unknown] to the same.
+/// Linear map of blocks of columns, [column][unknown] to [column][unknown].
 using BlockMap = std::function<std::vector<Complex>(std::span<const Complex>)>;
 
 struct GmresOptions {
-  double tolerance = 1e-10;  ///< of every column's ||b - A x|| / ||b||
-  int block = 16;            ///< right sides that share one Krylov space
-  int products = 2000;       ///< steps given to a block at most; each is one product of a block
-  double basis_bytes = 1e9;  ///< a space that would take more is restarted
-  BlockMap preconditioner = nullptr;  ///< about A^-1, applied from the right
+  double tolerance = 1e-10;  ///< largest accepted ||b - A x|| / ||b||
+  int block = 16;            ///< number of right-hand sides that share one Krylov space
+  int products = 2000;       ///< most steps for a block of right-hand sides, one product each
+  double basis_bytes = 1e9;  ///< memory of the Krylov basis at which the method is restarted
+  BlockMap preconditioner = nullptr;  ///< approximate A^-1, applied from the right
 };
 
-/// What became of each right side. A column that did not reach the tolerance is the best found.
+/// Solutions and residuals. A column that did not reach the tolerance contains the best
+/// approximation.
 struct GmresResult {
   std::vector<Complex> x;         ///< [column][unknown]
-  std::vector<double> residuals;  ///< ||b - A x|| / ||b||, computed from x; 0 where b = 0
-  std::vector<int> steps;         ///< products of its block
+  std::vector<double> residuals;  ///< ||b - A x|| / ||b||, [column], computed from x; 0 if b = 0
+  std::vector<int> steps;         ///< [column]: number of products with A for its block
   bool converged = true;          ///< all residuals are within the tolerance
 };
 
-/// Solves A x = b for all columns by restarted block GMRES: a block's right sides search one space,
-/// from which dependent directions are dropped. Stops with converged = false where a restart brings
-/// less than a factor of two or the products are used up. Saad, Iterative Methods, 6.12.
+/// Solves A x = b for all columns by restarted block GMRES: the right-hand sides of a block share
+/// one Krylov space, from which linearly dependent directions are dropped. Stops with converged =
+/// false if a restart reduces the residual by less than a factor of two or GmresOptions::products
+/// is reached. See Saad, Iterative Methods, section 6.12.
 [[nodiscard]] GmresResult gmres(const BlockMap& a, std::size_t unknowns,
-                                std::span<const Complex> right_sides,
+                                std::span<const Complex> right_hand_sides,
                                 const GmresOptions& options = {});
 
-/// A matrix, column by column.
+/// A column-major matrix.
 struct ColumnMajor {
   ColumnMajor(std::size_t r, std::size_t c) : rows(r), columns(c), data(r * c) {}
   std::size_t rows, columns;
@@ -44,16 +46,17 @@ struct ColumnMajor {
   Complex* column(std::size_t j) { return data.data() + rows * j; }
 };
 
-using flatspeckle::product;  // of numbers, beside this one
+using flatspeckle::product;  // product of two numbers, overloaded below for matrices
 ColumnMajor product(const ColumnMajor& a, const ColumnMajor& b);
 
-/// 2-norms of columns of the given length.
+/// Returns the 2-norms of columns of length `rows`.
 std::vector<double> column_norms(std::span<const Complex> columns, std::size_t rows);
 
-/// w = q s with orthonormal columns q, which replace w; directions below `drop` are left out.
+/// Factors w = q s, where q has orthonormal columns. Replaces w by q and returns s. Directions in
+/// which w is smaller than `drop` are omitted.
 ColumnMajor orthonormalize(ColumnMajor& w, double drop);
 
-/// Orthonormal vectors that span a Krylov space, all blocks side by side.
+/// Orthonormal vectors that span a Krylov space, stored in the order in which they were appended.
 class KrylovBasis {
  public:
   explicit KrylovBasis(std::size_t rows) : rows_(rows) {}
@@ -62,10 +65,11 @@ class KrylovBasis {
   void append(const ColumnMajor& block);
   /// The last `count` vectors.
   std::span<const Complex> last(std::size_t count) const;
-  /// Takes the part of w within the span out of it; returns its coefficients. The result does not
-  /// depend on the number of threads.
+  /// Subtracts from w its projection onto the span and returns the coefficients of the projection.
+  /// The result does not depend on the number of threads.
   ColumnMajor project_out(ColumnMajor& w) const;
-  /// Combination of the first y.rows vectors.
+  /// Returns linear combinations of the first y.rows vectors; each column of y contains the
+  /// coefficients of one combination.
   ColumnMajor combine(const ColumnMajor& y) const;
 
  private:
@@ -73,17 +77,17 @@ class KrylovBasis {
   std::vector<Complex> data_;
 };
 
-/// The least-squares problem min ||g - H y|| with H block upper Hessenberg, kept triangular by one
-/// small Householder factorization a block column.
+/// Least-squares problem min ||g - H y|| with H block upper Hessenberg, reduced to triangular form
+/// by one small Householder factorization per block column.
 class HessenbergLeastSquares {
  public:
   explicit HessenbergLeastSquares(ColumnMajor g) : g_(std::move(g)) {}
 
-  /// h: all of the next block column, the last `below` rows under its diagonal block.
+  /// Appends the next block column h of H, whose last `below` rows lie below its diagonal block.
   void append(ColumnMajor h, std::size_t below);
-  /// What no y reaches, of each column of g.
+  /// Norm of the least-squares residual for each column of g.
   std::vector<double> residuals();
-  /// Not finite where H is singular.
+  /// Returns the minimising y; not finite if H is singular.
   ColumnMajor solution();
 
  private:
@@ -96,7 +100,7 @@ class HessenbergLeastSquares {
   void grow(std::size_t rows);
 
   ColumnMajor g_;
-  std::vector<std::vector<Complex>> columns_;  // of the triangle
+  std::vector<std::vector<Complex>> columns_;  // columns of the triangular factor
   std::vector<Reflection> steps_;
 };
 

@@ -21,7 +21,9 @@ namespace {
 
 constexpr long double infinity = std::numeric_limits<long double>::infinity();
 
-// weight / J_n(k rho), n = 0 .. order: what must stay moderate, away from interior resonances.
+// Returns, for n = 0 .. order, the size sqrt(2) weight / |J_n(k rho)| of the charges on a ring of
+// radius rho (MultipoleRing). Charges are moderate unless rho is close to an interior resonance,
+// J_n(k rho) = 0.
 std::vector<long double> amplitudes(const ModeSet& modes, double k, double rho) {
   const auto j = bessel_j(modes.order, k * rho);
   std::vector<long double> result(modes.order + 1, 0);
@@ -33,7 +35,7 @@ std::vector<long double> amplitudes(const ModeSet& modes, double k, double rho) 
   return result;
 }
 
-// 0 where charges leave the range of numbers on every circle.
+// Returns the ring radius with the smallest charges; 0 if charges overflow on every circle.
 double best_radius(const ModeSet& modes, double k, double disk) {
   constexpr int tries = 32;
   double best = 0;
@@ -50,8 +52,8 @@ double best_radius(const ModeSet& modes, double k, double disk) {
   return best;
 }
 
-// Fewest points for which every order n leaves little of its first alias Q - n at the distance; 0
-// where telling leaves the range of numbers.
+// Returns the smallest number Q of ring points with which, for every order n, the spurious wave of
+// order Q - n (MultipoleRing) is negligible at the distance; 0 if the estimate overflows.
 std::size_t enough_points(const ModeSet& modes, double k, double rho, double distance,
                           double tolerance) {
   const auto strength = amplitudes(modes, k, rho);
@@ -78,7 +80,8 @@ std::vector<Vec2> centres(Bodies bodies) {
   return positions;
 }
 
-// What the choice of a range looks at: the body of the highest order stands for all.
+// Properties of a system from which the range of its RingProduct is chosen. The body with the
+// highest order represents all bodies.
 struct Outline {
   explicit Outline(const WaveEquations& system)
       : k(system.k()), centres(wave::centres(system.bodies())), box(bounds_of(centres)) {
@@ -97,7 +100,7 @@ struct Outline {
   Rectangle box;
   double radius = 0;
   ModeSet modes;
-  double squares;  // elements of the matrix
+  double squares;  // number of elements of M
 };
 
 constexpr double seconds_per_element = 30e-9, seconds_per_distance = 40e-9;
@@ -117,7 +120,8 @@ double grid_cost(const Outline& outline, double range, double tolerance) {
                                                    block * seconds_per_element));
 }
 
-// Cheapest range of a RingProduct; none where forming blocks at every use is cheaper.
+// Returns the cheapest range of a RingProduct; nullopt if it is cheaper to compute the blocks of M
+// anew for every product.
 std::optional<double> best_range(const WaveEquations& system, double tolerance, bool with_grid) {
   const Outline outline(system);
   double best = cost::uses * outline.squares * seconds_per_element;
@@ -140,7 +144,8 @@ bool points_only(const WaveEquations& system) {
   return system.unknowns() == system.bodies().size();
 }
 
-/// Returns what each mode has on a ring of size k rho, summed over its points.
+/// Returns, for each mode, the sum of the charges on a ring with k rho = size, without the angular
+/// factor of the charges.
 std::vector<double> summed_charges(const ModeSet& modes, double size) {
   const auto j = size > 0 ? bessel_j(modes.order, size) : std::vector<long double>{1};
   std::vector<double> all;
@@ -211,7 +216,7 @@ RingProduct::RingProduct(const WaveEquations& system, double range, double toler
   });
 }
 
-// One for bodies of the same radius and waves.
+// Makes one MultipoleRing for all bodies with the same radius and the same modes.
 void RingProduct::make_rings(const WaveEquations& system, double range, double tolerance) {
   std::map<std::vector<long double>, std::uint32_t> known;
   for (std::size_t j = 0; j < system.bodies().size(); ++j) {
@@ -228,7 +233,8 @@ void RingProduct::make_rings(const WaveEquations& system, double range, double t
   }
 }
 
-// In an order in which neighbours stand close to each other.
+// Returns the positions of all ring points, in an order in which points close in space are close in
+// the list.
 std::vector<Vec2> RingProduct::place_rings(std::span<const WaveEquations::Body> bodies,
                                            double range) {
   const auto positions = centres(bodies);
@@ -252,13 +258,13 @@ void RingProduct::find_neighbours(std::span<const WaveEquations::Body> bodies, d
   reach = std::min(range + 2 * largest, 2 * length(box.high - box.low) + 1);
   const StripOrder strips(positions, reach / 3);
   neighbours_.resize(bodies.size());
-  std::vector<StripOrder::Stretch> stretches;
+  std::vector<StripOrder::Interval> intervals;
   std::size_t size = 0;
   for (std::uint32_t j = 0; j < bodies.size(); ++j) {
-    stretches.clear();
-    strips.around(positions[j], reach, stretches);
-    for (const auto& stretch : stretches)
-      for (const std::uint32_t l : strips.order().subspan(stretch.first, stretch.count)) {
+    intervals.clear();
+    strips.around(positions[j], reach, intervals);
+    for (const auto& interval : intervals)
+      for (const std::uint32_t l : strips.order().subspan(interval.first, interval.count)) {
         if (l < j) continue;
         if (length(positions[j] - positions[l]) >= range + ring(j).radius + ring(l).radius)
           continue;

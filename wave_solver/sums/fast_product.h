@@ -14,44 +14,48 @@
 
 namespace flatspeckle::wave {
 
-/// Equally spaced point sources on a circle that radiate as the outgoing modes of one scatterer do,
-/// beyond a stated distance. By Graf's theorem charges {cos, sin}(n phi) / (Q J_n(k rho)) radiate
-/// H_n {cos, sin}(n phi) and orders beyond Q - n, which have died out there. By reciprocity the
-/// transposed matrix takes the field on the ring to the coefficients of regular modes.
+/// Q equally spaced point sources on a circle of radius rho, which radiate the outgoing modes of
+/// one scatterer beyond a given distance. By Graf's theorem charges {cos, sin}(n phi) / (Q J_n(k
+/// rho)) radiate H_n {cos, sin}(n phi) and spurious waves of orders Q - n and higher, which are
+/// negligible beyond that distance. By reciprocity the transposed matrix of charges maps the field
+/// on the ring to the coefficients of regular modes.
 struct MultipoleRing {
-  /// modes: with their weights. radius: of the disk that they belong to, 0 for a point.
-  /// distance: nearest point of any other ring from the centre; errors there are below `tolerance`.
+  /// modes: the modes of the scatterer, with their weights. radius: radius of the disk, 0 for a
+  /// point. distance: distance from the centre beyond which errors are below `tolerance`; all
+  /// points of other rings must lie beyond it.
   MultipoleRing(const ModeSet& modes, double k, double radius, double distance, double tolerance);
 
-  /// Fills `charges`, by the modes and the k that the ring was made for.
+  /// Fills `charges`; modes and k must be those of the constructor.
   void charge(const ModeSet& modes, double k);
 
-  double radius = 0;             ///< of the ring, between half the disk's and all of it
-  std::size_t points = 1;        ///< Q; 0 where no ring will do
+  double radius = 0;             ///< rho, between half the radius of the disk and its radius
+  std::size_t points = 1;        ///< Q; 0 if no ring is suitable
   std::vector<Complex> charges;  ///< [mode][point]; real; empty until charge() is called
-  double largest_charge = 0;     ///< of the modes, summed over the points; infinite without points
+  double largest_charge = 0;     ///< largest summed_charges() of a mode; infinite if points = 0
 
-  Vec2 position(std::size_t point) const;  ///< relative to the centre
+  Vec2 position(std::size_t point) const;  ///< relative to the centre of the ring
 };
 
-/// M x of WaveEquations by a far sum between multipole rings on a grid, and blocks for near
-/// pairs: what M has more than that sum. Blocks of j < l are kept; the others are their transposes.
+/// Product M x of WaveEquations, as the sum of two parts: a far sum between multipole rings on a
+/// grid and, for near pairs of bodies, blocks that contain the difference between M and that sum.
+/// Of the two blocks of a pair only one is stored; the other is its transpose.
 class RingProduct {
  public:
-  /// range: of the KernelSplit; pairs of rings closer than it are near. Infinite: all pairs are,
-  /// and there is no grid.
+  /// range: range of the KernelSplit. Two rings are a near pair if they are closer to each other
+  /// than this. If the range is infinite, all pairs are near and no grid is used.
   RingProduct(const WaveEquations& system, double range, double tolerance);
 
-  /// [column][unknown] to the same. Threaded unless called from a parallel region; the result does
-  /// not depend on the number of threads.
+  /// Returns M x, both [column][unknown]. Threaded unless called from a parallel region; the result
+  /// does not depend on the number of threads.
   std::vector<Complex> operator()(std::span<const Complex> x) const;
 
-  /// Whether rounding leaves the tolerance: not where waves are so singular, compared with the
-  /// scatterer's size, that charges on a ring are far larger than what they radiate. A product that
-  /// is not resolved must not be used.
+  /// Whether rounding errors are below the tolerance; if not, the product must not be used.
+  /// Rounding errors exceed the tolerance if the waves of a scatterer are so singular at its size
+  /// that the charges on its ring are far larger than the field that they radiate.
   bool resolved() const { return resolved_; }
 
-  /// What the grid must be accurate to, for rings with such charges per unit unknown.
+  /// Returns the required accuracy of the grid for rings with the given
+  /// MultipoleRing::largest_charge.
   static double grid_tolerance(double tolerance, double largest_charge) {
     return tolerance / std::max(largest_charge, 1.0);
   }
@@ -61,7 +65,7 @@ class RingProduct {
   struct Neighbour {
     std::uint32_t body;
     bool transposed;
-    std::size_t block;  // where it begins in blocks_
+    std::size_t block;  // offset in blocks_
   };
   const MultipoleRing& ring(std::size_t body) const { return rings_[kind_[body]]; }
   std::size_t modes(std::size_t body) const { return first_[body + 1] - first_[body]; }
@@ -73,10 +77,10 @@ class RingProduct {
   void subtract_far(std::span<const WaveEquations::Body> bodies, std::size_t row,
                     const Neighbour& column, const KernelSplit& split);
 
-  std::vector<std::size_t> first_;  // unknown of each body, and their number
+  std::vector<std::size_t> first_;  // first unknown of each body, then the number of unknowns
   std::vector<std::uint32_t> kind_;
   std::vector<MultipoleRing> rings_;
-  std::vector<std::size_t> ring_first_;  // point of each body's ring
+  std::vector<std::size_t> ring_first_;  // first point of each body's ring
   std::size_t ring_points_ = 0;
   std::vector<std::vector<Neighbour>> neighbours_;
   std::vector<Complex> blocks_;
@@ -87,18 +91,19 @@ class RingProduct {
 class HelmholtzSum;
 class RingProduct;
 
-/// y = M x of WaveEquations in nearly linear time: point scatterers by a HelmholtzSum, others by
-/// a RingProduct, and small systems, or such whose waves are too singular for a grid, block by
-/// block. Shares no sum with WaveEquations::apply beyond near blocks, whose oracle that is. The
-/// error is below `tolerance` of ||M x||, from 1e-12 on.
+/// Product y = M x of WaveEquations in nearly linear time. Systems of points use a HelmholtzSum,
+/// other systems a RingProduct. Small systems, and systems whose waves are too singular for a grid,
+/// are multiplied block by block. Except for near blocks, no code is shared with
+/// WaveEquations::apply(), which therefore serves as an independent reference in tests. The error
+/// is below `tolerance` times ||M x||, for tolerances from 1e-12 on.
 class FastProduct {
  public:
   /// Keeps a reference to the system.
   FastProduct(const WaveEquations& system, double tolerance);
   ~FastProduct();
 
-  /// [column][unknown] to the same. Threaded unless called from a parallel region; the result does
-  /// not depend on the number of threads.
+  /// Returns M x, both [column][unknown]. Threaded unless called from a parallel region; the result
+  /// does not depend on the number of threads.
   std::vector<Complex> operator()(std::span<const Complex> x) const;
 
  private:
@@ -106,7 +111,7 @@ class FastProduct {
 
   const WaveEquations& system_;
   std::unique_ptr<const HelmholtzSum> points_;
-  std::vector<double> sigma_;  // of points
+  std::vector<double> sigma_;  // sigma of each point (WaveEquations)
   std::unique_ptr<const RingProduct> rings_;
 };
 

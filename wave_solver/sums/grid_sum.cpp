@@ -16,7 +16,8 @@ constexpr int least_width = 4, largest_width = 24;
 constexpr std::size_t slab_rows = 32, together = 8;
 static_assert(slab_rows >= largest_width);
 
-// 1 up to `reach`, falling smoothly to 0 at half the period: at multiples of the step.
+// Returns the values, at multiples of the step, of a window that is 1 up to the distance axis.reach
+// and falls smoothly to 0 at half the period of the grid.
 std::vector<double> window(const GridShape::Axis& axis, double step, double beta) {
   const Quadrature rule = double_exponential_rule(beta);
   const double middle = (static_cast<double>(axis.size) * step / 2 + axis.reach) / 2;
@@ -36,7 +37,8 @@ std::vector<double> window(const GridShape::Axis& axis, double step, double beta
   return values;
 }
 
-// Transform of the spreading kernel at the frequencies of an axis up to half a period.
+// Returns the Fourier transform of the spreading kernel at the frequencies of one axis, up to half
+// a period.
 std::vector<double> kernel_transform(const GridShape& shape, std::size_t size) {
   const double half_width = shape.width / 2.0;
   const Quadrature rule = double_exponential_rule(shape.beta + std::numbers::pi * half_width);
@@ -61,9 +63,10 @@ GridShape::Axis axis(double low, double high, double step, int width, double ran
 
 }  // namespace
 
-// The kernel resolves frequencies up to `resolved` to the full accuracy: those near k, which carry
-// almost everything. From there to the edge of the band it loses digits no faster than far itself
-// falls off, so that little more than the band's own grid is enough.
+// The spreading kernel has full accuracy for frequencies up to `resolved`, which include those near
+// k that carry almost all of the field. From there to the edge of the band its accuracy decreases
+// no faster than the transform of the far kernel. A grid that is only slightly finer than the band
+// requires is therefore sufficient.
 GridShape::GridShape(double k, double range, double tolerance, const Rectangle& box) {
   const double exponent = bump_exponent(tolerance), band = KernelSplit::band(k, range, tolerance);
   constexpr double oversampling = 1.2;
@@ -148,7 +151,8 @@ void GridSum::make_multiplier(const KernelSplit& split, double tolerance) {
     }
 }
 
-// Slab by slab; a line receives its contributions in the order of the points whoever adds them.
+// Spreads the charges onto one slab (a group of grid rows) after another. Every grid line receives
+// the contributions in the order of the points, whichever thread computes it.
 template <int width>
 void GridSum::spread(std::span<const Complex> charges, std::span<Complex> grid) const {
   parallel_for(slab_first_.size() - 1, is_large(), [&](std::size_t slab) {

@@ -11,42 +11,45 @@
 
 namespace flatspeckle::wave {
 
-/// The periodic grid on which the far part of a KernelSplit is summed between points of a
-/// rectangle, and the kernel that carries charges to it.
+/// Periodic grid on which the far part of a KernelSplit is summed between points of a rectangle,
+/// and the kernel that spreads charges onto the grid.
 struct GridShape {
   struct Axis {
     double low;        // coordinate of the first used grid line
-    double reach;      // largest distance between points
-    std::size_t size;  // of one period; lines from `used` on carry nothing
+    double reach;      // largest distance between points, at least 2 range
+    std::size_t size;  // grid lines per period; lines from `used` on are empty
     std::size_t used;
   };
   GridShape(double k, double range, double tolerance, const Rectangle& box);
 
   double step;
-  int width;    // of the spreading kernel, in steps; even
-  double beta;  // of its bump
+  int width;    // width of the spreading kernel, in steps; even
+  double beta;  // parameter of bump(), which is the spreading kernel
   Axis x, z;
 };
 
-/// u_i = sum_j far(|x_i - y_j|) q_j, all pairs included: charges are spread onto the grid,
-/// convolved there by FFT and read back. Lines of equal x are rows of the grid. The relative
-/// accuracy is the tolerance down to about 1e-13.
+/// Computes u_i = sum_j far(|x_i - y_j|) q_j over all pairs: charges q_j are spread onto the grid,
+/// convolved on it by FFT, and interpolated at the points x_i. far: far part of the KernelSplit.
+/// Lines of equal x are rows of the grid. The relative error is the tolerance, but not less than
+/// about 1e-13.
 class GridSum {
  public:
   GridSum(const KernelSplit& split, const GridShape& shape, double tolerance,
           std::span<const Vec2> sources, std::span<const Vec2> targets);
 
-  /// Adds to sums, [column][target], the sums over charges, [column][source]. Threaded unless
-  /// called from a parallel region; the result does not depend on the number of threads.
+  /// Computes the sums for several columns of charges, [column][source], and adds them to `sums`,
+  /// [column][target]. Threaded unless called from a parallel region; the result does not depend on
+  /// the number of threads.
   void add(std::span<const Complex> charges, std::span<Complex> sums) const;
 
  private:
-  // Where points touch the grid: their first line, and the kernel on `width` lines.
+  // Grid lines within the spreading kernel of each point: the first row and column, and the values
+  // of the kernel on `width` rows and columns.
   struct Footprints {
     std::vector<std::uint32_t> row, column;
     std::vector<double> row_weights, column_weights;
   };
-  // Where threads pay: from about a millisecond on.
+  // Whether the sum takes long enough for threads to be worthwhile, about a millisecond.
   bool is_large() const { return shape_.x.used * shape_.z.size > 50000; }
   Footprints footprints(std::span<const Vec2> points) const;
   void sort_into_slabs();
@@ -62,7 +65,7 @@ class GridSum {
 
   GridShape shape_;
   Footprints sources_, targets_;
-  std::vector<std::uint32_t> slab_first_, slab_points_;  // sources by slabs of rows
+  std::vector<std::uint32_t> slab_first_, slab_points_;  // sources sorted into slabs of grid rows
   std::vector<Complex> multiplier_;  // [z frequency][x frequency], both up to half a period
   LineTransform along_z_, along_x_, back_along_z_, back_along_x_;
 };

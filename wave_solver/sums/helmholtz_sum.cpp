@@ -32,7 +32,7 @@ StripOrder::StripOrder(std::span<const Vec2> points, double height)
   for (std::size_t i = 0; i < order_.size(); ++i) z_[i] = points[order_[i]].z;
 }
 
-void StripOrder::around(Vec2 place, double distance, std::vector<Stretch>& stretches) const {
+void StripOrder::around(Vec2 place, double distance, std::vector<Interval>& intervals) const {
   const double own = (place.x - low_) / height_, reach = distance / height_;
   const auto strips = static_cast<double>(first_.size() - 1);
   const auto from = static_cast<std::size_t>(std::clamp(std::floor(own - reach), 0.0, strips));
@@ -40,14 +40,15 @@ void StripOrder::around(Vec2 place, double distance, std::vector<Stretch>& stret
   for (std::size_t s = from; s < to; ++s) {
     const auto strip = static_cast<double>(s);
     const double apart = height_ * std::max({strip - own, own - strip - 1, 0.0});
-    // A little more than the chord: rounding must not lose a pair.
+    // Half the length of the strip within the circle around `place`, slightly enlarged so that
+    // rounding loses no pair.
     const double chord =
         std::sqrt(std::max(distance * distance - apart * apart, 0.0)) + 1e-6 * distance;
     const auto begin = z_.begin() + first_[s], end = z_.begin() + first_[s + 1];
     const auto low = std::lower_bound(begin, end, place.z - chord);
     const auto high = std::upper_bound(low, end, place.z + chord);
     if (low < high)
-      stretches.push_back(
+      intervals.push_back(
           {static_cast<std::uint32_t>(low - z_.begin()), static_cast<std::uint32_t>(high - low)});
   }
 }
@@ -68,7 +69,7 @@ void NearSum::fill(Block& block, const KernelSplit& split, const StripOrder& str
   for (std::size_t i = block.first; i < block.first + block.count; ++i) {
     const std::size_t before = block.sources.size();
     strips.around(targets[i], split.range(), block.sources);
-    block.stretches.push_back(static_cast<std::uint32_t>(block.sources.size() - before));
+    block.interval_counts.push_back(static_cast<std::uint32_t>(block.sources.size() - before));
     for (std::size_t s = before; s < block.sources.size(); ++s)
       for (std::uint32_t n = 0; n < block.sources[s].count; ++n) {
         const std::uint32_t j = block.sources[s].first + n;
@@ -94,16 +95,16 @@ void NearSum::add(std::span<const Complex> charges, std::span<Complex> sums) con
       const double* q_re = &re[column * sources_];
       const double* q_im = &im[column * sources_];
       const double* value = block.values.data();
-      auto stretch = block.sources.begin();
+      auto interval = block.sources.begin();
       for (std::size_t i = 0; i < block.count; ++i) {
         double sum_re = 0, sum_im = 0;
-        for (std::uint32_t s = 0; s < block.stretches[i]; ++s, ++stretch) {
+        for (std::uint32_t s = 0; s < block.interval_counts[i]; ++s, ++interval) {
 #pragma omp simd reduction(+ : sum_re, sum_im)
-          for (std::uint32_t n = 0; n < stretch->count; ++n) {
-            sum_re += value[n] * q_re[stretch->first + n];
-            sum_im += value[n] * q_im[stretch->first + n];
+          for (std::uint32_t n = 0; n < interval->count; ++n) {
+            sum_re += value[n] * q_re[interval->first + n];
+            sum_im += value[n] * q_im[interval->first + n];
           }
-          value += stretch->count;
+          value += interval->count;
         }
         sums[column * targets_ + block.first + i] += Complex(-sum_im, sum_re);
       }
@@ -115,7 +116,7 @@ void NearSum::add(std::span<const Complex> charges, std::span<Complex> sums) con
 
 namespace {
 
-// Cells of the given side that the points fall into, in order.
+// Returns, sorted, the cell of each point in a grid of square cells with the given side.
 std::vector<std::uint64_t> occupied(std::span<const Vec2> points, Vec2 low, double side) {
   std::vector<std::uint64_t> cells;
   cells.reserve(points.size());
@@ -126,10 +127,10 @@ std::vector<std::uint64_t> occupied(std::span<const Vec2> points, Vec2 low, doub
   return cells;
 }
 
-// The cheapest radius of the near part, or 0 where summing all pairs is cheaper.
+// Returns the cheapest range of the KernelSplit, or 0 if it is cheaper to sum all pairs directly.
 double best_range(double k, double tolerance, std::span<const Vec2> sources,
                   std::span<const Vec2> targets) {
-  const Rectangle box = bounds_of(sources).joined(bounds_of(targets));
+  const Rectangle box = bounds_of(sources).united(bounds_of(targets));
   const double extent = std::max(box.width(), box.depth());
   const auto from = static_cast<double>(sources.size()), to = static_cast<double>(targets.size());
   double best = cost::all_pairs(from * to), range = 0;
@@ -155,10 +156,11 @@ std::vector<Vec2> in_order(std::span<const Vec2> points, std::span<const std::ui
 
 }  // namespace
 
-// Those in common cells of as large an area.
+// Counts the pairs whose two points are in the same cell of a grid. The square cells have the area
+// of a disk of radius `range`.
 double near_pairs(std::span<const Vec2> sources, std::span<const Vec2> targets, double range) {
   const double side = range * std::sqrt(std::numbers::pi);
-  const Vec2 low = bounds_of(sources).joined(bounds_of(targets)).low;
+  const Vec2 low = bounds_of(sources).united(bounds_of(targets)).low;
   const auto from = occupied(sources, low, side), to = occupied(targets, low, side);
   double pairs = 0;
   for (auto cell = to.begin(); cell != to.end();) {
@@ -208,7 +210,7 @@ HelmholtzSum::HelmholtzSum(double k, std::span<const Vec2> sources, std::span<co
   sources_ = in_order(sources, source_order_);
   targets_ = in_order(targets, target_order_);
   const KernelSplit split(k, range_, tolerance);
-  const GridShape shape(k, range_, tolerance, bounds_of(sources).joined(bounds_of(targets)));
+  const GridShape shape(k, range_, tolerance, bounds_of(sources).united(bounds_of(targets)));
   near_.emplace(split, by_source, sources, targets_);
   far_.emplace(split, shape, tolerance, sources_, targets_);
 }

@@ -12,19 +12,19 @@
 
 namespace flatspeckle::wave {
 
-/// Points by strips of equal x, and by z within a strip: what lies within a distance of a place is
-/// then one stretch of every strip.
+/// Points sorted into strips of equal height along x, and by z within a strip. The points within a
+/// given distance of a position are then contained in one interval of each strip.
 class StripOrder {
  public:
   StripOrder(std::span<const Vec2> points, double height);
 
-  /// Numbers of the points in order.
+  /// Indices of the points, in the sorted order.
   std::span<const std::uint32_t> order() const { return order_; }
-  struct Stretch {
-    std::uint32_t first, count;  // of the ordered points
+  struct Interval {
+    std::uint32_t first, count;  // order()[first .. first + count - 1]
   };
-  /// Stretches that hold all ordered points within `distance` of `place`, and few others.
-  void around(Vec2 place, double distance, std::vector<Stretch>& stretches) const;
+  /// Appends intervals that contain all points within `distance` of `place`, and few other points.
+  void around(Vec2 place, double distance, std::vector<Interval>& intervals) const;
 
  private:
   double low_ = 0, height_;
@@ -33,24 +33,26 @@ class StripOrder {
   std::vector<double> z_;
 };
 
-/// u_i = sum_j K(|x_i - y_j|) q_j over pairs closer than the range of a KernelSplit with K = i
-/// near, and - far(0) for pairs at distance 0, whose H_0 is left out. The values of K are kept: 8
-/// bytes for each of about 1.3 times the pairs.
+/// Computes the near part of a HelmholtzSum: u_i = sum_j K(|x_i - y_j|) q_j over pairs of a target
+/// x_i and a source y_j closer than the range of a KernelSplit. K = i near, and K = -far(0) for
+/// pairs at distance 0, whose H_0 is omitted. About 1.3 values of K per pair are stored, with 8
+/// bytes each.
 class NearSum {
  public:
-  /// targets: in an order in which neighbours stand close to each other.
+  /// targets: in an order in which points close in space are close in the list.
   NearSum(const KernelSplit& split, const StripOrder& strips, std::span<const Vec2> sources,
           std::span<const Vec2> targets);
 
-  /// Adds to sums, [column][target], the sums over charges, [column][source in order].
+  /// Computes the sums for several columns of charges, [column][source in the order of the strips],
+  /// and adds them to `sums`, [column][target].
   void add(std::span<const Complex> charges, std::span<Complex> sums) const;
 
  private:
   struct Block {
     Block(std::size_t begin, std::size_t size) : first(begin), count(size) {}
-    std::size_t first, count;              // of the targets
-    std::vector<std::uint32_t> stretches;  // of each target
-    std::vector<StripOrder::Stretch> sources;
+    std::size_t first, count;                    // targets first .. first + count - 1
+    std::vector<std::uint32_t> interval_counts;  // number of intervals of each target
+    std::vector<StripOrder::Interval> sources;
     std::vector<double> values;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> coincident;  // target, source in order
   };
@@ -61,11 +63,13 @@ class NearSum {
   std::vector<Block> blocks_;
 };
 
-/// About the number of pairs of a source and a target within `range` of each other.
+/// Estimates the number of pairs of a source and a target within `range` of each other.
 double near_pairs(std::span<const Vec2> sources, std::span<const Vec2> targets, double range);
 
-/// What choices are made by: seconds on one core of a 2.5 GHz machine for the making and for `uses`
-/// products of one column. Infinite where memory would pass `most_bytes`. Only ratios matter.
+/// Cost model for the choice of an algorithm: seconds on one core of a 2.5 GHz machine for the
+/// setup and `uses` products with one column, by a GridSum (grid), with stored values (stored), or
+/// by direct summation (all_pairs). The cost is infinite if memory would exceed `most_bytes`. Only
+/// ratios matter.
 namespace cost {
 inline constexpr double uses = 10, most_bytes = 1.5e9;
 double grid(const GridShape& shape, double points);
@@ -73,13 +77,14 @@ double stored(double bytes, double seconds_to_make);
 double all_pairs(double pairs);
 }  // namespace cost
 
-/// u_i = sum_j H_0(k |x_i - y_j|) q_j over all pairs of a target x_i and a source y_j that do not
-/// coincide. The error is below `tolerance` of ||u||, from 1e-12 on, for charges without special
-/// structure. H_0 is split (kernel_split.h) into a near part, summed directly, and a far one,
-/// summed on a grid by FFT; where that would cost more than all pairs, they are summed as they are.
+/// Computes u_i = sum_j H_0(k |x_i - y_j|) q_j over all pairs of a target x_i and a source y_j that
+/// do not coincide. The error is below `tolerance` times ||u|| for charges without special
+/// structure and tolerances from 1e-12 on. H_0 is split (kernel_split.h) into a near part, summed
+/// directly, and a far part, summed on a grid by FFT. If it is cheaper, H_0 is summed directly over
+/// all pairs.
 class HelmholtzSum {
  public:
-  /// Sources and targets are the same points.
+  /// Uses the same points as sources and as targets.
   HelmholtzSum(double k, std::span<const Vec2> points, double tolerance)
       : HelmholtzSum(k, points, points, tolerance) {}
   HelmholtzSum(double k, std::span<const Vec2> sources, std::span<const Vec2> targets,
@@ -89,7 +94,7 @@ class HelmholtzSum {
   /// region; the result does not depend on the number of threads.
   std::vector<Complex> operator()(std::span<const Complex> charges) const;
 
-  /// Radius within which pairs are summed directly; 0 where all are.
+  /// Distance within which pairs are summed directly; 0 if all pairs are summed directly.
   double range() const { return range_; }
 
  private:

@@ -10,7 +10,8 @@ namespace flatspeckle::wave {
 
 namespace {
 
-// Coefficients of the Chebyshev series through values at cos(pi (j + 1/2) / n).
+// Returns the coefficients of the Chebyshev series that interpolates values[j] at cos(pi (j + 1/2)
+// / n).
 std::vector<double> chebyshev_series(const std::vector<double>& values) {
   const std::size_t n = values.size();
   std::vector<double> series(n);
@@ -37,9 +38,9 @@ Quadrature double_exponential_rule(double frequency) {
   const double step = reach / half_size;
   Quadrature rule;
   for (int i = -half_size; i <= half_size; ++i) {
-    const double t = step * i, stretch = std::cosh(quarter_turn * std::sinh(t));
+    const double t = step * i, cosh_u = std::cosh(quarter_turn * std::sinh(t));
     rule.nodes.push_back(std::tanh(quarter_turn * std::sinh(t)));
-    rule.weights.push_back(step * quarter_turn * std::cosh(t) / (stretch * stretch));
+    rule.weights.push_back(step * quarter_turn * std::cosh(t) / (cosh_u * cosh_u));
   }
   return rule;
 }
@@ -48,9 +49,10 @@ double bump_exponent(double tolerance) {
   return std::clamp(std::log(1 / tolerance) + 1, 11.0, 35.0);
 }
 
-// At the distance q from `centre` the transform is about exp(sqrt(beta^2 - (q range)^2) - beta) of
-// its peak: with beta^2 = exponent^2 + ((k - centre) range)^2 it falls by exp(-exponent) from k to
-// the band's edge, and by exp(-2) or less from `centre` to k.
+// At the frequency centre + q the transform of the mollifier is about exp(sqrt(beta^2 - (q
+// range)^2) - beta) of its peak. With beta^2 = exponent^2 + ((k - centre) range)^2 it falls by the
+// factor exp(-exponent) from k to the edge of the band. From `centre` to k it falls by a factor of
+// exp(-2) at most.
 KernelSplit::Mollifier KernelSplit::mollifier(double k, double range, double tolerance) {
   const double exponent = bump_exponent(tolerance);
   const double offset = std::min(k, 2 * std::sqrt(exponent) / range);
@@ -78,7 +80,7 @@ KernelSplit::KernelSplit(double k, double range, double tolerance)
   chebyshev_ = chebyshev_series(values);
 }
 
-// Integral of the mollifier times H_0(k s) s over from < s < to.
+// Returns the integral of the mollifier times H_0(k s) s over from < s < to.
 Complex KernelSplit::moment(double from, double to) const {
   const Quadrature rule = double_exponential_rule(shape_.beta + 2 * k_ * range_);
   const double middle = (from + to) / 2, half = (to - from) / 2;
@@ -99,7 +101,7 @@ Complex KernelSplit::moment(double from, double to) const {
   return sum;
 }
 
-// Clenshaw's recurrence.
+// Evaluates Im far by Clenshaw's recurrence.
 void KernelSplit::smooth_y0(std::span<const double> r, std::span<double> values) const {
   constexpr std::size_t lanes = 64;
   double u[lanes], b1[lanes], b2[lanes];

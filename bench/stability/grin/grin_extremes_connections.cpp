@@ -1,4 +1,4 @@
-// Points that one curve joins, or several, a continuum, or none.
+// Pairs of points connected by one curve, by several, by a continuum, or by none.
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +48,7 @@ const HarmonicBall ball{{}};
 const Fisheye eye({.centre_excess = 0.7, .radius = 0.8});
 const Vec3 ball_from(0.3, 0.2, -0.4), ball_to(-0.1, 0.5, 0.2);
 
-/// The four up to arc length 6, of 2 ellipses both ways round.
+/// Returns the four curves of arc length up to 6: two ellipses, each traversed in both senses.
 std::vector<HarmonicCurve> four_curves() {
   auto curves = oracles::harmonic_curves(ball_from, ball_to, 6 * pi);
   std::erase_if(curves, [](const HarmonicCurve& c) { return c.arc_length() > 6; });
@@ -73,7 +73,7 @@ Finding all_four() {
   return {worst, 1e-5};
 }
 
-/// f K of C26 against the sum over the four, f = 1/|J|.
+/// Compares the estimate f K of C26 with the sum over the four curves, f = 1/|J|.
 Finding sum_of_four() {
   double exact = 0;
   for (const HarmonicCurve& curve : four_curves()) exact += 1 / curve.spreading();
@@ -88,7 +88,7 @@ Finding sum_of_four() {
   return mean_in_errors(3000, estimate, exact, 0.1);
 }
 
-/// No ellipse joins them.
+/// Checks two points that no ellipse connects.
 Finding none() {
   const ConnectionTrial trial(ball, everywhere, Vec3(1.2, 0, 0), Vec3(0, 1.2, 0),
                               {.step = 0.05, .max_length = 8});
@@ -101,7 +101,8 @@ Finding none() {
   return {sum, 0};
 }
 
-/// A point and its image in a fisheye: all rays join them, |J| = 0, and none counts.
+/// Checks a point and its image in a fisheye: all rays connect them with |J| = 0, so no connection
+/// is counted.
 Finding continuum() {
   const Vec3 image = -0.64 / ball_from.squaredNorm() * ball_from;
   const Listed list =
@@ -111,7 +112,7 @@ Finding continuum() {
           0};
 }
 
-/// The two arcs of a great circle.
+/// Checks the two connections in a fisheye, which correspond to the two arcs of a great circle.
 Finding great_circle() {
   const Listed list =
       listed(eye, everywhere, ball_from, ball_to, {.step = 0.02, .max_length = 8}, 100);
@@ -121,7 +122,7 @@ Finding great_circle() {
   return {std::abs(paths / whole - 1), 1e-6};
 }
 
-/// |J| = distance^2, in a scene of units or millionths.
+/// Checks |J| = distance^2 at tiny distances, in units of 1 or 1e-6.
 Finding close_points(double gap, double unit) {
   const Fisheye field({.centre_excess = 0.7, .radius = 0.8 * unit});
   const Vec3 to(0.6, -0.48, 0.64);
@@ -129,7 +130,7 @@ Finding close_points(double gap, double unit) {
                              {.step = 0.05 * unit, .max_length = 2 * unit}, 30);
   if (list.curves.empty()) return {infinity, 1e-4};
   const Connection& curve = list.curves[0].curve;
-  // the points' difference has lost digits to their rounding: 1e-16 / gap
+  // rounding gives the difference of the points a relative error of 1e-16 / gap
   return {larger(std::abs(curve.spreading / std::pow(gap * unit, 2) - 1),
                  (curve.start_direction - to).norm()),
           1e-4};
@@ -141,7 +142,8 @@ Finding same_point() {
   return {static_cast<double>(list.curves.size()), 0};
 }
 
-/// Ends of long rays cover space once, counted with the sign of J: orientations add up to 1.
+/// Checks that the orientations (signs of J) of all connections add up to 1: counted with this
+/// sign, the endpoints of long rays cover space once.
 Finding lenses() {
   const GaussianBlobs field({{{0, 0.7, 0}, 1, 0.5}, {{0, -0.7, 0}, 1, 0.5}});
   const Listed list =
@@ -151,7 +153,8 @@ Finding lenses() {
   return {list.curves.size() < 3 ? infinity : std::abs(sum - 1.0), 0};
 }
 
-/// The bend of n - 1 = 1e-6 is a thousandth of that of 1e-3, to the second order of the latter.
+/// Checks that rays bend a thousand times less for n - 1 = 1e-6 than for 1e-3, to the second order
+/// of the latter.
 Finding faint_bend() {
   const Vec3 p(-1, 0.1, 0), q(1, 0.2, 0.1), chord = (q - p).normalized();
   const auto bend = [&](double height) {
@@ -164,8 +167,9 @@ Finding faint_bend() {
   return {std::abs(bend(1e-6) / (1e-3 * bend(1e-3)) - 1), 0.02};
 }
 
-/// Light from within a dense layer: straight, and once turned back by a steep ramp that is beyond
-/// the critical angle; the second is the mirror image's line but for the ramp's width.
+/// Checks connections within a dense layer: a straight ray, and a ray totally reflected by a steep
+/// ramp of the index. Except for the width of the ramp, the latter is the straight line to the
+/// mirror image.
 Finding total_reflection() {
   const TanhRamp ramp{0.5, 0, 0.01};
   const Vec3 p(0, 0, -0.5), q(2, 0, -0.5);
@@ -178,7 +182,7 @@ Finding total_reflection() {
           0.02};
 }
 
-/// n_P^2 / |J_PQ| = n_Q^2 / |J_QP| in a rough spline.
+/// Checks the reciprocity n_P^2 / |J_PQ| = n_Q^2 / |J_QP| in a spline field with strong variations.
 Finding there_and_back() {
   RandomStream random(74, 0, 0);
   const SplineField field = random_spline(random, 0.15);
@@ -197,7 +201,7 @@ Finding there_and_back() {
   return {worst, 1e-7};
 }
 
-/// Beyond rho = 1.5 there is no index, and no ray.
+/// Checks that there are no connections beyond rho = 1.5, where the index is undefined.
 Finding no_index() {
   const ParabolicGuide guide({.axis_excess = 0.5, .alpha = 1});
   const ConnectionOptions options{.step = 0.1, .max_length = 20};

@@ -1,4 +1,5 @@
-// Derivatives of rays by what bends them, and searches that have no way.
+// Derivatives of rays with respect to the coefficients of the field, and searches that cannot
+// start.
 
 #include <cmath>
 #include <vector>
@@ -6,7 +7,7 @@
 #include "bench/stability/extreme_rows.h"
 #include "core/numbers/random.h"
 #include "grin/design/adjoint/design_ray.h"
-#include "grin/design/adjoint/reading.h"
+#include "grin/design/adjoint/measurement.h"
 #include "grin/design/forms/field_form.h"
 #include "grin/design/problem/designer.h"
 
@@ -17,7 +18,8 @@ namespace {
 using namespace grin;
 using namespace grin::design;
 
-/// Coefficients about 1 (a lens nearly as strong as Luneburg's) or about nothing.
+/// Returns random coefficients within 10 % of `strength`. With strength 1 a lens is nearly as
+/// strong as Luneburg's.
 std::vector<double> coefficients(std::size_t count, double strength) {
   RandomStream random(1, 2, 0);
   std::vector<double> all(count);
@@ -25,7 +27,7 @@ std::vector<double> coefficients(std::size_t count, double strength) {
   return all;
 }
 
-/// A ray along z into a ball at a height, to where it leaves it.
+/// A ray that enters a ball parallel to z at a given height, traced to its exit.
 struct BallRay {
   BallForm form{Vec3::Zero(), 1, 7};
   double height, h;
@@ -34,44 +36,44 @@ struct BallRay {
   DesignRay ray() const {
     return {Vec3(height, 0, -std::sqrt(1 - height * height)), Vec3::UnitZ(), Sphere{}};
   }
-  SurfaceReading reading() const { return {Vec3::UnitZ(), frame_across(Vec3::UnitZ())}; }
+  SurfaceMeasurement measurement() const { return {Vec3::UnitZ(), frame_across(Vec3::UnitZ())}; }
   RayWalk walk() const { return {h, static_cast<long>(100 / h)}; }
   std::vector<double> start() const { return coefficients(form.shape().size(), strength); }
 
   FollowedRay follow_in(const std::vector<double>& values) const {
     return follow<Pefrl>(form.field(values), ray(), walk());
   }
-  /// What walking back does not find again.
-  double drift() const {
+  /// Returns the error of the starting point after integrating back from the exit.
+  double return_error() const {
     const auto field = form.field(start());
     const FollowedRay followed = follow_in(start());
     CoefficientSums<2> sums(shape_of(field));
-    const RayState again =
-        pull_back<Pefrl>(field, ray(), walk(), followed, reading()(followed.state).by, sums);
+    const RayState again = backpropagate<Pefrl>(field, ray(), walk(), followed,
+                                                measurement()(followed.state).by, sums);
     return (again.x - ray().start).norm() + (again.v - ray().direction).norm();
   }
-  /// The derivative of where it ends along some direction of all coefficients, against differences
-  /// of fourth order, relative.
+  /// Returns the relative error of the derivative of the exit point along one direction in the
+  /// space of all coefficients, compared with fourth-order differences.
   double derivative_error() const {
     const auto values = start();
     const auto field = form.field(values);
     const FollowedRay followed = follow_in(values);
     CoefficientSums<2> sums(shape_of(field));
-    pull_back<Pefrl>(field, ray(), walk(), followed, reading()(followed.state).by, sums);
+    backpropagate<Pefrl>(field, ray(), walk(), followed, measurement()(followed.state).by, sums);
     const auto along = [](std::size_t i) { return std::sin(static_cast<double>(i)); };
-    double slope = 0;
+    double derivative = 0;
     sums.take([&](std::size_t i, const std::array<double, 2>& d) {
-      slope += strength * along(i) * d[0];
+      derivative += strength * along(i) * d[0];
     });
     const auto end = [&](double by) {
       auto moved = values;
       for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += by * strength * along(i);
-      return reading()(follow_in(moved).state).values[0];
+      return measurement()(follow_in(moved).state).values[0];
     };
     const double step = difference;
     const double by_differences =
         (8 * (end(step) - end(-step)) - (end(2 * step) - end(-2 * step))) / (12 * step);
-    return std::abs(slope / by_differences - 1);
+    return std::abs(derivative / by_differences - 1);
   }
 };
 
@@ -81,7 +83,7 @@ DesignValues values_of(double start_excess, double step) {
   values.form.start_excess = start_excess;
   values.form.most_index = 50;
   values.step = step;
-  auto& light = std::get<FocusValues>(values.aim.kinds);
+  auto& light = std::get<FocusValues>(values.design_target.kinds);
   light.directions = 4;
   light.rays_per_direction = 10;
   return values;
@@ -104,12 +106,13 @@ void design_extremes(ExtremeRows& rows) {
     return Finding{BallRay{.height = 0.5, .h = 1}.derivative_error(), 1e-8};
   });
   rows.add("a ray of 20000 steps, walked back", "its start", [] {
-    return Finding{BallRay{.height = 0.5, .h = 1e-4}.drift(), 1e-12};
+    return Finding{BallRay{.height = 0.5, .h = 1e-4}.return_error(), 1e-12};
   });
-  rows.add_refused("a search that starts where rays are trapped", "does not come to its end", [] {
-    const DesignScene scene = make_design_scene(values_of(40, 0.5));
-    Designer(scene).begin();
-  });
+  rows.add_refused("a search that starts where rays are trapped", "every ray must reach its end",
+                   [] {
+                     const DesignScene scene = make_design_scene(values_of(40, 0.5));
+                     Designer(scene).begin();
+                   });
 }
 
 }  // namespace flatspeckle::bench

@@ -1,4 +1,4 @@
-// Index fields and jumps where they are faint, steep, far out or on an axis.
+// Index fields and index jumps where they are faint, steep, far from the centre or on an axis.
 
 #include <algorithm>
 #include <cmath>
@@ -23,17 +23,18 @@ using namespace grin;
 using namespace oracles;
 using std::numbers::pi;
 
-/// n = n0 / (1 + r^2), that keeps 1e-16 of 1, and its gradient -2 r n / (1 + r^2), that keeps its
-/// own digits.
+/// Compares n = n0 / (1 + r^2), to an absolute accuracy of 1e-16, and its gradient -2 r n / (1 +
+/// r^2), to full relative accuracy.
 Finding fisheye_far_out(double r) {
   const Fisheye eye(FisheyeProfile{1, 1});
-  const double n = 2 / (1 + r * r), slope = -2 * r * n / (1 + r * r);
+  const double n = 2 / (1 + r * r), derivative = -2 * r * n / (1 + r * r);
   const double value_error = std::abs(index(eye, Vec3(r, 0, 0)) - n);
-  const double slope_error = std::abs(eye.gradient({r, 0, 0}).gradient[0] / slope - 1);
-  return {larger(value_error, slope_error), 1e-14};
+  const double derivative_error = std::abs(eye.gradient({r, 0, 0}).gradient[0] / derivative - 1);
+  return {larger(value_error, derivative_error), 1e-14};
 }
 
-/// n - 1 = sqrt(2 - r^2) - 1 from within, 0 from without, gradient -r / n: a jump of 1 at the rim.
+/// Compares n - 1 = sqrt(2 - r^2) - 1 inside and 0 outside, and the gradient -r / n, which jumps by
+/// 1 at the rim.
 Finding luneburg_rim() {
   const Luneburg lens(LuneburgProfile{});
   double worst = 0;
@@ -49,21 +50,22 @@ Finding luneburg_rim() {
   return {worst + std::abs(outside.excess) + outside.gradient.norm(), 1e-15};
 }
 
-/// Of n - 1 = 1e-6, relative to that.
+/// Checks the relative error of n - 1 = 1e-6.
 Finding faint_guide() {
   const double excess = 1e-6, alpha = 1e-3;
   const ParabolicGuide guide({excess, alpha});
   return worst_of({0.0, 1e-9, 0.5, 1.0, 1.41}, 1e-15, [&](double rho) {
     const Wide n0 = 1 + Wide(excess), square = n0 * n0 - Wide(alpha) * alpha * rho * rho;
     const Wide exact = sqrt(square) - 1;
-    const double slope = static_cast<double>(-Wide(alpha) * alpha * rho / sqrt(square));
+    const double derivative = static_cast<double>(-Wide(alpha) * alpha * rho / sqrt(square));
     const auto at = guide.gradient({0, rho, 3});
     return larger({static_cast<double>(abs(Wide(at.excess) - exact)) / excess,
-                   std::abs(at.gradient[1] - slope) / (alpha * alpha)});
+                   std::abs(at.gradient[1] - derivative) / (alpha * alpha)});
   });
 }
 
-/// Where n = n0 sech vanishes: no less than 0, no NaN while cosh is a number.
+/// Checks n = n0 sech(alpha rho) far from the axis: it must not be negative, and not NaN as long as
+/// cosh is finite.
 Finding sech_far_out() {
   const SechGuide guide({0.5, 1});
   double wrong = 0;
@@ -75,7 +77,8 @@ Finding sech_far_out() {
   return {wrong, 0};
 }
 
-/// Slope (high - low) / (2 width) in the middle; none beyond some tens of widths.
+/// Checks that the gradient is (high - low) / (2 width) in the middle of the ramp and 0 beyond some
+/// tens of widths.
 Finding steep_ramp(double width) {
   const TanhRamp ramp{0.1, 0.6, width};
   const auto middle = ramp.gradient(Vec3::Zero()), above = ramp.gradient({0, 0, 30 * width}),
@@ -86,7 +89,8 @@ Finding steep_ramp(double width) {
       1e-15};
 }
 
-/// On the axis J_m(kr rho) cos(m phi) is 1, x kr/2, (x^2 - y^2) kr^2/8, nothing.
+/// Checks J_m(kr rho) cos(m phi) near the axis: 1, x kr/2 and (x^2 - y^2) kr^2/8 for m = 0, 1 and
+/// 2, and 0 for larger m.
 Finding sound_on_axis(int m, double off) {
   const double kr = 7, amplitude = 0.02;
   const StandingWave wave(0.33, amplitude, m, kr, 2);
@@ -102,7 +106,7 @@ Finding sound_on_axis(int m, double off) {
           1e-12};
 }
 
-/// J_m(x) cos(m phi) against 50 digits, relative to the envelope sqrt(2 / (pi x)).
+/// Compares J_m(x) cos(m phi) with 50 digits, relative to the envelope sqrt(2 / (pi x)).
 Finding sound_far_out(int m, double x) {
   const double kr = 7, rho = x / kr, phi = 0.3;
   const StandingWave wave(0, 1, m, kr, 100);
@@ -112,7 +116,8 @@ Finding sound_far_out(int m, double x) {
   return {std::abs(wave.excess(place) - exact) / std::sqrt(2 / (pi * x)), 1e-15 * x + 1e-12};
 }
 
-/// Reflected power across and in the plane, by the textbook's ratios in 50 digits.
+/// Compares the reflectance, averaged over both polarizations, with Fresnel's formulas in 50
+/// digits.
 Finding reflectance(double excess_from, double excess_to, double cosine, double limit) {
   const double sine = std::sqrt((1 - cosine) * (1 + cosine));
   const Vec3 v = (1 + excess_from) * Vec3(sine, 0, cosine);
@@ -127,7 +132,7 @@ Finding reflectance(double excess_from, double excess_to, double cosine, double 
   return {static_cast<double>(abs(Wide(face.reflectance()) / exact - 1)), limit};
 }
 
-/// |v| = n beyond a jump, and what is tangential stays.
+/// Checks that |v| = n beyond an index jump, and that the tangential component of v is conserved.
 Finding snell() {
   double worst = 0;
   for (const double cosine : {1.0, 1e-3, 1e-9}) {
@@ -167,9 +172,10 @@ void add_jumps(ExtremeRows& rows) {
   const std::string digits = "Fresnel in 50 digits";
   rows.add("jump of 1e-12, normal incidence: 2.5e-25 reflected", digits, reflectance, 0, 1e-12, 1,
            1e-14);
-  // the double next to pi/2
+  // the cosine of pi/2 is 6e-17 in double precision
   rows.add("jump of 0.5, at exactly pi/2", digits, reflectance, 0, 0.5, std::cos(pi / 2), 1e-14);
-  // q2^2 = 1.5e-12, the difference of numbers of about 1, keeps 1e-4, and 1 - R = 4 q2 / q1
+  // q2, the normal component beyond the jump, has q2^2 = 1.5e-12. This difference of numbers of
+  // about 1 is accurate to 1e-4, and 1 - R = 4 q2 / q1
   const double critical = std::sqrt(1 - 1 / 2.25);
   rows.add("jump of -0.5, cosine 1e-12 below the critical angle", digits, reflectance, 0.5, 0,
            critical + 1e-12, 1e-9);

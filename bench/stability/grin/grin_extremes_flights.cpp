@@ -1,4 +1,4 @@
-// Free flights and phase functions at the ends of their ranges; densities of high contrast.
+// Free flights and phase functions at the limits of their ranges; densities of high contrast.
 
 #include <algorithm>
 #include <cmath>
@@ -21,11 +21,12 @@ namespace {
 using namespace grin;
 using namespace oracles;
 using std::numbers::pi;
-/// With the least and largest of RandomStream.
+/// Uniform numbers, including the smallest and largest of RandomStream.
 constexpr double uniforms[] = {0x1p-54, 1e-9, 0.25,     0.5 - 0x1p-53,
                                0.5,     0.75, 1 - 1e-9, 1 - 0x1p-53};
 
-/// The distribution of what is sampled is u, relative to u; and the density in 50 digits.
+/// Checks that the distribution function of the sampled distance equals the uniform number u,
+/// relative to u; compares the density with 50 digits.
 Finding bounded_flight(double optical_depth) {
   using boost::multiprecision::expm1;
   const double longest = 3;
@@ -38,23 +39,25 @@ Finding bounded_flight(double optical_depth) {
     const Wide share = optical_depth == 0 ? Wide(s) / longest : Wide(-expm1(-mu_t * s) / all);
     worst = larger(worst, static_cast<double>(abs(share / u - 1)));
     const Wide density = optical_depth == 0 ? Wide(1) / longest : Wide(mu_t * exp(-mu_t * s) / all);
-    if (density > 1e-280)  // exponents of 1e4 keep their 1e-16, and so 1e-12 of their power
+    if (density >
+        1e-280)  // an exponent of 1e4 has a relative error of 1e-16, its exponential one of 1e-12
       worst = larger(worst, 1e-3 * static_cast<double>(abs(flight.density(s) / density - 1)));
   }
   return {worst, 1e-15};
 }
 
-/// The mean weight of stretched flights is the chance of a collision, over 1e5 strata.
-Finding stretched_flight(double optical_depth) {
-  const mc::BoundedStretchedFlight flight(optical_depth, 1, 0.9);
+/// Checks that the mean weight of biased flights is the probability of a collision, over 1e5
+/// strata.
+Finding biased_flight(double optical_depth) {
+  const mc::BoundedBiasedFlight flight(optical_depth, 1, 0.9);
   constexpr int count = 100'000;
   double sum = 0;
   for (int i = 0; i < count; ++i) sum += flight.weight(flight.sample((i + 0.5) / count)) / count;
   return {std::abs(sum / -std::expm1(-optical_depth) - 1), 1e-4};
 }
 
-/// The distribution of the sampled angle is u. Next to pi an angle is rounded by 4e-16, where a
-/// density of 318 (g = -0.999) makes 1.4e-13 of it.
+/// Checks that the distribution function of the sampled angle equals the uniform number u. Near pi
+/// an angle is rounded by 4e-16, which a density of 318 (g = -0.999) amplifies to 1.4e-13.
 Finding flat_inverse(double g) {
   return worst_of(uniforms, g < 0 ? 2e-13 : 1e-15, [&](double u) {
     const Wide half = Wide(HenyeyGreenstein<2>{g}.sample(u)) / 2;
@@ -64,7 +67,8 @@ Finding flat_inverse(double g) {
   });
 }
 
-/// In space, by 1 - cos, which next to 2 is rounded by 4e-16 where its density is 1e6 (g = -0.999).
+/// Checks the distribution function of the scattering angle in 3D, in terms of 1 - cos. Near 2 this
+/// is rounded by 4e-16, and its density there is 1e6 (g = -0.999).
 Finding space_inverse(double g) {
   return worst_of(uniforms, g < 0 ? 5e-10 : 1e-15, [&](double u) {
     const Wide gap(HenyeyGreenstein<3>{g}.sample_one_minus_cosine(u)), wide_g(g);
@@ -76,8 +80,8 @@ Finding space_inverse(double g) {
   });
 }
 
-/// Over all directions 1, the mean cosine g. Backwards 1 - cos, about 2, is rounded by 4e-16 beside
-/// (1 + g)^2 = 1e-6.
+/// Checks that the integral over all directions is 1 and the mean cosine is g. Near the backward
+/// direction, 1 - cos is about 2 and rounded by 4e-16, which matters relative to (1 + g)^2 = 1e-6.
 template <int dimension>
 Finding normalisation(double g) {
   const HenyeyGreenstein<dimension> phase{g};
@@ -91,7 +95,7 @@ Finding normalisation(double g) {
         };
         return at(t) + at(pi - t);
       };
-      // from both ends to the middle, as the lobe may be at either
+      // the angles are refined towards both ends, because the lobe may be at either end
       const double a = std::min(low, pi / 2), b = std::min(high, pi / 2);
       return boost::math::quadrature::gauss<double, 30>::integrate(both, a, b);
     };
@@ -101,7 +105,7 @@ Finding normalisation(double g) {
   return {larger(std::abs(sum - 1), std::abs(cosine - g)), g < 0 ? 1e-9 : 1e-12};
 }
 
-/// Directions turned a million times stay unit vectors.
+/// Checks that directions stay unit vectors after a million scatterings.
 Finding long_walk() {
   const SpacePhaseFunction phase{HgPhase{0.999}};
   double worst = 0;
@@ -113,8 +117,8 @@ Finding long_walk() {
   return {worst, 1e-14};
 }
 
-/// [0, 4] x [0, 1]^2, density 1 at x = 0 and 1, 1e6 at 2, 1 at 3 and 4, linear between them: in all
-/// 1e6 + 2 along x.
+/// The box [0, 4] x [0, 1]^2 with density 1 at x = 0 and 1, 1e6 at 2, 1 at 3 and 4, linear in
+/// between. The integral along x is 1e6 + 2.
 Stage spike(double mu_s) {
   const FieldGrid grid{Vec3::Zero(), Vec3::Ones(), {5, 2, 2}};
   std::vector<double> density(grid.size(), 1);
@@ -123,7 +127,7 @@ Stage spike(double mu_s) {
           {.mu_s = mu_s, .density = std::make_shared<const DensityGrid>(grid, density)}};
 }
 
-/// Flights through the spike, an optical depth of 1: how many leave.
+/// Checks the fraction of flights that pass the spike, whose optical depth is 1.
 Finding through_spike(const Space& space) {
   RandomStream random(4, 90, 0);
   constexpr int count = 20'000;
@@ -134,15 +138,15 @@ Finding through_spike(const Space& space) {
   return in_errors(share, std::sqrt(expected * (1 - expected) / count), expected, 0.02);
 }
 
-/// Beside it tentative collisions are 1e6 for each true one; transmittance by ratio tracking along
-/// x = 0.5, where the density is 1.
+/// Checks the transmittance by ratio tracking along x = 0.5, where the density is 1. Next to the
+/// spike there are 1e6 tentative collisions per real one.
 Finding beside_spike() {
   const Space space(Homogeneous{0}, spike(0.3));
   RandomStream random(5, 90, 0);
   ConnectionStatistics statistics;
   const PathPoint from{Vec3(0.5, 0.01, 0.5)}, to{Vec3(0.5, 0.99, 0.5)};
   return mean_in_errors(
-      25, [&](int) { return space.join(from, to, random, statistics)->transmittance; },
+      25, [&](int) { return space.connect(from, to, random, statistics)->transmittance; },
       std::exp(-0.3 * 0.98), 0.01);
 }
 
@@ -160,7 +164,7 @@ void add_flights(ExtremeRows& rows) {
   rows.add_each("free flight within OD ", {0.0, 1e-280, 1e-12, 1.0, 40.0, 1e4}, "",
                 "distribution, density in 50 digits", bounded_flight);
   for (const double depth : {1e-12, 1e4})
-    rows.add("stretched flight within OD " + short_number(depth), "mean weight", stretched_flight,
+    rows.add("stretched flight within OD " + short_number(depth), "mean weight", biased_flight,
              depth);
 }
 
@@ -185,7 +189,7 @@ void flight_extremes(ExtremeRows& rows) {
   rows.add("density of contrast 1e6, through its spike", "exp(-OD), in errors",
            [] { return through_spike(Space(Homogeneous{0}, spike(1e-6))); });
   rows.add("density of contrast 1e6, curved, n - 1 = 1e-6", "exp(-OD), in errors", [] {
-    // the bend, 4e-6, changes the depth by as much
+    // a deflection of 4e-6 changes the optical depth by the same amount
     const auto space = make_space(LinearRamp{0, 1e-6 * Vec3::UnitY()}, spike(1e-6), {0.5, 8});
     return through_spike(*space);
   });

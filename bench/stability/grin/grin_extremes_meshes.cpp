@@ -1,4 +1,4 @@
-// Bodies of triangles: lines that graze them or lie in their faces, tiny, huge and far away.
+// Bodies of triangles: rays that graze them or lie in their faces; tiny, huge and distant bodies.
 
 #include <cmath>
 #include <numbers>
@@ -19,7 +19,8 @@ TriangleMesh moved(TriangleMesh mesh, double scale, const Vec3& to) {
   return mesh;
 }
 
-/// Lines cross a torus an even number of times, each time on it, in units of the spacing.
+/// Checks that lines cross a torus an even number of times, and that the crossings lie on it to a
+/// fraction of the grid spacing.
 Finding crossings(double scale, const Vec3& at, double limit) {
   const double spacing = 0.06 * scale;
   const LevelSurface surface = smooth(moved(torus_mesh(), scale, at), spacing);
@@ -30,9 +31,9 @@ Finding crossings(double scale, const Vec3& at, double limit) {
     const Vec3 d = (at + random_point(random, 0.6 * scale) - x).normalized();
     int count = 0;
     for (double side = 1;; side = -side, ++count) {
-      const double way = surface.way(x, d, side);
-      if (!(way < 10 * scale)) break;
-      x += way * d;
+      const double distance = surface.crossing_distance(x, d, side);
+      if (!(distance < 10 * scale)) break;
+      x += distance * d;
       worst = larger(worst, std::abs(surface.distance(x)) / spacing);
     }
     if (count % 2 != 0) return {1, limit};
@@ -40,7 +41,8 @@ Finding crossings(double scale, const Vec3& at, double limit) {
   return {worst, limit};
 }
 
-/// Flights that begin in the planes of a cube's faces, along them and along its edges.
+/// Checks free flights that begin in the planes of a cube's faces and run along the faces and
+/// edges.
 Finding along_faces(double index) {
   const Stage stage{
       Box{Vec3::Constant(-2), Vec3::Constant(2)}, {}, {Body{smooth(cube_mesh(1), 0.125)}}};
@@ -56,7 +58,8 @@ Finding along_faces(double index) {
   return {lost / 3000.0, 0};
 }
 
-/// Of light that grazes a ball of triangles: in it for ever, or at 10,000 reflections.
+/// Checks the fraction of lost rays among those that graze a ball of triangles. Rays are lost if
+/// they are trapped or stopped after 10,000 reflections.
 Finding lost_by_grazing() {
   const Stage stage{Sphere{Vec3::Zero(), 3}, {}, {Body{smooth(ball_mesh(5), 0.2)}}};
   const Space space(Homogeneous{0.4}, stage);

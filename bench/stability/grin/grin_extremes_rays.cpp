@@ -1,4 +1,4 @@
-// Rays that turn, graze, focus and go on for ever.
+// Rays that turn back, graze, focus and are followed over long distances.
 
 #include <algorithm>
 #include <cmath>
@@ -30,13 +30,14 @@ using oracles::HarmonicBall;
 using oracles::HarmonicCurve;
 using std::numbers::pi;
 const std::vector<Surface> nothing;
-const ParabolicGuide guide({0.5, 1});  // no index beyond rho = 1.5
+const ParabolicGuide guide({0.5, 1});  // the index is undefined beyond rho = 1.5
 
 ControlledSteps<Sharma> controlled(double tolerance, double longest) {
   return {tolerance, 0.01, longest};
 }
 
-/// From the plane of a beam to the focus on the far rim: place, and optical path pi/2 + 1.
+/// Checks a ray from the plane of a beam to the focus on the far rim of a Luneburg lens: its
+/// position, and its optical path pi/2 + 1.
 Finding luneburg(double height, double limit) {
   const Luneburg lens{LuneburgProfile{1, 0.3}};
   const std::vector<Surface> rim{Sphere{}};
@@ -58,10 +59,11 @@ Finding beside_the_rim() {
   return {end.stop == Stop::length ? (ray.x - Vec3(1, 1 + 1e-9, 0)).norm() : 1, 1e-15};
 }
 
-/// On a circle of radius 1/sin(angle) through a point of the unit sphere and its image: far out the
-/// index is angle^2/4. Place, and optical path pi n0 a / 2; what v^2 - n^2 loses far out, where n
-/// is small, weighs the more further in, and n = 1 + excess is rounded to 2^-53 there in each of
-/// nine looks at it of every step.
+/// Checks a ray on a circle of radius 1/sin(angle) through a point of the unit sphere and its
+/// image. Far from the centre the index is about angle^2/4. The position and the optical path pi n0
+/// a / 2 are checked. Far from the centre, where n is small, n = 1 + excess is rounded to 2^-53 at
+/// each of nine evaluations per step; the resulting errors of v^2 - n^2 are amplified as the ray
+/// returns towards the centre.
 Finding ray_far_out(double angle) {
   const Fisheye eye(FisheyeProfile{0.5, 1});
   auto steps = controlled(1e-12, 1e9);
@@ -76,25 +78,25 @@ Finding ray_far_out(double angle) {
           1e-9 / angle + rounded};
 }
 
-/// n = 1.5 + slope z: n = n0 cosh(slope sigma) + v_z sinh(slope sigma), x = v_x sigma, up to the
-/// turning point and down to the start again.
-Finding turning_point(double slope, double cosine) {
-  const LinearRamp ramp{0.5, Vec3(0, 0, slope)};
+/// Checks a ray in the index n = 1.5 + gradient z, up to its turning point and back to the start: n
+/// = n0 cosh(gradient sigma) + v_z sinh(gradient sigma), x = v_x sigma.
+Finding turning_point(double gradient, double cosine) {
+  const LinearRamp ramp{0.5, Vec3(0, 0, gradient)};
   const RayState start = start_ray(ramp, Vec3::Zero(), {std::sqrt(1 - cosine * cosine), 0, cosine});
-  const double sigma = cosine > 0 ? -2 * std::atanh(start.v[2] / 1.5) / slope : -1 / slope;
+  const double sigma = cosine > 0 ? -2 * std::atanh(start.v[2] / 1.5) / gradient : -1 / gradient;
   RayState ray = start;
   constexpr int count = 2000;
   for (int i = 0; i < count; ++i) Sharma::step(ramp, ray, sigma / count);
-  const double along = slope * sigma;
+  const double along = gradient * sigma;
   const double n = 1.5 * std::cosh(along) + start.v[2] * std::sinh(along);
-  const double size = std::abs(1 / slope);
+  const double size = std::abs(1 / gradient);
   return {larger({std::abs(ray.x[0] - start.v[0] * sigma) / size,
-                  std::abs(ray.x[2] - (n - 1.5) / slope) / size,
+                  std::abs(ray.x[2] - (n - 1.5) / gradient) / size,
                   std::abs(index(ramp, ray.x) - ray.v.norm())}),
           1e-11};
 }
 
-/// Rays 1e-8 to either side of Snell's critical angle, and the angle of one that passes.
+/// Checks rays 1e-8 on either side of the critical angle, and the angle of a transmitted ray.
 Finding critical_angle(double width) {
   const double n1 = 1.5, n2 = 1.2;
   const TanhRamp ramp{n1 - 1, n2 - 1, width};
@@ -112,8 +114,8 @@ Finding critical_angle(double width) {
   return {std::abs(ray.v[0] / ray.v.norm() - 0.5 * n1 / n2), 1e-8};
 }
 
-/// |v| - n over 1e4 oscillations at 40 steps each: bounded, as steps are symplectic; what is along
-/// the guide is kept to the last bit.
+/// Checks that |v| - n stays bounded over 1e4 oscillations of 40 steps each, because the integrator
+/// is symplectic, and that the component of v along the guide is conserved exactly.
 Finding guide_index() {
   RayState ray = start_ray(guide, {0.5, 0, 0}, {0.1, 0.3, 1});
   const double along = ray.v[2];
@@ -125,7 +127,8 @@ Finding guide_index() {
   return ray.v[2] == along ? Finding{worst, 2e-5} : yes(false);
 }
 
-/// Place after 1e4 oscillations at 400 steps each: a phase error of 0.1 h^4 a radian.
+/// Checks the position after 1e4 oscillations of 400 steps each. The phase error is 0.1 h^4 per
+/// radian for steps of h.
 Finding guide_phase() {
   RayState ray = start_ray(guide, {0.5, 0, 0}, {0.1, 0.3, 1});
   const RayState start = ray;
@@ -136,17 +139,17 @@ Finding guide_phase() {
   return {off, 0.1 * std::pow(h, 4) * h * count};
 }
 
-/// 1e4 oscillations and as many back.
+/// Checks that a ray returns to its start when followed over 1e4 oscillations and back.
 Finding guide_and_back() {
   RayState ray = start_ray(guide, {0.5, 0, 0}, {0.1, 0.3, 1});
   const RayState start = ray;
   for (const double h : {2 * pi / 40, -2 * pi / 40})
     for (int i = 0; i < 400'000; ++i) Yoshida4::step(guide, ray, h);
-  // in z coordinates of 6e4 are rounded 8e5 times
+  // z grows to 6e4 and is rounded 8e5 times
   return {larger((ray.x - start.x).norm(), (ray.v - start.v).norm()), 1e-8};
 }
 
-/// dx/dv0 across the guide is sin(sigma) after 100 oscillations and a quarter.
+/// Compares dx/dv0 across the guide with sin(sigma) after 100 oscillations and a quarter.
 Finding guide_tangent() {
   RayState ray = start_ray(guide, {0.3, 0, 0}, {0.1, 0.2, 1});
   RayTangent tangent;
@@ -158,7 +161,8 @@ Finding guide_tangent() {
   return {(tangent.dx - exact).norm(), 0.1 * std::pow(h, 4) * h * count};
 }
 
-/// Period 2 pi 1e4; the optical path beyond the length is 1e-7 of it.
+/// Checks a ray in a guide of period 2 pi 1e4, whose optical path exceeds the length by a fraction
+/// of 1e-7.
 Finding ray_in_faint_guide() {
   const ParabolicGuide faint({1e-6, 1e-4});
   RayState ray = start_ray(faint, {0.3, 0, 0}, Vec3::UnitZ());
@@ -170,22 +174,24 @@ Finding ray_in_faint_guide() {
           1e-7};
 }
 
-/// No dispersion: optical path n0 times the length for every slope, over 1000 half periods.
+/// Checks that all rays have the same optical path, n0 times the length, for every tilt, over 1000
+/// half periods.
 Finding sech_dispersion() {
   const double n0 = 1.5, alpha = 0.6, length = 1000 * pi / alpha;
   const SechGuide sech({n0 - 1, alpha});
   const std::vector<Surface> end{Plane{{0, 0, length}, Vec3::UnitZ()}};
   double worst = 0;
-  for (const double slope : {0.0, 0.3, 0.8}) {
+  for (const double tilt : {0.0, 0.3, 0.8}) {
     ControlledSteps<Yoshida4> steps{1e-12, 0.01, 1};
-    RayState ray = start_ray(sech, Vec3::Zero(), {slope * 0.6, slope * 0.8, 1});
+    RayState ray = start_ray(sech, Vec3::Zero(), {tilt * 0.6, tilt * 0.8, 1});
     if (trace(sech, end, {1e5, 1e-9}, steps, ray).stop != Stop::surface) return yes(false);
     worst = larger(worst, std::abs(ray.optical_path / (n0 * length) - 1));
   }
   return {worst, 1e-9};
 }
 
-/// At 1e8 coordinates are rounded to 1e-8 and steps must not shrink for it.
+/// Checks a ray at coordinates of 1e8, which are rounded to 1e-8. The step control must not reduce
+/// steps because of this rounding.
 Finding far_from_origin() {
   const double start = 1e8;
   const std::vector<Surface> end{Plane{{0, 0, start + 10}, Vec3::UnitZ()}};
@@ -213,8 +219,8 @@ TracedBeam beam(const F& field, RayState ray, double sigma, int steps) {
   return {ray, signed_spreading(tangent, start.v.norm(), start.v, ray.v), caustics.count()};
 }
 
-/// Luneburg's ball: |J| = n0^2 sin^2 sigma (v0.v) about its foci, where it is 0 to second order:
-/// 1e-6 beyond, places that are right to 1e-13 make 1e-7 of it.
+/// Checks a beam in the harmonic ball: |J| = n0^2 sin^2 sigma (v0.v) has second-order zeros at its
+/// foci. At a distance of 1e-6 from a focus, positions accurate to 1e-13 give |J| to 1e-7.
 Finding ball_focus(double beyond) {
   const HarmonicBall field{{}};
   const RayState start = start_ray(field, {0.3, 0.2, -0.4}, {0.5, -0.3, 0.6});
@@ -225,7 +231,7 @@ Finding ball_focus(double beyond) {
   return {std::abs(std::abs(found.spreading) / exact.spreading() - 1), 1e-6};
 }
 
-/// The image of a fisheye: both widths vanish at once.
+/// Checks a beam at the image point of a fisheye, where both of its widths vanish.
 Finding fisheye_focus() {
   const double n0 = 1.7, a = 0.8;
   const Fisheye field({n0 - 1, a});
@@ -245,7 +251,8 @@ Finding fisheye_focus() {
           1e-8};
 }
 
-/// A quarter period from 1e-6 off the axis of sound: C28's guide; beside it (kr rho)^2 / 16.
+/// Checks a quarter period of a ray 1e-6 off the axis of the sound field, which equals the guide of
+/// C28 up to relative terms of (kr rho)^2 / 16.
 Finding sound_axis() {
   const double n0 = 1.33, sound = 1e-3, kr = 7, off = 1e-6;
   const StandingWave wave(n0 - 1, sound, 0, kr, 2);
@@ -261,7 +268,8 @@ Finding sound_axis() {
           1e-9};
 }
 
-/// n = 1 - z: straight up a ray creeps towards z = 1; aside it is turned back in time.
+/// Checks rays in n = 1 - z: a ray along z approaches z = 1 asymptotically; an oblique ray turns
+/// back before.
 Finding ray_without_index() {
   const LinearRamp ramp{0, {0, 0, -1}};
   auto careful = controlled(1e-10, 1);
@@ -279,7 +287,8 @@ Finding beyond_the_guide() {
   return yes(trace(guide, nothing, {1e3, 1e-11}, wide, out).stop == Stop::lost);
 }
 
-/// Of order 64 the wave is a product of (kr rho)^64 and a profile; a table reaches to 1e4.
+/// Checks a ray beyond the range of a sound wave of order 64. The wave is computed as (kr rho)^64
+/// times a profile, which is tabulated up to kr rho = 1e4.
 Finding sound_too_far() {
   const StandingWave wave(0.3, 0.01, 64, 7, 70);
   auto steps = controlled(1e-10, 1);
@@ -287,7 +296,7 @@ Finding sound_too_far() {
   return yes(trace(wave, nothing, {10, 1e-9}, steps, ray).stop == Stop::lost);
 }
 
-/// A ray through bodies, to z = 2 or the length 10.
+/// Traces a ray through bodies, to z = 2 or a length of 10.
 RayState through(const PlainBodyValues& bodies, const Vec3& from, const Vec3& towards) {
   TraceValues values;
   values.bodies.plain_bodies = bodies;
@@ -300,7 +309,7 @@ RayState through(const PlainBodyValues& bodies, const Vec3& from, const Vec3& to
   return trace_rays(make_trace_scene(values))[0].end;
 }
 
-/// Refracted twice, a ray at this height is turned by 2 (asin h - asin h/n).
+/// Checks a ball lens: a ray at height h is refracted twice and deflected by 2 (asin h - asin h/n).
 Finding ball_lens(double height, double excess, double limit) {
   const RayState end =
       through({.ball = {0, 0, 0, 1, 1 + excess, 0, 0, 0}}, {height, 0, -2}, Vec3::UnitZ());
@@ -308,7 +317,8 @@ Finding ball_lens(double height, double excess, double limit) {
   return {std::abs(std::atan2(-end.v[0], end.v[2]) / turn - 1), limit};
 }
 
-/// From within a plate, at so much more than the critical angle: out of the other side, or back.
+/// Checks a ray inside a plate at the critical angle + `beyond`: it must leave through the other
+/// side or be totally reflected.
 Finding at_critical_angle(double beyond) {
   const double angle = std::asin(1 / 1.5) + beyond;
   const RayState end = through({.block = {-1e6, -1e6, 0, 1e6, 1e6, 1, 1.5, 0, 0, 0}}, {0, 0, 0.5},
@@ -317,21 +327,22 @@ Finding at_critical_angle(double beyond) {
   return yes(is_inside == (beyond > 0));
 }
 
-/// A face of so large a radius turns a ray at height 1 by (n - 1)/R.
+/// Checks that a lens face of large radius R deflects a ray at height 1 by (n - 1)/R.
 Finding weak_lens(double radius) {
   const RayState end =
       through({.lens = {0, 0, 0, 2, radius, 0, 0.5, 1.5, 0, 0, 0}}, {1, 0, -1}, Vec3::UnitZ());
   return {std::abs(-end.v[0] * radius / 0.5 - 1), 1e-16 * radius + 1 / (radius * radius)};
 }
 
-/// Too large to turn anything that a double tells.
+/// Checks a lens with a radius so large that the deflection is below double precision.
 Finding flat_lens(double radius) {
   const RayState end =
       through({.lens = {0, 0, 0, 2, radius, 0, 0.5, 1.5, 0, 0, 0}}, {1, 0, -1}, Vec3::UnitZ());
   return {std::abs(end.v[0]) + std::abs(end.x[0] - 1), 1e-15};
 }
 
-/// Two plates so far from each other, an oblique ray: aside by the sum of d tan(angle).
+/// Checks an oblique ray through two plates separated by `gap`: it is displaced by the sum of d
+/// tan(angle) over plates and gap of thickness d.
 Finding plates_in_contact(double gap) {
   const double s = 0.6;
   const RayState end = through({.block = {-1e3, -1e3, -1,  1e3, 1e3, 0, 1.5, 0, 0, 0,  //
@@ -363,7 +374,8 @@ void add_bodies(ExtremeRows& rows) {
 void add_lenses(ExtremeRows& rows) {
   rows.add_each("Luneburg lens, beam at height ", {0.0, 0.7, 0.999}, "", "focus, optical path",
                 luneburg, 1e-10);
-  // the rim, met at 4e-5 rad, is found to 1e-12 across and so to 2e-8 along
+  // the ray meets the rim at 4e-5 rad; the rim is located to 1e-12 along its normal and therefore
+  // to 2e-8 along the ray
   rows.add("Luneburg lens, beam at height 1 - 1e-9, rim grazed", "focus, optical path", luneburg,
            1 - 1e-9, 1e-7);
   rows.add("Luneburg lens, beam at height 1 + 1e-9", "passes straight", beside_the_rim);

@@ -1,4 +1,5 @@
-// Pictures of stiff scenes: the white furnace, and slabs as thin, deep and peaked as they come.
+// Renderings of extreme scenes: the white furnace, and extremely thin, deep and forward-scattering
+// slabs.
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +35,7 @@ RunState run_state(const RenderJob& job, std::uint64_t samples) {
   run_batches(job.batches, options, state);
   return state;
 }
-/// No method: that which a pilot chooses.
+/// Rendering method; nullopt if the pilot run chooses it.
 using Chosen = std::optional<RenderMethod>;
 Rendering rendered(const RenderScene& scene, Chosen method, std::uint64_t samples) {
   const RenderJob job = render_job(scene, {method}, 1);
@@ -42,14 +43,16 @@ Rendering rendered(const RenderScene& scene, Chosen method, std::uint64_t sample
   return {rendered_picture(job, sums).steady, transport_counts(job, sums)};
 }
 
-/// The mean of n^2 over the face at z = 1, and a camera that reads 1 (C24).
+/// Checks the white furnace (C24): the irradiance is pi times the mean of n^2 over the face at z =
+/// 1, and a camera inside measures 1.
 Finding furnace(RenderScene scene, std::uint64_t samples) {
   const double expected = pi * mean_square_index(scene);
   const Rendering face = rendered(scene, RenderMethod::bidirectional, samples);
   Finding worst = in_errors(face.pixels.value[0], face.pixels.error[0], expected, 0.1);
   scene.sensors = {Camera{Vec3(0.2, -0.1, -0.8), Vec3::UnitZ(), Vec3::UnitY(), 1.2, {1, 1}}};
   const Rendering inside = rendered(scene, RenderMethod::path, samples);
-  // paths that absorb nothing bring back exactly what they find: the error may be 0
+  // without absorption every path returns exactly the radiance of the environment, so the error may
+  // be 0
   const double error = std::max(inside.pixels.error[0], 1e-12);
   worst = worse(worst, in_errors(inside.pixels.value[0], error, 1, 0.1));
   if (face.counts.lost_values + inside.counts.lost_values > 0) return {1, 0};
@@ -60,7 +63,7 @@ RenderScene in_box(AnyIndexField field, const ScatteringMedium& medium) {
   return scene_in(std::move(field), {unit_box(), medium}, environment(), whole_face());
 }
 
-/// Matched index and a thickness of 1 under a thin beam; a detector on all of a face.
+/// A slab of matched index and thickness 1 under a thin beam, with a detector that covers a face.
 RenderScene slab(const ScatteringMedium& medium, bool reflected) {
   RenderScene scene{};
   scene.step = 1;
@@ -78,7 +81,7 @@ Estimate times(double factor, Estimate all) {
   return all;
 }
 
-/// The beam's power of 1 that reaches a face.
+/// Checks the power that reaches a face from a beam of power 1.
 Finding share_row(const ScatteringMedium& medium, bool reflected, Chosen method,
                   std::uint64_t samples, double expected, double largest_error,
                   double accuracy = 0) {
@@ -88,7 +91,7 @@ Finding share_row(const ScatteringMedium& medium, bool reflected, Chosen method,
                    accuracy);
 }
 
-/// Both faces together, sensors of one run: all of it.
+/// Checks that both faces, sensors of one run, together receive all power.
 Finding slab_energy(const ScatteringMedium& medium, std::uint64_t samples) {
   RenderScene scene = slab(medium, true);
   scene.sensors.push_back(slab(medium, false).sensors[0]);
@@ -136,7 +139,8 @@ void add_furnaces(ExtremeRows& rows) {
   add(false, "white furnace, density of contrast 1e6", in_box(Homogeneous{0.3}, spike), 2000);
 }
 
-/// Milne's reflected share of a slab that is so deep: H(1) / sqrt 3 over the depth comes through.
+/// Returns the reflectance of a deep slab without absorption by Milne's theory. The transmittance
+/// is H(1) / sqrt 3 divided by the depth plus two extrapolation lengths.
 double milne(double depth) {
   return 1 - 2.9078 / std::numbers::sqrt3 / (depth + 2 * 0.7104);
 }
@@ -145,7 +149,7 @@ void add_slabs(ExtremeRows& rows) {
   const std::string peierls = "Peierls' equation, in errors",
                     energy = "reflected + transmitted = 1, in errors";
   static constexpr Chosen light = RenderMethod::light;
-  // flights are not forced to collide, so that thinner slabs take ever more of them
+  // free flights are not forced to collide, so thinner slabs need more of them
   rows.add("slab of OD 0.01, reflected", peierls, [] {
     return share_row({0.01, 0}, true, light, 100'000, isotropic_slab(0.01, 1).reflected, 0.05);
   });
@@ -171,12 +175,12 @@ void add_slabs(ExtremeRows& rows) {
            ScatteringMedium{0, 30}, false, light, 1000, std::exp(-30.0), 1e-9, 1e-12);
 }
 
-/// The derivative of the power on the far face by one of the medium's parameters.
-Finding slope(const ScatteringMedium& medium, int parameter, std::uint64_t samples, double expected,
-              double largest_error, double accuracy = 0) {
+/// Checks the derivative of the power on the far face with respect to one parameter of the medium.
+Finding derivative(const ScatteringMedium& medium, int parameter, std::uint64_t samples,
+                   double expected, double largest_error, double accuracy = 0) {
   RenderScene scene = slab(medium, false);
   scene.bins.derivatives = static_cast<int>(parameters_of(medium).size());
-  const RenderJob job = render_job(scene, {RenderMethod::analog}, 1);
+  const RenderJob job = render_job(scene, {RenderMethod::forward}, 1);
   const PowerGradients found =
       power_gradients(scene.sensors[0], 0, scene.bins, run_state(job, samples).sums);
   const Estimate own = part(found.mean, static_cast<std::size_t>(parameter), 1);
@@ -190,19 +194,19 @@ double through(double mu_s, double mu_a) {
 
 void add_gradients(ExtremeRows& rows) {
   const std::string peierls = "Peierls' equation, in errors";
-  rows.add("derivative by mu_a, slab of OD 30 that absorbs all", "-exp(-30), in errors", slope,
+  rows.add("derivative by mu_a, slab of OD 30 that absorbs all", "-exp(-30), in errors", derivative,
            ScatteringMedium{0, 30}, 0, 1000, -std::exp(-30.0), 1e-9, 1e-12);
   rows.add("derivative by mu_a of 1e-9, slab of OD 2", peierls, [] {
     const double exact = (through(2, 2e-3) - 4 * through(2, 1e-3) + 3 * through(2, 0)) / -2e-3;
-    return slope({2, 1e-9}, 1, 100'000, exact, 0.05);
+    return derivative({2, 1e-9}, 1, 100'000, exact, 0.05);
   });
   rows.add_slow("derivative by mu_s, slab of OD 10", peierls, [] {
     const double exact = (through(10.01, 0.1) - through(9.99, 0.1)) / 0.02;
-    return slope({10, 0.1}, 0, 400'000, exact, 0.2);
+    return derivative({10, 0.1}, 0, 400'000, exact, 0.2);
   });
 }
 
-/// The fluence rate of a scene's map alone.
+/// Compares the fluence rate of a map without sensors.
 Finding map_row(RenderScene scene, const std::vector<double>& expected, std::uint64_t samples) {
   scene.sensors.clear();
   const RenderJob job = render_job(scene, {}, 1);
@@ -210,9 +214,10 @@ Finding map_row(RenderScene scene, const std::vector<double>& expected, std::uin
   return in_errors(found, {expected.begin(), expected.end()}, 0.1);
 }
 
-/// Of the power on the only disk, by the only parameter of the field.
-Estimate field_slope(const RenderScene& scene, std::uint64_t samples) {
-  const RenderJob job = render_job(scene, {RenderMethod::analog}, 1);
+/// Estimates the derivative of the power on the only disk with respect to the only parameter of the
+/// field.
+Estimate field_derivative(const RenderScene& scene, std::uint64_t samples) {
+  const RenderJob job = render_job(scene, {RenderMethod::forward}, 1);
   return power_gradients(scene.sensors[0], 0, scene.bins, run_state(job, samples).sums).within;
 }
 
@@ -220,7 +225,7 @@ void add_field_gradients(ExtremeRows& rows) {
   const auto by_alpha = [](const GuidedBeam& beam, double mu_s, double g, std::uint64_t samples) {
     RenderValues values = guided_values(beam, {0.3}, mu_s, g);
     values.gradient_by = {"alpha"};
-    return field_slope(make_render_scene(values), samples);
+    return field_derivative(make_render_scene(values), samples);
   };
   rows.add("derivative by alpha, 20 periods of a guide", "where rays go, relative", [=] {
     const GuidedBeam beam{0.2, 942};
@@ -245,10 +250,10 @@ void add_field_gradients(ExtremeRows& rows) {
     values.sensors.of<RadialValues>().sensor_at = {0, 0, length};
     values.sensors.of<RadialValues>().radii = {radius};
     values.gradient_by = {"amplitude"};
-    // light moves by A k L^2 J_1(k rho) / (2 n) towards the axis
+    // light is displaced by A k L^2 J_1(k rho) / (2 n) towards the axis
     const double inwards = k * length * length * std::cyl_bessel_j(1, k * radius) / (2 * 1.33);
     const double exact = 2 * radius * inwards / (beam * beam);
-    const Estimate found = field_slope(make_render_scene(values), 64);
+    const Estimate found = field_derivative(make_render_scene(values), 64);
     return Finding{std::abs(found.value[0].real() / exact - 1), 1e-4};
   });
 }
@@ -277,7 +282,8 @@ void add_maps(ExtremeRows& rows) {
            });
 }
 
-/// Of isotropic scattering and albedo 0.9: deep inside light dies out as exp(-kappa depth).
+/// Returns the transmittance of a deep isotropic slab of albedo 0.9. Deep inside, light decays as
+/// exp(-kappa depth).
 double transmitted_deep(double optical_depth) {
   constexpr double albedo = 0.9, known = 20;
   double kappa = 0.5;  // albedo atanh(kappa) = kappa
@@ -296,8 +302,9 @@ void add_deep_slabs(ExtremeRows& rows) {
   rows.add("slab of OD 200, albedo 0.9: 3e-46 comes through", decay, deep, 200, light, 20'000);
 }
 
-/// What the pilot chooses brings the right number where it sees no light, or nothing but one path,
-/// or far more than it can try.
+/// Adds scenes in which the pilot run finds no light or only a single path, or cannot sample enough
+/// paths to estimate the variance of the methods. The chosen method must be unbiased in all of
+/// them.
 void add_choices(ExtremeRows& rows) {
   static constexpr Chosen chosen;
   rows.add("chosen method, a beam that misses the sensor, clear", "no light", [] {

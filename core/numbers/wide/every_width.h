@@ -1,8 +1,9 @@
 #pragma once
 
-/// Before a function of loops that become vectors: it is compiled for several widths, of which the
-/// program takes the widest that the processor has when it starts, and all that it calls is made a
-/// part of it. Where the compiler cannot, or is told what processor it compiles for, for one.
+/// Attribute of a function that contains vectorisable loops. The function is compiled for several
+/// vector widths, and all calls in it are inlined; at its start the program selects the widest that
+/// the processor supports. It is compiled for one width only if the compiler cannot do this or is
+/// given a target processor.
 #if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__clang__) && !defined(__AVX2__) && \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define FLATSPECKLE_EVERY_WIDTH \

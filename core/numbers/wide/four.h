@@ -4,7 +4,7 @@
 
 namespace flatspeckle {
 
-/// Four numbers that compilers work on at once: in one register where there are such wide ones.
+/// Four doubles that are processed at once, in one register if the processor has 256-bit registers.
 using WideFour = double __attribute__((vector_size(32), may_alias));
 
 inline const WideFour& wide_four_at(const double* aligned) {
@@ -13,10 +13,13 @@ inline const WideFour& wide_four_at(const double* aligned) {
 inline WideFour& wide_four_at(double* aligned) {
   return *reinterpret_cast<WideFour*>(aligned);
 }
-/// Any four that follow each other, wherever they begin.
-inline void load(const double* first, WideFour& four) { std::memcpy(&four, first, sizeof four); }
+/// Loads four consecutive numbers of any alignment.
+inline void load(const double* first, WideFour& four) {
+  std::memcpy(&four, first, sizeof four);
+}
 
-/// Of a matrix of four rows: eight shuffles, which a compiler does not find by itself.
+/// Transposes a 4 x 4 matrix, given as four rows, by eight shuffles, a sequence that compilers do
+/// not find by themselves.
 [[gnu::always_inline]] inline void transpose(WideFour* rows) {
   const WideFour even_01 = __builtin_shufflevector(rows[0], rows[1], 0, 4, 2, 6);
   const WideFour odd_01 = __builtin_shufflevector(rows[0], rows[1], 1, 5, 3, 7);

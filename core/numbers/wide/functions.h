@@ -5,11 +5,12 @@
 
 namespace flatspeckle {
 
-// Functions without a branch, so that loops of them become vectors.
+// Elementary functions without branches, so that the compiler can vectorise loops that call them.
 
-/// e^x to 2e-16, relative; of x below -708 what that of -708 is, 3e-308.
+/// Returns e^x with a relative error of 2e-16. For x < -708 it returns e^-708 = 3e-308.
 inline double wide_exp(double x) {
-  constexpr double shift = 0x1.8p52;  // added, it rounds to whole numbers, which it has in its bits
+  // Adding `shift` rounds a number to an integer, which is then in the low bits of the sum.
+  constexpr double shift = 0x1.8p52;
   x = x < -708 ? -708 : x;
   const double shifted = x * 0x1.71547652b82fep0 + shift, n = shifted - shift;
   const double r = (x - n * 0x1.62e42fefa0000p-1) - n * 0x1.cf79abc9e3b3ap-40;
@@ -35,14 +36,16 @@ struct SineCosine {
   double sine, cosine;
 };
 
-/// To 2e-16 beside the rounding of x, for |x| up to 1e9.
+/// Returns sine and cosine of x, |x| <= 1e9, with an error of 2e-16 in addition to that caused by
+/// the rounding of x.
 inline SineCosine wide_sine_cosine(double x) {
   constexpr double shift = 0x1.8p52;
   const double shifted = x * 0x1.45f306dc9c883p-1 + shift, n = shifted - shift;
-  // pi/2 in three parts, of which the first two times n are exact to 2^20
+  // pi/2 is subtracted n times as a sum of three parts; n times the first or second part is exact
+  // up to n = 2^20
   const double r = ((x - n * 0x1.921fb544p0) - n * 0x1.0b4611a6p-34) - n * 0x1.3198a2e037073p-69;
   const double z = r * r;
-  // Taylor's series end below 1e-17 of what they are of within pi/4
+  // Taylor series, with a relative truncation error below 1e-17 for |r| <= pi/4
   const double sine_tail =
       -1 / 6. +
       z * (1 / 120. +

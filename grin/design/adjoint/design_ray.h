@@ -8,17 +8,18 @@
 
 namespace flatspeckle::grin::design {
 
-/// Where a ray is nearest to the line through a point along z, or farthest from it: of a ray that
-/// starts where it is farthest, the nearest place is its end.
+/// End condition of a ray at a turning point, where its distance from the line through axis_point
+/// along z is smallest. The ray must start at its largest distance from this line.
 struct Turn {
   Vec3 axis_point;
 };
 
-/// What ends a ray: it is there where this rises through 0.
+/// Condition that ends a ray: a surface or a turning point. The ray ends where beyond(end, ray)
+/// rises through 0.
 using RayEnd = std::variant<Surface, Turn>;
 
-/// The derivatives of that by the ray.
-struct EndSlope {
+/// Derivatives of beyond() with respect to the state (x, v) of the ray.
+struct EndDerivative {
   Vec3 x, v;
 };
 
@@ -30,35 +31,39 @@ inline Vec3 across(const Vec3& x) {
 
 }  // namespace end_parts
 
+/// Returns a number that rises through 0 where the ray ends: signed distance from the surface or,
+/// for a turning point, the radial velocity.
 inline double beyond(const RayEnd& end, const RayState& ray) {
   if (const auto* turn = std::get_if<Turn>(&end))
     return end_parts::across(ray.x - turn->axis_point).dot(ray.v);
   return distance(std::get<Surface>(end), ray.x);
 }
 
-inline EndSlope end_slope(const RayEnd& end, const RayState& ray) {
+inline EndDerivative end_derivative(const RayEnd& end, const RayState& ray) {
   if (const auto* turn = std::get_if<Turn>(&end))
     return {end_parts::across(ray.v), end_parts::across(ray.x - turn->axis_point)};
   return {normal(std::get<Surface>(end), ray.x), Vec3::Zero()};
 }
 
-/// By how much it rises in sigma.
+/// Returns the derivative of beyond() with respect to the ray parameter sigma, where d(arc length)
+/// = n d(sigma).
 template <IndexField F>
 double end_rate(const F& field, const RayEnd& end, const RayState& ray) {
-  const EndSlope slope = end_slope(end, ray);
-  const double by_x = slope.x.dot(ray.v);
+  const EndDerivative derivative = end_derivative(end, ray);
+  const double by_x = derivative.x.dot(ray.v);
   if (std::holds_alternative<Surface>(end)) return by_x;
-  return by_x + slope.v.dot(ray_force(field, ray.x).force);
+  return by_x + derivative.v.dot(ray_force(field, ray.x).force);
 }
 
-/// Where a ray begins, in which direction, and what ends it.
+/// Start, direction and end condition of a ray.
 struct DesignRay {
   Vec3 start, direction;
   RayEnd end;
 };
 
-/// A ray's end: so many whole steps and a last one of its own length. Lost: it came to no end, or
-/// where the index is not positive.
+/// Result of tracing a ray to its end: it made `steps` steps of full length and a shorter one of
+/// length `last`. The ray is lost if it does not reach its end or reaches a place where the index
+/// is not positive.
 struct FollowedRay {
   RayState state;
   long steps = 0;
@@ -66,7 +71,7 @@ struct FollowedRay {
   bool lost = false;
 };
 
-/// Steps of length h (in sigma).
+/// Length h of an integration step (in sigma, C23) and the largest number of steps of a ray.
 struct RayWalk {
   double h;
   long most_steps;
@@ -74,7 +79,8 @@ struct RayWalk {
 
 namespace walk_parts {
 
-/// The length of a last step that comes to the end, by Newton's method from a step beyond it.
+/// Returns the length of the last step, at whose end beyond() is 0. Uses Newton's method, starting
+/// with a step of full length.
 template <class Scheme, IndexField F>
 double last_step(const F& field, const RayEnd& end, const RayState& before, double h) {
   double last = h;
@@ -111,27 +117,29 @@ FollowedRay follow(const F& field, const DesignRay& ray, const RayWalk& walk) {
   return followed;
 }
 
-/// Walks a ray back to its start and adds to the sums the derivatives by the coefficients of the K
-/// numbers whose derivatives by the end are given. Returns the ray's start as it is found again.
+/// Integrates a ray back to its start. `adjoint` contains the derivatives of K measurements with
+/// respect to the state at the end of the ray. The derivatives of these measurements with respect
+/// to the coefficients of the field are added to `sums`. Returns the recomputed start of the ray.
 template <class Scheme, int K, DesignedField F>
-RayState pull_back(const F& field, const DesignRay& ray, const RayWalk& walk,
-                   const FollowedRay& followed, RayAdjoint<K> adjoint, CoefficientSums<K>& sums) {
+RayState backpropagate(const F& field, const DesignRay& ray, const RayWalk& walk,
+                       const FollowedRay& followed, RayAdjoint<K> adjoint,
+                       CoefficientSums<K>& sums) {
   RayState state = followed.state;
   RayState before = state;
   step<Scheme>(field, before, -followed.last);
-  // the last step is as long as brings the ray to its end
+  // the end condition makes the length of the last step depend on the state
   const RayRate rate = step_with_rate<Scheme>(field, before, followed.last);
-  const EndSlope slope = end_slope(ray.end, state);
+  const EndDerivative derivative = end_derivative(ray.end, state);
   const typename RayAdjoint<K>::Row later =
       (rate.x.transpose() * adjoint.x + rate.v.transpose() * adjoint.v +
        rate.arc_length * adjoint.arc_length + rate.optical_path * adjoint.optical_path) /
-      (slope.x.dot(rate.x) + slope.v.dot(rate.v));
-  adjoint.x -= slope.x * later;
-  adjoint.v -= slope.v * later;
+      (derivative.x.dot(rate.x) + derivative.v.dot(rate.v));
+  adjoint.x -= derivative.x * later;
+  adjoint.v -= derivative.v * later;
   step_back<Scheme>(field, state, adjoint, sums, followed.last);
   for (long i = 0; i < followed.steps; ++i) step_back<Scheme>(field, state, adjoint, sums, walk.h);
-  // |v| = n at the start
-  const auto at = look(field, ray.start);
+  // The start vector v depends on the coefficients because |v| = n
+  const auto at = evaluate(field, ray.start);
   const Vec3 direction = ray.direction.normalized();
   for (int c = 0; c < K; ++c)
     add_derivative(field, at, direction.dot(adjoint.v.col(c)), Vec3::Zero().eval(),

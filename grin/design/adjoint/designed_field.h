@@ -9,12 +9,13 @@
 
 namespace flatspeckle::grin::design {
 
-// A field whose coefficients are sought. look(field, x) is all that is to be known of a place, jet
-// with the index among it; add_derivative(field, look, a, b, row_of) adds the derivatives of
-// a excess + b . gradient there by the coefficients, which lie in rows: row_of(r) is where row r
-// begins; shape_of(field) is how many there are.
+// Functions of a field whose coefficients are optimised. evaluate(field, x) returns the field at x
+// with its derivatives; the member `jet` of the result contains n - 1, the gradient and the
+// Hessian. add_derivative(field, at, a, b, row_of) adds the derivatives of the number a (n - 1) + b
+// . (grad n) with respect to the coefficients to sums, which are stored in rows; row_of(r) points
+// to the start of row r. shape_of(field) returns the number of coefficients along each axis.
 
-/// Coefficients along x, y and z: rows of them along z.
+/// Numbers of coefficients of a field along x, y and z; rows of coefficients run along z.
 struct CoefficientShape {
   std::array<int, 3> extent;
 
@@ -23,39 +24,39 @@ struct CoefficientShape {
   std::size_t size() const { return static_cast<std::size_t>(rows()) * row_length(); }
 };
 
-inline BallSpline::Look look(const BallSpline& field, const Vec3& x) {
-  return field.look(x);
+inline BallSpline::Evaluation evaluate(const BallSpline& field, const Vec3& x) {
+  return field.evaluate(x);
 }
 template <class Rows>
-void add_derivative(const BallSpline& field, const BallSpline::Look& at, double a, const Vec3& b,
-                    const Rows& row_of) {
+void add_derivative(const BallSpline& field, const BallSpline::Evaluation& at, double a,
+                    const Vec3& b, const Rows& row_of) {
   field.add_derivative(at, a, b, row_of);
 }
 inline CoefficientShape shape_of(const BallSpline& field) {
   return {field.spline().extent()};
 }
 
-inline SplineField::Look look(const SplineField& field, const Vec3& x) {
-  return field.look(x);
+inline SplineField::Evaluation evaluate(const SplineField& field, const Vec3& x) {
+  return field.evaluate(x);
 }
 template <class Rows>
-void add_derivative(const SplineField& field, const SplineField::Look& at, double a, const Vec3& b,
-                    const Rows& row_of) {
+void add_derivative(const SplineField& field, const SplineField::Evaluation& at, double a,
+                    const Vec3& b, const Rows& row_of) {
   SplineField::add_derivative(at, field.extent(), a, b, row_of);
 }
 inline CoefficientShape shape_of(const SplineField& field) {
   return {field.extent()};
 }
 
-struct RadialLook {
+struct RadialValue {
   Vec3 r;
   IndexHessian jet;
 };
-inline RadialLook look(const RadialSpline& field, const Vec3& x) {
+inline RadialValue evaluate(const RadialSpline& field, const Vec3& x) {
   return {x - field.centre(), field.hessian(x)};
 }
 template <class Rows>
-void add_derivative(const RadialSpline& field, const RadialLook& at, double a, const Vec3& b,
+void add_derivative(const RadialSpline& field, const RadialValue& at, double a, const Vec3& b,
                     const Rows& row_of) {
   field.profile().add_derivative(at.r.squaredNorm(), a, 2 * b.dot(at.r), row_of(0));
 }
@@ -63,14 +64,14 @@ inline CoefficientShape shape_of(const RadialSpline& field) {
   return {{1, 1, static_cast<int>(field.profile().coefficients().size())}};
 }
 
-/// Of a graded guide the coefficients of its correction are sought, or its exponent where it has
-/// none.
-inline RadialLook look(const GradedGuide& field, const Vec3& x) {
+/// Evaluates a graded guide. The coefficients of the guide are those of the profile correction, or
+/// the exponent if there is no correction.
+inline RadialValue evaluate(const GradedGuide& field, const Vec3& x) {
   const Vec3 r = x - field.centre();
   return {{r[0], r[1], 0}, field.hessian(x)};
 }
 template <class Rows>
-void add_derivative(const GradedGuide& field, const RadialLook& at, double a, const Vec3& b,
+void add_derivative(const GradedGuide& field, const RadialValue& at, double a, const Vec3& b,
                     const Rows& row_of) {
   const double u = at.r.squaredNorm(), by_u = 2 * b.dot(at.r);
   if (field.profile().is_corrected())
@@ -85,7 +86,7 @@ inline CoefficientShape shape_of(const GradedGuide& field) {
 
 template <class F>
 concept DesignedField = IndexField<F> && requires(const F& field, const Vec3& x) {
-  { look(field, x).jet } -> std::convertible_to<IndexHessian>;
+  { evaluate(field, x).jet } -> std::convertible_to<IndexHessian>;
   { shape_of(field) } -> std::same_as<CoefficientShape>;
 };
 

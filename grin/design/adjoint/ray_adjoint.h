@@ -8,12 +8,13 @@
 
 namespace flatspeckle::grin::design {
 
-// Symmetric compositions of drifts x += c h v and kicks v += d h n grad n: drift, kick, drift, ...,
-// drift. Walked backwards they retrace a ray to the rounding, so that a derivative needs no
-// storage.
+// Integration schemes for rays. A scheme is a symmetric sequence of drifts x += c h v and kicks v
+// += d h n grad n, with numbers c and d, which begins and ends with a drift; h is the step length
+// in sigma (C23). Integrated backwards, schemes retrace a ray up to rounding, so that derivatives
+// need no stored path [teh2022].
 
-/// Omelyan, Mryglod and Folk 2002 ("position extended Forest-Ruth like"): a hundred times as exact
-/// as three leapfrogs of order 4.
+/// Position-extended Forest-Ruth-like scheme [omelyan2002]. Its error is 1/100 of the error of the
+/// fourth-order composition of three leapfrog steps.
 struct Pefrl {
   static constexpr int order = 4;
   static constexpr double xi = 0.1786178958448091, lambda = -0.2123418310626054,
@@ -35,13 +36,14 @@ template <class Scheme, IndexField F>
   ray.x += Scheme::drift.back() * h * ray.v;
 }
 
-/// A ray's change by the length of a step.
+/// Derivatives of the state of a ray after a step with respect to the length of the step.
 struct RayRate {
   Vec3 x = Vec3::Zero(), v = Vec3::Zero();
   double arc_length = 0, optical_path = 0;
 };
 
-/// A step, and its exact derivative by h.
+/// Makes a step and returns the exact derivative of the new state with respect to the step length
+/// h.
 template <class Scheme, IndexField F>
 [[gnu::flatten]] RayRate step_with_rate(const F& field, RayState& ray, double h) {
   RayRate rate;
@@ -64,7 +66,8 @@ template <class Scheme, IndexField F>
   return rate;
 }
 
-/// Derivatives of K numbers by the state of a ray.
+/// Derivatives of K measurements of a ray with respect to its state (x, v, arc length, optical
+/// path).
 template <int K>
 struct RayAdjoint {
   using Columns = Eigen::Matrix<double, 3, K>;
@@ -73,7 +76,8 @@ struct RayAdjoint {
   Row arc_length = Row::Zero(), optical_path = Row::Zero();
 };
 
-/// Derivatives of K numbers by all coefficients, summed up along one ray after another.
+/// Derivatives of K measurements with respect to all coefficients of the field, accumulated along
+/// one ray at a time.
 template <int K>
 class CoefficientSums {
  public:
@@ -84,7 +88,8 @@ class CoefficientSums {
     touched_[r] = 1;
     return &values_[k * shape_.size() + static_cast<std::size_t>(r) * shape_.row_length()];
   }
-  /// use(number of a coefficient, its K derivatives) of each that is not 0, and sets all to 0.
+  /// Calls use(i, derivatives) for each coefficient i on which any of the K measurements depends,
+  /// and resets all derivatives to 0.
   template <class Use>
   void take(const Use& use) {
     for (int r = 0; r < shape_.rows(); ++r) {
@@ -115,11 +120,12 @@ class CoefficientSums {
 
 namespace adjoint_parts {
 
-/// Back through a kick of weight k at x (conventions, C29).
+/// Reverses a kick of length k at x and propagates the adjoint, that is the derivatives of the
+/// measurements, through it (conventions, C29).
 template <int K, DesignedField F>
 [[gnu::always_inline]] inline void undo_kick(const F& field, RayState& ray, RayAdjoint<K>& adjoint,
                                              CoefficientSums<K>& sums, double k) {
-  const auto at = look(field, ray.x);
+  const auto at = evaluate(field, ray.x);
   const IndexHessian& jet = at.jet;
   const double n = 1 + jet.excess;
   ray.v -= k * n * jet.gradient;
@@ -136,7 +142,7 @@ template <int K, DesignedField F>
 
 }  // namespace adjoint_parts
 
-/// Walks a step back, and the derivatives with it: exact for the discrete step.
+/// Reverses an integration step and propagates the adjoint through it; exact for the discrete step.
 template <class Scheme, int K, DesignedField F>
 [[gnu::flatten]] void step_back(const F& field, RayState& ray, RayAdjoint<K>& adjoint,
                                 CoefficientSums<K>& sums, double h) {

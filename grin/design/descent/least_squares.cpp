@@ -26,9 +26,9 @@ void add(Numbers& a, double factor, const Numbers& b) {
 
 std::optional<std::vector<double>> Objective::residuals(
     std::span<const double> coefficients) const {
-  const auto readings = rays_.trace(form_, coefficients);
-  if (!readings) return std::nullopt;
-  return goal_.residuals(*readings);
+  const auto measurements = rays_.trace(form_, coefficients);
+  if (!measurements) return std::nullopt;
+  return design_objective_.residuals(*measurements);
 }
 
 double Objective::mean_square(std::span<const double> residuals) const {
@@ -43,15 +43,18 @@ double Objective::loss(std::span<const double> coefficients) const {
 }
 
 std::vector<double> Objective::gradient(std::span<const double> residuals) const {
-  std::vector<double> by_readings = goal_.transposed(residuals);
-  for (double& by : by_readings) by *= 2 / static_cast<double>(rays_.rays());
-  return rays_.gradient(by_readings);
+  std::vector<double> by_measurements = design_objective_.transposed(residuals);
+  for (double& by : by_measurements) by *= 2 / static_cast<double>(rays_.rays());
+  return rays_.gradient(by_measurements);
 }
 
 SearchState begin_search(const Objective& objective, const Search& search,
                          std::vector<double> coefficients) {
   const auto residuals = objective.residuals(coefficients);
-  if (!residuals) throw InputError("start", "field", "a ray does not come to its end in it");
+  if (!residuals)
+    throw InputError(
+        "start", "field",
+        "every ray must reach its end in the start field; change start_excess or the rays");
   SearchState state{std::move(coefficients)};
   state.damping = search.first_damping;
   state.loss = objective.mean_square(*residuals);
@@ -59,15 +62,15 @@ SearchState begin_search(const Objective& objective, const Search& search,
   return state;
 }
 
-/// The sum of the squares of the third differences of coefficients along each axis, with the
-/// matrix D^T D of which that is the square form.
+/// Roughness of the coefficients c: |D c|^2, the sum of the squared third differences D c along
+/// each axis. The normal matrix contains D^T D.
 class Roughness {
  public:
   explicit Roughness(const CoefficientShape& shape) : shape_(shape) {}
 
-  /// Adds weight D^T D values.
+  /// Adds weight * (D^T D values) to sums.
   void add_times(std::span<const double> values, double weight, std::span<double> sums) const;
-  /// Adds weight times the diagonal of D^T D.
+  /// Adds weight * (diagonal of D^T D) to sums.
   void add_diagonal(double weight, std::span<double> sums) const;
   double square(std::span<const double> values) const;
 
@@ -80,7 +83,8 @@ class Roughness {
 
 namespace {
 
-/// Third differences: they are small where a field is smooth over some cells, also where it bends.
+/// Stencil of third differences. Third differences are small for a field that is smooth over a few
+/// cells, even if the field is curved.
 constexpr std::array<double, 4> stencil{-1, 3, -3, 1};
 constexpr int reach = stencil.size() - 1;
 
@@ -92,7 +96,8 @@ double difference(std::span<const double> values, std::size_t first, std::size_t
 
 }  // namespace
 
-/// use(first of those in a line, how far apart they are)
+/// Calls use(index of the first coefficient, stride between coefficients) for each third
+/// difference.
 template <class Use>
 void Roughness::each_difference(const Use& use) const {
   const auto [nx, ny, nz] = shape_.extent;
@@ -135,16 +140,16 @@ double Roughness::square(std::span<const double> values) const {
 constexpr double least_curvature = 1e-9, least_damping = 1e-9;
 constexpr int most_trials = 12;
 
-/// Residuals as linear functions of the coefficients, about where the search is.
+/// Residuals linearised in the coefficients about the current point of the search.
 struct LeastSquares::Model {
   RayRows rows;
   Roughness roughness;
   Numbers gradient, curvature, rough_diagonal;
   double rough_unit, mean_curvature;
   double roughness_weight;
-  std::vector<char> is_held;  ///< at a bound that it would cross
+  std::vector<char> is_held;  ///< whether a coefficient is at a bound that the step would cross
 
-  /// Of D^T D in the normal matrix.
+  /// Returns the weight of D^T D (class Roughness) in the normal matrix.
   double rough(double damping) const { return (damping + roughness_weight) * rough_unit; }
 };
 
@@ -161,8 +166,8 @@ LeastSquares::Model LeastSquares::model_at(SearchState& state) const {
               state.roughness,
               std::vector<char>(count, 0)};
   ++state.traces;
-  model.rows.transposed(objective_.goal().transposed(residuals), model.gradient);
-  model.rows.squares(objective_.goal().weights(), model.curvature);
+  model.rows.transposed(objective_.design_objective().transposed(residuals), model.gradient);
+  model.rows.squares(objective_.design_objective().weights(), model.curvature);
   model.mean_curvature = mean(model.curvature);
   model.roughness.add_diagonal(1, model.rough_diagonal);
   const double rough = mean(model.rough_diagonal);
@@ -177,18 +182,19 @@ LeastSquares::Model LeastSquares::model_at(SearchState& state) const {
   return model;
 }
 
-/// The normal matrix and its damping times a step.
+/// Returns the product of the damped normal matrix of the model and a step.
 Numbers LeastSquares::curved(const Model& model, double damping,
                              std::span<const double> step) const {
   const RaySystem& rays = objective_.rays();
-  const Goal& goal = objective_.goal();
+  const DesignObjective& design_objective = objective_.design_objective();
   Numbers result(step.size());
-  if (goal.is_plain()) {
+  if (design_objective.is_plain()) {
     model.rows.normal(step, result);
   } else {
-    Numbers readings(rays.rays() * rays.readings());
-    model.rows.times(step, readings);
-    model.rows.transposed(goal.transposed(goal.times(readings)), result);
+    Numbers measurements(rays.rays() * rays.measurements());
+    model.rows.times(step, measurements);
+    model.rows.transposed(design_objective.transposed(design_objective.times(measurements)),
+                          result);
   }
   for (std::size_t i = 0; i < step.size(); ++i)
     result[i] += (damping * model.curvature[i] + least_curvature * model.mean_curvature) * step[i];
@@ -199,7 +205,8 @@ Numbers LeastSquares::curved(const Model& model, double damping,
   return result;
 }
 
-/// Conjugate gradients, preconditioned by the diagonal.
+/// Returns the step that solves the damped normal equations, by conjugate gradients with a diagonal
+/// preconditioner.
 Numbers LeastSquares::solve(const Model& model, double damping) const {
   const std::size_t count = model.gradient.size();
   const double rough = model.rough(search_.smooth_damping * damping);
@@ -235,13 +242,14 @@ SearchStep LeastSquares::advance(SearchState& state) const {
   const double rays = static_cast<double>(objective_.rays().rays());
   const double rough = state.roughness * model.rough_unit / rays;
   const double now = state.loss + rough * model.roughness.square(state.coefficients);
-  double promised = 0;  // by the first trial
+  // Decrease of the loss that the linear model predicts for the first trial step
+  double expected_decrease = 0;
   for (int trial = 0; trial < most_trials; ++trial) {
     const Numbers step = solve(model, state.damping);
     Numbers next = state.coefficients;
     add(next, 1, step);
     search_.bounds.hold(next);
-    if (trial == 0) promised = -dot(model.gradient, step) / rays;
+    if (trial == 0) expected_decrease = -dot(model.gradient, step) / rays;
     const double loss = objective_.loss(next);
     ++state.traces;
     if (loss + rough * model.roughness.square(next) < now) {
@@ -252,8 +260,8 @@ SearchStep LeastSquares::advance(SearchState& state) const {
     }
     state.damping *= 10;
   }
-  constexpr double worth = 1e-3;
-  return promised > worth * now ? SearchStep::stalled : SearchStep::settled;
+  constexpr double least_gain = 1e-3;
+  return expected_decrease > least_gain * now ? SearchStep::stalled : SearchStep::settled;
 }
 
 }  // namespace flatspeckle::grin::design

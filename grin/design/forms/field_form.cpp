@@ -7,7 +7,8 @@ namespace flatspeckle::grin::design {
 
 namespace {
 
-/// Along the axis of an array of coefficients, n of them become 2 n - 3.
+/// Inserts a knot into each cell along one axis of an array of spline coefficients: n coefficients
+/// become 2 n - 3.
 std::vector<double> with_knots(const std::vector<double>& values, std::array<int, 3>& extent,
                                int axis) {
   std::size_t inner = 1, outer = 1;
@@ -27,21 +28,24 @@ std::vector<double> with_knots(const std::vector<double>& values, std::array<int
   return fine;
 }
 
-/// Coefficients in many cells of the cubic that four make in one: its blossom at three knots each.
+/// Four coefficients define a cubic on one cell. Returns the coefficients of the same cubic after
+/// the cell is divided into `cells` equal cells. Each new coefficient is the blossom (polar form)
+/// of the cubic at three successive knots.
 std::vector<double> in_cells(std::span<const double> c, int cells) {
-  const double value = (c[0] + 4 * c[1] + c[2]) / 6, slope = (c[2] - c[0]) / 2;
+  const double value = (c[0] + 4 * c[1] + c[2]) / 6, derivative = (c[2] - c[0]) / 2;
   const double square = (c[0] - 2 * c[1] + c[2]) / 2;
   const double cube = (c[3] - c[0]) / 6 + (c[1] - c[2]) / 2;
   std::vector<double> fine;
   for (int j = 0; j < cells + 3; ++j) {
     const double h = 1.0 / cells, u = (j - 2) * h, v = (j - 1) * h, w = j * h;
-    fine.push_back(value + slope * v + square * (u * v + v * w + w * u) / 3 + cube * u * v * w);
+    fine.push_back(value + derivative * v + square * (u * v + v * w + w * u) / 3 +
+                   cube * u * v * w);
   }
   return fine;
 }
 
-/// Of a guide's correction: no more than leaves n^2 = n0^2 (1 - 2 delta p) above 0, where p is at
-/// most (1 + s)^2 / (4 s).
+/// Returns the upper bound of a guide's correction s. This bound keeps n^2 = n0^2 (1 - 2 delta p)
+/// above 0, where the profile p is at most (1 + s)^2 / (4 s).
 double most_correction(double delta) {
   const double c = 1 / delta - 1;
   return std::min(3.0, 0.99 * (c + std::sqrt(c * c - 1)));

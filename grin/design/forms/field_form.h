@@ -11,12 +11,13 @@
 
 namespace flatspeckle::grin::design {
 
-// What a sought field is but for its coefficients.
+// Parametrisations of a designed field. A form, such as BallForm, contains all properties of the
+// field except its coefficients.
 
 struct BallForm {
   Vec3 centre = Vec3::Zero();
   double radius = 1;
-  int nodes = 5;  ///< along each axis of the cube
+  int nodes = 5;  ///< number of nodes along each axis of the cube that contains the ball
 
   FieldGrid grid() const {
     const double spacing = 2 * radius / (nodes - 1);
@@ -26,7 +27,7 @@ struct BallForm {
     return {grid(), {coefficients.begin(), coefficients.end()}};
   }
   CoefficientShape shape() const { return {{nodes + 2, nodes + 2, nodes + 2}}; }
-  /// With half the spacing.
+  /// Returns the form with half the node spacing.
   BallForm finer() const { return {centre, radius, 2 * nodes - 1}; }
 };
 
@@ -34,7 +35,9 @@ struct RadialForm {
   Vec3 centre = Vec3::Zero();
   double radius = 1;
   int coefficients = 8;
-  int finest = 8;  ///< so many has the next level: the first is one cubic, of four
+  /// Number of coefficients in the next refinement level. The first level is a single cubic, which
+  /// has four coefficients.
+  int finest = 8;
 
   RadialSpline field(std::span<const double> values) const {
     return RadialSpline(RadialSplineProfile(radius, {values.begin(), values.end()}), centre);
@@ -43,14 +46,14 @@ struct RadialForm {
   RadialForm finer() const { return {centre, radius, finest, finest}; }
 };
 
-/// A cube in which n - 1 is a cubic spline that comes down to 0 at the faces with its first two
-/// derivatives: its outermost coefficients are held at 0.
+/// A cube in which n - 1 is a cubic spline. The outermost coefficients are fixed at 0, so that the
+/// spline and its first two derivatives vanish at the faces.
 struct BoxForm {
-  static constexpr int held = 3;  ///< at each end of an axis
+  static constexpr int held = 3;  ///< number of fixed coefficients at each end of an axis
 
   Vec3 centre = Vec3::Zero();
   double radius = 1;  ///< half a side
-  int nodes = 9;      ///< along each axis
+  int nodes = 9;      ///< number of nodes along each axis
 
   FieldGrid grid() const { return BallForm{centre, radius, nodes}.grid(); }
   SplineField field(std::span<const double> coefficients) const {
@@ -60,7 +63,8 @@ struct BoxForm {
   BoxForm finer() const { return {centre, radius, 2 * nodes - 1}; }
 };
 
-/// A graded guide along z: its correction, or its exponent where that has no coefficients.
+/// A graded guide along z. The optimised coefficients are those of the profile correction. If
+/// `coefficients` is 0, there is no correction and the exponent is optimised.
 struct GuideForm {
   GradedProfile::Core core;
   int coefficients = 8;
@@ -81,7 +85,7 @@ inline CoefficientShape shape_of(const FieldForm& form) {
   return std::visit([](const auto& f) { return f.shape(); }, form);
 }
 
-/// The least and the most of each coefficient.
+/// Lower and upper bound of each coefficient.
 struct Bounds {
   std::vector<double> least, most;
 
@@ -90,17 +94,20 @@ struct Bounds {
       values[i] = std::clamp(values[i], least[i], most[i]);
   }
 };
-/// So that the index stays between two, but for a guide, whose exponent and correction have their
-/// own.
+/// Returns the bounds of the coefficients that keep the index between least_index and most_index.
+/// For a guide, these limits are not used: its exponent and correction have fixed bounds.
 Bounds bounds_of(const FieldForm& form, double least_index, double most_index);
 
-/// Whether the middle of a coefficient's spline is inside of the field: of others a ball has many.
+/// Whether the basis spline of a coefficient is centred inside the field. This is false in the
+/// corners of the cube that contains a ball.
 bool is_within(const FieldForm& form, std::size_t coefficient);
 
-/// Where light comes to the field and leaves it. Nothing of a guide, which is endless.
+/// Returns the surface at which light enters and leaves the field; nullopt for a guide, which is
+/// infinitely long.
 std::optional<Surface> hull_of(const FieldForm& form);
 
-/// The form of the next level, and the coefficients of the same field in it: knots are inserted.
+/// Form of the field in the next refinement level, and the coefficients that represent the same
+/// field in that form (knot insertion).
 struct FinerField {
   FieldForm form;
   std::vector<double> coefficients;

@@ -13,29 +13,29 @@ const DatasetTable design_table{
     .rows =
         {{"history/step", Data::numbers, "", "1", "number of a step of the search; 0: the start"},
          {"history/rms", Data::real, "history/step", "1",
-          "what rays miss by after it, root mean square: a length (focus, throughput), a part of "
-          "the delay "
-          "(equal_path), of a picture's largest value (irradiance), an angle (deflections, "
-          "collimation)"},
+          "root mean square residual of the rays after the step: a length (focus, throughput), a "
+          "fraction of the delay (equal_path) or of a picture's largest value (irradiance), an "
+          "angle (deflections, collimation)"},
          {"history/traces", Data::real, "history/step", "1",
-          "how often each ray was traced by then, forward or backward"},
-         {"history/cpu_s", Data::real, "history/step", "s", "processor time by then"},
-         {"history/coefficients", Data::count, "history/step", "1", "how many there were"},
-         {"rms/seen", Data::real, "", "1", "what the rays of the search miss by"},
-         {"rms/seen_half_step", Data::real, "", "1", "the same by steps of half the length"},
-         {"rms/held_out", Data::real, "", "1", "what rays that it has not seen miss by"},
-         {"rms/held_out_half_step", Data::real, "", "1", "the same by steps of half the length"},
+          "cumulative traces per ray, forward or backward"},
+         {"history/cpu_s", Data::real, "history/step", "s", "cumulative processor time"},
+         {"history/coefficients", Data::count, "history/step", "1", "number of coefficients"},
+         {"rms/seen", Data::real, "", "1", "root mean square residual of the rays of the search"},
+         {"rms/seen_half_step", Data::real, "", "1", "rms/seen with half the step length"},
+         {"rms/held_out", Data::real, "", "1",
+          "root mean square residual of held-out rays, which the search does not use"},
+         {"rms/held_out_half_step", Data::real, "", "1", "rms/held_out with half the step length"},
          {"rms/start_held_out", Data::real, "", "1",
-          "what these miss by in the field at the start"},
+          "root mean square residual of the held-out rays in the start field"},
          {"throughput", Data::real, "", "1",
-          "share of the rays that the search has not seen that pass through the aperture, by steps "
-          "of half the length"},
+          "fraction of the held-out rays that pass through the aperture, with half the step "
+          "length"},
          {"invariants/derivatives", Data::invariant, "", "1",
-          "difference between derivatives of the readings by reversed rays and by finite "
-          "differences, along one direction, relative"},
-         {"at_bounds", Data::count, "", "1", "coefficients that stand at a bound"},
+          "relative difference between the derivatives of the measurements computed with reversed "
+          "rays and with finite differences, along one direction in the space of coefficients"},
+         {"at_bounds", Data::count, "", "1", "number of coefficients at a bound"},
          {"unseen", Data::count, "", "1",
-          "coefficients within the field that no ray of the search depends on"},
+          "number of coefficients within the field on which no ray of the search depends"},
          {"coefficient_x", Data::numbers, "", "1", "number of a coefficient along x"},
          {"coefficient_y", Data::numbers, "", "1", "number of a coefficient along y"},
          {"coefficient_z", Data::numbers, "", "1", "number of a coefficient along z"},
@@ -53,42 +53,52 @@ const DatasetTable design_table{
          {"node_z", Data::numbers, "", "1", "number of a node along z"},
          {"excess", Data::real, "node_x node_y node_z", "1", "n - 1 at the nodes of a grid"},
          {"profile/r", Data::scale, "", "length", "distance from the centre"},
-         {"profile/index", Data::real, "profile/r", "1", "index there, mean over directions"},
+         {"profile/index", Data::real, "profile/r", "1",
+          "mean index over all directions at the distance profile/r"},
          {"profile/spread", Data::real, "profile/r", "1",
-          "largest difference from it over directions"},
+          "largest deviation from profile/index over directions"},
          {"slice_x", Data::scale, "", "length", "x of the slice's points"},
          {"slice_z", Data::scale, "", "length", "z of the slice's points"},
          {"slice_index", Data::real, "slice_x slice_z", "1", "index in the plane y = 0"},
-         {"path_ray", Data::numbers, "", "1", "number of a drawn ray, along x before the field"},
-         {"path_point", Data::numbers, "", "1", "number of a point, evenly in arc length"},
-         {"before/x", Data::real, "path_ray path_point", "length", "x of the points at the start"},
-         {"before/z", Data::real, "path_ray path_point", "length", "z of the points at the start"},
-         {"after/x", Data::real, "path_ray path_point", "length", "x of the points at the end"},
-         {"after/z", Data::real, "path_ray path_point", "length", "z of the points at the end"},
+         {"path_ray", Data::numbers, "", "1",
+          "number of a plotted ray, in the order of x before the field"},
+         {"path_point", Data::numbers, "", "1",
+          "number of a point; points are equidistant in arc length"},
+         {"before/x", Data::real, "path_ray path_point", "length",
+          "x of the points of rays in the start field"},
+         {"before/z", Data::real, "path_ray path_point", "length",
+          "z of the points of rays in the start field"},
+         {"after/x", Data::real, "path_ray path_point", "length",
+          "x of the points of rays in the designed field"},
+         {"after/z", Data::real, "path_ray path_point", "length",
+          "z of the points of rays in the designed field"},
          {"picture/view", Data::numbers, "", "1", "number of a beam"},
          {"picture/row", Data::numbers, "", "1", "number of a row of pixels, from the top"},
          {"picture/column", Data::numbers, "", "1", "number of a column"},
          {"picture/asked", Data::real, "picture/view picture/row picture/column", "1",
-          "share of a beam's light that is to fall on each pixel"},
+          "target fraction of a beam's light on each pixel"},
          {"picture/shown", Data::real, "picture/view picture/row picture/column", "1",
-          "share that falls there, by rays that the search has not seen"},
+          "fraction of the light of held-out rays on each pixel"},
          {"picture/psnr_db", Data::real, "picture/view", "1",
-          "20 log10 of the picture's largest value over the root mean square difference"}},
-    .attributes = {{"ball_spline", "origin", "float64s",
-                    "three numbers: where the first coefficient's knot lies"},
-                   {"ball_spline", "spacing", "float64s", "three numbers: of the knots"},
-                   {"radial_spline", "centre", "float64s", "three numbers"},
-                   {"radial_spline", "radius", "float64", "R"},
-                   {"graded_spline", "index", "float64", "n0 on the axis"},
-                   {"graded_spline", "delta", "float64", "of n^2 at the radius"},
-                   {"graded_spline", "radius", "float64", "R, of the core"},
-                   {"graded_spline", "exponent", "float64", "of the power law"},
-                   {"excess", "origin", "float64s", "three numbers: of the first node"},
-                   {"excess", "spacing", "float64s", "three numbers"},
-                   {"picture/asked", "width", "float64", "of the pictures' side"},
-                   {"", "goal", "text", "what light was to do"},
-                   {"", "focus", "float64", "where light is to meet, from the centre"},
-                   {"", "stalled", "bool", "the search found no way on"}}};
+          "20 log10 of the largest value of picture/asked divided by the root mean square "
+          "difference between picture/shown and picture/asked"}},
+    .attributes = {
+        {"ball_spline", "origin", "float64s",
+         "three numbers: position of the first coefficient's knot"},
+        {"ball_spline", "spacing", "float64s", "three numbers: spacing of the knots"},
+        {"radial_spline", "centre", "float64s", "three numbers"},
+        {"radial_spline", "radius", "float64", "R"},
+        {"graded_spline", "index", "float64", "n0 on the axis"},
+        {"graded_spline", "delta", "float64",
+         "index contrast: n^2 = n0^2 (1 - 2 delta) at the radius"},
+        {"graded_spline", "radius", "float64", "core radius R"},
+        {"graded_spline", "exponent", "float64", "exponent of the power law"},
+        {"excess", "origin", "float64s", "three numbers: position of the first node"},
+        {"excess", "spacing", "float64s", "three numbers"},
+        {"picture/asked", "width", "float64", "side of the pictures"},
+        {"", "goal", "text", "objective of the design"},
+        {"", "focus", "float64", "focal distance from the centre"},
+        {"", "stalled", "bool", "whether the search stopped without the expected decrease"}}};
 
 namespace {
 
@@ -114,7 +124,7 @@ void write_coefficients(const ResultGroup& root, const RadialForm& form,
   root.attribute("radial_spline", "radius", form.radius);
 }
 
-/// Of the guide's own coefficients, or of none.
+/// Writes the coefficients of the correction of a guide.
 void write_coefficients(const ResultGroup& root, const GuideForm& form,
                         const std::vector<double>& values) {
   const GradedGuide field = form.field(values);
@@ -126,7 +136,8 @@ void write_coefficients(const ResultGroup& root, const GuideForm& form,
   root.attribute("graded_spline", "radius", profile.core().radius);
   root.attribute("graded_spline", "exponent", profile.core().exponent);
 }
-/// Two more nodes beyond each face, where nothing is: so the spline through all is the same one.
+/// Writes n - 1 at the nodes of a box. Two nodes with n = 1 are added beyond each face, so that the
+/// spline through all nodes equals the designed field.
 void write_coefficients(const ResultGroup& root, const BoxForm& form,
                         const std::vector<double>& values) {
   constexpr int beyond = 2;
@@ -169,7 +180,8 @@ void write_check(const ResultGroup& root, const DesignCheck& check) {
   if (check.derivatives) root.check("invariants/derivatives", *check.derivatives);
 }
 
-/// Mean over directions all around, of a guide those across it, and the largest difference.
+/// Writes, for each distance from the centre or axis, the mean index over all directions
+/// (transverse directions for a guide) and the largest deviation from this mean.
 template <IndexField F>
 void write_profile(const ResultGroup& root, const F& field, double radius, bool is_guide) {
   constexpr int radii = 101, directions = 50;
@@ -208,7 +220,8 @@ void write_slice(const ResultGroup& root, const F& field, const Surface& hull, d
   root.put("slice_index", map);
 }
 
-/// Parallel rays along z through a ball and a little on, or to the faces of a box.
+/// Traces parallel rays along z for a plot: through a ball, each ray from slightly before it to
+/// slightly behind it, or between the faces of a box.
 template <class F>
 std::vector<TracedRay> drawn_rays(const F& field, double radius, std::size_t points) {
   SceneField scene{facts(field), field};
@@ -246,13 +259,13 @@ void write_drawings(const ResultGroup& root, const Surface& hull, const auto& fo
   write_rays(root, "after", rays);
 }
 
-void write_pictures(const ResultGroup& root, const ScreenAim& aim,
-                    const std::vector<double>& readings) {
+void write_pictures(const ResultGroup& root, const ScreenTarget& design_target,
+                    const std::vector<double>& measurements) {
   std::vector<double> asked_all, shown_all, psnr;
-  const auto pictures = aim.shown_by(readings, true);
+  const auto pictures = design_target.shown_by(measurements, true);
   for (std::size_t v = 0; v < pictures.size(); ++v) {
     const auto& light = pictures[v].values;
-    const ScreenPicture asked = shown(aim.views()[v].picture);
+    const ScreenPicture asked = shown(design_target.views()[v].picture);
     double square = 0;
     for (std::size_t p = 0; p < light.size(); ++p)
       square += std::pow(light[p] - asked.values[p], 2) / static_cast<double>(light.size());
@@ -295,8 +308,9 @@ void write_design(ResultFile& file, const DesignScene& scene, const Designer& de
     }
   };
   std::visit(draw, form);
-  if (const auto* aim = dynamic_cast<const ScreenAim*>(scene.aim.get()); aim && check.readings)
-    write_pictures(root, *aim, *check.readings);
+  if (const auto* design_target = dynamic_cast<const ScreenTarget*>(scene.design_target.get());
+      design_target && check.measurements)
+    write_pictures(root, *design_target, *check.measurements);
 }
 
 }  // namespace flatspeckle::grin::design

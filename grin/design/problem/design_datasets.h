@@ -8,8 +8,8 @@ namespace flatspeckle::grin::design {
 
 extern const DatasetTable design_table;
 
-/// The field, so that trace and render can read it, how it was found, what it does, and what is
-/// drawn of it.
+/// Writes the designed field in the form that `trace` and `render` read. Also writes the history of
+/// the search, the checks and the data of the plots.
 void write_design(ResultFile& file, const DesignScene& scene, const Designer& designer,
                   const DesignState& state, const DesignCheck& check);
 

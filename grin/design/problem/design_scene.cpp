@@ -11,14 +11,16 @@ namespace {
 
 constexpr std::int64_t most_nodes = 257;
 
-/// Of a box whose nodes are not given the first level, with too few, is left out.
+/// Returns the number of nodes of each refinement level. With the default value of `nodes`, a box
+/// omits the first level, which has too few nodes.
 std::vector<std::int64_t> levels_of(const Keys& keys, const FormValues& values) {
   auto nodes = keys.required(values.nodes);
   if (values.design == "box" && nodes == FormValues().nodes) nodes.erase(nodes.begin());
   return nodes;
 }
 
-/// Each level must halve the spacing.
+/// Returns the number of nodes of the first refinement level. Throws InputError unless each level
+/// halves the node spacing of the previous one.
 int first_nodes(const std::vector<std::int64_t>& nodes, int least) {
   if (nodes.front() < least)
     throw InputError("nodes", nodes.front(), "must be at least " + std::to_string(least));
@@ -31,17 +33,20 @@ int first_nodes(const std::vector<std::int64_t>& nodes, int least) {
   return static_cast<int>(nodes.front());
 }
 
-/// Of a ball, a profile or a box; what a box starts from is 1 at its faces.
+/// Sets the bounds of the index and the start coefficients of a ball, a radial profile or a box. A
+/// box starts with index 1 at its faces.
 void bound(const Keys& keys, const FormValues& values, FormStart& start) {
   start.least_index = keys.read(values.least_index);
   start.most_index = keys.read(values.most_index);
   const double least = start.least_index - 1, most = start.most_index - 1;
   const double excess = keys.read(values.start_excess);
-  if (least > 0) throw InputError("least_index", least + 1, "must be at most 1, as at the rim");
-  if (most < 0) throw InputError("most_index", most + 1, "must be at least 1, as at the rim");
+  if (least > 0)
+    throw InputError("least_index", least + 1, "must be at most 1, the index at the rim");
+  if (most < 0)
+    throw InputError("most_index", most + 1, "must be at least 1, the index at the rim");
   if (!(excess >= least && excess <= most))
     throw InputError("start_excess", excess,
-                     "crosses the bounds: least_index and most_index leave " +
+                     "must lie in the range that least_index and most_index allow: " +
                          std::to_string(least) + " to " + std::to_string(most));
   start.coefficients.assign(shape_of(start.form).size(), excess);
   bounds_of(start.form, start.least_index, start.most_index).hold(start.coefficients);
@@ -50,7 +55,8 @@ void bound(const Keys& keys, const FormValues& values, FormStart& start) {
 FormStart make_guide(const Keys& keys, const FormValues& values, double radius) {
   const int count = static_cast<int>(keys.read(values.coefficients));
   if (count != 0 && count < 4)
-    throw InputError("coefficients", count, "must be at least 4, or 0: the exponent alone");
+    throw InputError("coefficients", count,
+                     "must be at least 4, or 0 to optimise the exponent alone");
   const GuideForm guide{{keys.read(values.index) - 1, keys.required(values.delta), radius}, count};
   const double start = count == 0 ? guide.core.exponent : 0;
   return {guide, 1, 1, std::vector<double>(guide.shape().size(), start), 0, 0};
@@ -60,37 +66,42 @@ FormStart make_guide(const Keys& keys, const FormValues& values, double radius) 
 
 void add_keys(Keys& keys, FormValues& values) {
   keys.group("Designed field");
-  keys.add(
-          "design", values.design,
-          "n = 1 + (1 - r^2/R^2) s: s a cubic spline in space (ball), or of r (radial); n = 1 + a "
-          "spline in a cube, 0 at its faces (box); n^2 = n0^2 (1 - 2 delta p), p = q + q (1 - q) s "
-          "or a power of q = (rho/radius)^2 (guide)")
+  keys.add("design", values.design,
+           "ball: n = 1 + (1 - r^2/radius^2) s with a cubic spline s in space; radial: the same "
+           "with a spline s of r; box: n = 1 + a cubic spline in a cube, 0 at its faces; guide: "
+           "n^2 = n0^2 (1 - 2 delta p) with p = q + q (1 - q) s or p = a power of q, where q = "
+           "(rho/radius)^2")
       .one_of({"ball", "radial", "box", "guide"});
   keys.add("radius", values.radius,
-           "Of the ball, whose rim stays at n = 1, half the side of the box, of the guide's core; "
-           "about the origin")
+           "Radius of the ball (n = 1 at its surface) or of the guide's core, or half the side of "
+           "the box; the field is centred at the origin")
       .positive()
       .unit("length");
   keys.add("nodes", values.nodes,
-           "Of the spline along each axis, of one level after another, each of half the spacing "
-           "(box: "
-           "from 9)")
+           "Nodes of the spline along each axis, for successive levels, each with half the spacing "
+           "of the previous (for a box the default starts at 9 nodes)")
       .from(2, most_nodes)
       .only_of("ball, box");
   keys.add("coefficients", values.coefficients,
-           "Of s; of a guide 0: p is a power, whose exponent is sought")
+           "Number of coefficients of the spline that describes the index profile; for a guide, 0 "
+           "optimises the exponent of a power law instead")
       .from(0, 1000)
       .only_of("radial, guide");
-  keys.add("start_excess", values.start_excess, "s at the start (box: n - 1), everywhere")
+  keys.add("start_excess", values.start_excess,
+           "Uniform start value of the spline: of s, with n = 1 + s inside a ball (C30), or of n - "
+           "1 in a box")
       .only_of("ball, radial, box");
-  keys.add("least_index", values.least_index, "Bound of the index")
+  keys.add("least_index", values.least_index, "Lower bound of the index")
       .positive()
       .only_of("ball, radial, box");
-  keys.add("most_index", values.most_index, "Bound of the index")
+  keys.add("most_index", values.most_index, "Upper bound of the index")
       .positive_to(100)
       .only_of("ball, radial, box");
-  keys.add("index", values.index, "n0 on the axis").positive_to(100).only_of("guide");
-  keys.add("delta", values.delta, "Of the guide: n^2 at the radius is n0^2 (1 - 2 delta)")
+  keys.add("index", values.index, "Index n0 on the axis of the guide")
+      .positive_to(100)
+      .only_of("guide");
+  keys.add("delta", values.delta,
+           "Index contrast of the guide: n^2 = n0^2 (1 - 2 delta) at the radius")
       .positive_to(0.45)
       .only_of("guide");
 }
@@ -118,12 +129,13 @@ FormStart make_form(const Keys& keys, const FormValues& values) {
   return start;
 }
 
-void add_keys(Keys& keys, AimValues& values) {
+void add_keys(Keys& keys, TargetValues& values) {
   keys.group("Light and goal");
   keys.add("goal", values.goal,
-           "Parallel light meets in points (focus); rays of a fibre go at one speed (equal_path); "
-           "beams show pictures (irradiance); rays leave as was measured (deflections); light of "
-           "points leaves parallel (collimation), or passes through an aperture (throughput)")
+           "Objective: parallel light meets in points (focus); rays of a fibre have equal delays "
+           "(equal_path); beams form pictures (irradiance); rays leave in measured directions "
+           "(deflections); light of point sources leaves parallel (collimation) or passes through "
+           "an aperture (throughput)")
       .one_of(kind_words(values.kinds));
   each_kind(values.kinds, [&](auto& kind) {
     keys.group(std::string("Goal: ") + kind.word, kind.word);
@@ -131,24 +143,28 @@ void add_keys(Keys& keys, AimValues& values) {
   });
 }
 
-std::unique_ptr<Aim> make_aim(const Keys& keys, const AimValues& values, const FieldForm& form) {
-  std::unique_ptr<Aim> aim;
+std::unique_ptr<DesignTarget> make_target(const Keys& keys, const TargetValues& values,
+                                          const FieldForm& form) {
+  std::unique_ptr<DesignTarget> design_target;
   with_kind(values.kinds, keys.read(values.goal),
-            [&](const auto& kind) { aim = make_aim(keys, kind, form); });
-  return aim;
+            [&](const auto& kind) { design_target = make_target(keys, kind, form); });
+  return design_target;
 }
 
 namespace {
 
-/// Derivatives of rays, about what a way through the finest grid touches.
+/// Throws InputError if the derivatives of all rays do not fit into memory. Each ray depends on
+/// about as many coefficients as there are along its path in the finest grid.
 void check_memory(const DesignScene& scene) {
-  const double bytes = scene.aim->rays() * (30 * scene.start.finest * 12 + 500);
+  const double bytes = scene.design_target->rays() * (30 * scene.start.finest * 12 + 500);
   if (bytes > 0.8 * usable_memory())
-    throw InputError("rays of this goal", scene.aim->rays(),
-                     "need " + std::to_string(bytes / 1e9) + " GB of memory");
+    throw InputError("rays of this goal", scene.design_target->rays(),
+                     "need " + std::to_string(bytes / 1e9) +
+                         " GB of memory: reduce the number of rays or nodes");
 }
 
-/// Steps and how many of them at most. A guide's are a part of a quarter of a turn.
+/// Returns the length of an integration step and the largest number of steps. The default step in a
+/// guide is a fraction of a quarter of the period of its rays.
 RayWalk make_walk(const Keys& keys, const DesignValues& values, const FieldForm& form) {
   const double radius = values.form.radius;
   const std::optional<double> step = keys.read(values.step);
@@ -172,8 +188,9 @@ void make_search(const Keys& keys, const DesignValues& values, DesignScene& scen
   scene.has_noise = keys.read(values.noise).has_value();
   if (!scene.has_noise) return;
   if (scene.target > 0)
-    throw InputError("target", scene.target, "must not be given beside noise, which sets it");
-  scene.target = *values.noise * std::sqrt(scene.aim->readings());
+    throw InputError("target", scene.target,
+                     "must not be given together with noise, which determines the target");
+  scene.target = *values.noise * std::sqrt(scene.design_target->measurements());
   if (scene.roughness == 0) scene.roughness = 1e3;
 }
 
@@ -181,37 +198,40 @@ void make_search(const Keys& keys, const DesignValues& values, DesignScene& scen
 
 void add_keys(Keys& keys, DesignValues& values) {
   add_keys(keys, values.form);
-  add_keys(keys, values.aim);
+  add_keys(keys, values.design_target);
   keys.group("Search");
-  keys.add("method", values.method, "Damped least squares")
+  keys.add("method", values.method, "Search method: damped least squares")
       .one_of({"gauss_newton"})
       .gone("; lbfgs and adam are baselines of `bench error`");
   keys.add("step", values.step,
-           "Of rays, length at index 1 (default: a tenth of the radius; in a guide a 24th of a "
-           "quarter turn)")
+           "Step of ray integration, as a length at index 1 (default: 1/10 of the radius; for a "
+           "guide 1/24 of a quarter of the rays' period)")
       .positive()
       .unit("length");
-  keys.add("iterations", values.iterations, "Steps of the search, of all levels at most")
+  keys.add("iterations", values.iterations, "Largest number of search steps over all levels")
       .from(1, 1'000'000);
   keys.add("target", values.target,
-           "Root mean square of what rays miss by that is enough; not reached: exit status 3")
+           "Root mean square residual of the rays at which the search ends; exit status 3 if not "
+           "reached")
       .positive();
   keys.add("noise", values.noise,
-           "Standard error of each measured number: the search starts smooth, and lowers "
-           "the roughness' weight until what rays miss by is that (discrepancy principle)")
+           "Standard error of each measured number: the search starts smooth and lowers the weight "
+           "of the roughness until the residuals equal this error (discrepancy principle)")
       .positive();
   keys.add("roughness", values.roughness,
-           "Weight of third differences of the coefficients, relative to that of the rays")
+           "Weight of the roughness (the squared third differences of the coefficients) relative "
+           "to the residuals of the rays")
       .not_negative();
 }
 
 DesignScene make_design_scene(const Keys& keys, const DesignValues& values) {
   DesignScene scene;
   scene.start = make_form(keys, values.form);
-  scene.aim = make_aim(keys, values.aim, scene.start.form);
-  scene.goal = values.aim.goal;
+  scene.design_target = make_target(keys, values.design_target, scene.start.form);
+  scene.goal = values.design_target.goal;
   if (scene.goal == FocusValues::word)
-    scene.focus = std::get<FocusValues>(values.aim.kinds).focus.value_or(values.form.radius);
+    scene.focus =
+        std::get<FocusValues>(values.design_target.kinds).focus.value_or(values.form.radius);
   scene.walk = make_walk(keys, values, scene.start.form);
   make_search(keys, values, scene);
   check_memory(scene);

@@ -5,15 +5,15 @@
 #include "core/keys/keys.h"
 #include "grin/design/descent/least_squares.h"
 #include "grin/design/forms/field_form.h"
-#include "grin/design/goals/deflection_aim.h"
-#include "grin/design/goals/fibre_aim.h"
-#include "grin/design/goals/focus_aim.h"
-#include "grin/design/goals/screen_aim.h"
-#include "grin/design/goals/source_aim.h"
+#include "grin/design/objectives/deflection_target.h"
+#include "grin/design/objectives/fibre_target.h"
+#include "grin/design/objectives/focus_target.h"
+#include "grin/design/objectives/screen_target.h"
+#include "grin/design/objectives/source_target.h"
 
 namespace flatspeckle::grin::design {
 
-/// What is sought, as keys have it.
+/// Scene keys of the designed field.
 struct FormValues {
   std::string design = "ball";
   double radius = 1;
@@ -26,35 +26,36 @@ struct FormValues {
 
 void add_keys(Keys& keys, FormValues& values);
 
-/// The field that a search starts from, and how it may change.
+/// The field from which a search starts, its refinement levels and the bounds of its index.
 struct FormStart {
-  FieldForm form;                    ///< of the first level
-  int levels = 1;                    ///< each with half the spacing of the one before
-  double finest = 1;                 ///< nodes along an axis, of the last
-  std::vector<double> coefficients;  ///< of the first
+  FieldForm form;  ///< form of the field in the first refinement level
+  int levels = 1;  ///< number of refinement levels, each with half the spacing of the previous one
+  double finest = 1;                 ///< number of nodes along an axis in the last level
+  std::vector<double> coefficients;  ///< coefficients in the first level
   double least_index, most_index;
 };
-/// Throws InputError.
+/// Makes the start of the search. Throws InputError.
 FormStart make_form(const Keys& keys, const FormValues& values);
 
-/// All kinds of what light is to do; the one list of them.
-using AimKinds = std::tuple<FocusValues, FibreValues, ScreenValues, DeflectionValues,
-                            CollimationValues, ThroughputValues>;
+/// Scene keys of all design targets. To add a target, extend only this list.
+using TargetKinds = std::tuple<FocusValues, FibreValues, ScreenValues, DeflectionValues,
+                               CollimationValues, ThroughputValues>;
 
-struct AimValues {
+struct TargetValues {
   std::string goal = FocusValues::word;
-  AimKinds kinds{};
+  TargetKinds kinds{};
 };
 
-void add_keys(Keys& keys, AimValues& values);
+void add_keys(Keys& keys, TargetValues& values);
 
-/// Throws InputError.
-std::unique_ptr<Aim> make_aim(const Keys& keys, const AimValues& values, const FieldForm& form);
+/// Makes the design target that the key `goal` selects. Throws InputError.
+std::unique_ptr<DesignTarget> make_target(const Keys& keys, const TargetValues& values,
+                                          const FieldForm& form);
 
-/// What is sought and what light is to do, as keys have it.
+/// Scene keys of the command `design`: the field, the target and the search.
 struct DesignValues {
   FormValues form{};
-  AimValues aim{};
+  TargetValues design_target{};
   std::optional<double> step = {}, target = {}, noise = {};
   std::int64_t iterations = 60;
   double roughness = 0;
@@ -65,17 +66,20 @@ void add_keys(Keys& keys, DesignValues& values);
 
 struct DesignScene {
   FormStart start;
-  std::shared_ptr<const Aim> aim;
+  std::shared_ptr<const DesignTarget> design_target;
   std::string goal;
-  std::optional<double> focus = {};  ///< of a ball
+  std::optional<double> focus = {};  ///< focal distance, for goal = focus
   RayWalk walk;
-  double roughness;    ///< at the start
-  bool has_noise;      ///< roughness is lowered until the target, which is the noise, is reached
-  int iterations = 0;  ///< at most
-  double target = 0;   ///< the loss' root that is enough
+  double roughness;  ///< weight of the roughness (class Roughness) at the start of the search
+  /// Whether the weight of the roughness is lowered until the residual equals the noise of the
+  /// measurements
+  bool has_noise;
+  int iterations = 0;  ///< largest number of steps of the search
+  double target = 0;   ///< root mean square residual at which the search ends
 };
 
-/// Both throw InputError; of values alone, all must be of use.
+/// Makes the scene. Throws InputError for invalid values. The overload without `keys` also throws
+/// it for values that no part of the scene uses.
 DesignScene make_design_scene(const Keys& keys, const DesignValues& values);
 DesignScene make_design_scene(const DesignValues& values);
 

@@ -15,7 +15,7 @@ namespace flatspeckle::grin::design {
 
 namespace {
 
-/// put(member) or get(member) of all of them, in one order.
+/// Calls use(member) for each member of the state that is saved, in a fixed order.
 template <class State, class Use>
 void each_member(State& state, const Use& use) {
   use(state.level);
@@ -71,13 +71,13 @@ std::optional<DesignState> read_state(const std::filesystem::path& path,
   if (!state.history.cpu_s.empty()) state.cpu_before = state.history.cpu_s.back();
   return state;
 } catch (const InputError& error) {
-  throw InputError(std::string("resume: ") + error.what() + "; remove it to begin afresh");
+  throw InputError(std::string("resume: ") + error.what() + "; remove the file to start again");
 }
 
 Designer::Designer(const DesignScene& scene)
     : scene_(scene),
-      seen_(scene.aim->task(scene.walk, false)),
-      held_out_(scene.aim->task(scene.walk, true)) {}
+      seen_(scene.design_target->task(scene.walk, false)),
+      held_out_(scene.design_target->task(scene.walk, true)) {}
 
 FieldForm Designer::form(const DesignState& state) const {
   FieldForm form = scene_.start.form;
@@ -89,15 +89,16 @@ FieldForm Designer::form(const DesignState& state) const {
 Search Designer::search_in(const FieldForm& form) const {
   Search search{bounds_of(form, scene_.start.least_index, scene_.start.most_index)};
   const auto& extent = shape_of(form).extent;
-  if (extent[0] == 1) search.smooth_damping = 0;  // all of a profile is seen
+  // Search steps for a radial profile need not be smooth, because rays cross all of its radii
+  if (extent[0] == 1) search.smooth_damping = 0;
   return search;
 }
 
 DesignState Designer::begin() {
   DesignState state;
   const FieldForm& form = scene_.start.form;
-  state.search =
-      begin_search({*seen_.rays, *seen_.goal, form}, search_in(form), scene_.start.coefficients);
+  state.search = begin_search({*seen_.rays, *seen_.objective, form}, search_in(form),
+                              scene_.start.coefficients);
   state.search.roughness = scene_.roughness;
   note(state);
   return state;
@@ -117,14 +118,15 @@ void Designer::refine(DesignState& state) {
   state.search.coefficients = std::move(fine.coefficients);
   state.search.damping = search.first_damping;
   state.search.loss =
-      Objective(*seen_.rays, *seen_.goal, fine.form).loss(state.search.coefficients);
+      Objective(*seen_.rays, *seen_.objective, fine.form).loss(state.search.coefficients);
   ++state.search.traces;
   state.slow_steps = 0;
   ++state.level;
 }
 
-/// With less weight of the roughness, as long as there is noise to come down to and the last time
-/// did something: else the field's own knots are what is left. (Of much weight nothing is found.)
+/// Lowers the weight of the roughness and returns true, unless lowering it last time did not reduce
+/// the residual, which is then due to the spacing of the knots of the field. Early in the search
+/// the weight is always lowered, because a large weight prevents any decrease of the residual.
 bool Designer::smoothes_on(DesignState& state) const {
   constexpr double least = 1e-12, factor = 0.3;
   if (!scene_.has_noise || state.search.roughness < least) return false;
@@ -137,27 +139,29 @@ bool Designer::smoothes_on(DesignState& state) const {
   return true;
 }
 
-/// Whether rays miss by less than their steps are off: then a search only cancels their error.
-/// Looked at again where they miss by half as much.
+/// Whether the residuals are below the integration error, so that the search only cancels this
+/// error. The integration error is computed again each time the residual has halved.
 bool Designer::leans_on_steps(DesignState& state) {
   const double now = std::sqrt(state.search.loss);
   if (now > 0.5 * state.rms_by_half_steps) return false;
   const auto by_half = rms(seen_, seen_.rays->trace(form(state), state.search.coefficients, 2));
-  state.search.traces += 3;  // and once more as they were
+  // A trace with half steps counts as two traces; a third one restores the state of the rays
+  state.search.traces += 3;
   state.rms_by_half_steps = by_half.value_or(now);
   return state.rms_by_half_steps > 2 * now;
 }
 
 void Designer::advance(DesignState& state) {
   const bool is_last = state.level + 1 == scene_.start.levels;
-  const double slow = is_last ? 0.97 : 0.7;  // of the root mean square, in a step
+  // A step of the search is slow if the residual remains above this fraction of its previous value
+  const double slow = is_last ? 0.97 : 0.7;
   const int most_slow_steps = scene_.has_noise ? 1 : 2;
   const FieldForm form = this->form(state);
-  const LeastSquares search({*seen_.rays, *seen_.goal, form}, search_in(form));
+  const LeastSquares search({*seen_.rays, *seen_.objective, form}, search_in(form));
   const double before = state.search.loss;
   const SearchStep step = search.advance(state.search);
   const double rms = std::sqrt(state.search.loss);
-  constexpr double rounding = 1e-9;  // of what was missed at the start
+  constexpr double rounding = 1e-9;  // relative to the residual at the start
   state.stalled = step == SearchStep::stalled && rms > rounding * state.history.rms.front();
   const bool is_enough = rms <= scene_.target;
   const bool gained = step == SearchStep::better && rms < slow * std::sqrt(before);
@@ -172,10 +176,10 @@ void Designer::advance(DesignState& state) {
 }
 
 std::optional<double> Designer::rms(DesignTask& task,
-                                    const std::optional<std::vector<double>>& readings) {
-  if (!readings) return std::nullopt;
+                                    const std::optional<std::vector<double>>& measurements) {
+  if (!measurements) return std::nullopt;
   double sum = 0;
-  for (const double r : task.goal->residuals(*readings)) sum += r * r;
+  for (const double r : task.objective->residuals(*measurements)) sum += r * r;
   return std::sqrt(sum / static_cast<double>(task.rays->rays()));
 }
 
@@ -193,13 +197,15 @@ DesignCheck Designer::check(const DesignState& state) {
   check.start_held_out =
       rms(held_out_, held_out_.rays->trace(scene_.start.form, scene_.start.coefficients))
           .value_or(0);
-  check.readings = held_out_.rays->trace(form(state), coefficients, 2);
-  check.held_out_half_step = rms(held_out_, check.readings);
-  if (check.readings) check.in_place = share_of_zeros(held_out_.goal->residuals(*check.readings));
+  check.measurements = held_out_.rays->trace(form(state), coefficients, 2);
+  check.held_out_half_step = rms(held_out_, check.measurements);
+  if (check.measurements)
+    check.in_place = share_of_zeros(held_out_.objective->residuals(*check.measurements));
   return check;
 }
 
-/// Of coefficients within the field that are not held; is(number, bounds).
+/// Returns the number of free coefficients within the field for which is(number of the coefficient,
+/// bounds) is true.
 template <class Is>
 std::size_t Designer::count_free(const DesignState& state, const Is& is) const {
   const FieldForm form = this->form(state);
@@ -219,16 +225,17 @@ std::size_t Designer::at_bounds(const DesignState& state) const {
 
 std::size_t Designer::unseen(const DesignState& state) {
   const auto& values = state.search.coefficients;
-  const auto readings = seen_.rays->trace(form(state), values);
-  if (!readings) return 0;
+  const auto measurements = seen_.rays->trace(form(state), values);
+  if (!measurements) return 0;
   std::vector<double> squares(values.size());
-  seen_.rays->linearised().squares(std::vector<double>(readings->size(), 1.0), squares);
+  seen_.rays->linearised().squares(std::vector<double>(measurements->size(), 1.0), squares);
   return count_free(state, [&](std::size_t i, const Bounds&) { return squares[i] == 0; });
 }
 
-/// Compares along the direction that moves the readings most, if all coefficients are moved alike.
-/// Differences are extrapolated from two distances; how far these are apart tells their own error.
-/// Returns nullopt where a ray is lost or none depends on the coefficients.
+/// Compares the derivatives computed with reversed rays with finite differences, along the gradient
+/// of the sum of all measurements. Finite differences with two step sizes are extrapolated; their
+/// difference is an estimate of the error. Returns nullopt if a ray is lost or no ray depends on
+/// the coefficients.
 std::optional<Invariant> Designer::derivatives(const DesignState& state) {
   constexpr double distance = 1e-4, of_rounded_rows = 1e-3;
   const FieldForm form = this->form(state);
@@ -243,7 +250,7 @@ std::optional<Invariant> Designer::derivatives(const DesignState& state) {
   if (!(largest > 0)) return std::nullopt;
   for (double& each : along) each /= largest;
   rows.times(along, change);
-  const auto slope = [&](double h) -> std::optional<Eigen::VectorXd> {
+  const auto difference_quotient = [&](double h) -> std::optional<Eigen::VectorXd> {
     std::vector<double> ahead = at, behind = at;
     for (std::size_t i = 0; i < at.size(); ++i) {
       ahead[i] += h * along[i];
@@ -253,7 +260,7 @@ std::optional<Invariant> Designer::derivatives(const DesignState& state) {
     if (!after || !before) return std::nullopt;
     return (vector_of(*after) - vector_of(*before)) / (2 * h);
   };
-  const auto coarse = slope(2 * distance), fine = slope(distance);
+  const auto coarse = difference_quotient(2 * distance), fine = difference_quotient(distance);
   if (!coarse || !fine) return std::nullopt;
   const Eigen::VectorXd found = *fine + (*fine - *coarse) / 3;
   const double size = found.norm();

@@ -10,47 +10,56 @@
 
 namespace flatspeckle::grin::design {
 
-/// How far the search was after each of its steps.
+/// Values after each step of the search: residual, number of traces per ray, processor time and
+/// number of coefficients.
 struct DesignHistory {
   std::vector<double> rms, traces, cpu_s;
   std::vector<std::uint64_t> coefficients;
 };
 
-/// All that a design goes on from.
+/// State of a search from which it can be resumed.
 struct DesignState {
-  int level = 0, slow_steps = 0;  ///< in turn
+  /// Refinement level, and number of consecutive search steps with little gain.
+  int level = 0, slow_steps = 0;
   SearchState search;
   DesignHistory history;
-  double rms_as_smooth = HUGE_VAL;      ///< where the roughness' weight was lowered last
-  double rms_by_half_steps = HUGE_VAL;  ///< where that was looked at last
+  double rms_as_smooth =
+      HUGE_VAL;  ///< root mean square residual when the weight of the roughness was last lowered
+  double rms_by_half_steps =
+      HUGE_VAL;  ///< root mean square residual with half the integration step, when last computed
   bool ended = false, stalled = false;
-  double cpu_before = 0;  ///< of the runs that this one goes on from
+  double cpu_before = 0;  ///< processor time of earlier runs, seconds
 };
 
-/// What rays miss by, root mean square over them: those that the search has seen and others, as
-/// they are and by steps of half the length, as what is found may lean on the steps' own error.
-/// Nothing where a ray is lost.
+/// Root mean square residuals of the rays used in the search (seen) and of held-out rays, with full
+/// and half integration steps. The half step reveals a design that exploits integration errors. A
+/// residual is nullopt if a ray is lost.
 struct DesignCheck {
   std::optional<double> seen, seen_half_step, held_out, held_out_half_step;
-  double start_held_out = 0;  ///< of the field at the start
-  std::size_t unseen = 0;  ///< coefficients within the field that no ray of the search depends on
-  std::optional<std::vector<double>> readings = {};  ///< of the held-out rays, by the half steps
-  double in_place = 0;                               ///< share of these that miss by nothing
-  /// Relative difference between derivatives of the readings by reversed rays and by differences.
+  /// Residual of the held-out rays in the field with which the search starts.
+  double start_held_out = 0;
+  /// Number of coefficients within the field on which no ray of the search depends.
+  std::size_t unseen = 0;
+  /// Measurements of the held-out rays, traced with half steps.
+  std::optional<std::vector<double>> measurements = {};
+  double in_place = 0;  ///< fraction of the residuals of the held-out rays that are 0
+  /// Relative difference between the derivatives of the measurements computed with reversed rays
+  /// and with finite differences.
   std::optional<Invariant> derivatives = {};
 };
 
-/// Level after level, step after step.
+/// Runs the search step by step, from the coarsest to the finest level.
 class Designer {
  public:
   explicit Designer(const DesignScene& scene);
 
   DesignState begin();
-  /// One step of the search; a function of the state alone, but for the time it takes.
+  /// Makes one step of the search; apart from the recorded time, the result depends on the state
+  /// alone.
   void advance(DesignState& state);
   FieldForm form(const DesignState& state) const;
   DesignCheck check(const DesignState& state);
-  /// Coefficients that stand at a bound which is not held.
+  /// Returns the number of free coefficients that are at their lower or upper bound.
   std::size_t at_bounds(const DesignState& state) const;
 
  private:
@@ -64,24 +73,26 @@ class Designer {
   bool smoothes_on(DesignState& state) const;
   bool leans_on_steps(DesignState& state);
   static std::optional<double> rms(DesignTask& task,
-                                   const std::optional<std::vector<double>>& readings);
+                                   const std::optional<std::vector<double>>& measurements);
 
   const DesignScene& scene_;
   DesignTask seen_, held_out_;
 };
 
-/// Where a search that was cut off goes on from: beside its result, NAME.state.
+/// Returns the path of the file from which an interrupted search resumes: the path of its result
+/// with ".state" appended.
 std::filesystem::path state_path(const std::filesystem::path& out);
 
-/// identity: what tells one search from another. Throws IoError.
+/// Saves the state of a search. identity: text that distinguishes the search from others. Throws
+/// IoError.
 void save_state(const std::filesystem::path& path, const std::string& identity,
                 const DesignState& state);
 
-/// Whether it is there and whole, and of this search.
+/// Whether the file exists, is intact and belongs to the search with this identity.
 bool holds(const std::filesystem::path& path, const std::string& identity);
 
-/// Nothing where there is no such file. Throws InputError for one that is damaged, or of another
-/// search.
+/// Reads the state of a search; nullopt if there is no such file. Throws InputError if the file is
+/// damaged or belongs to another search.
 std::optional<DesignState> read_state(const std::filesystem::path& path,
                                       const std::string& identity);
 

@@ -13,16 +13,17 @@ namespace flatspeckle::grin::design {
 
 namespace {
 
-constexpr std::size_t shares = 8;  // of the blocks, each summed up by itself
+constexpr std::size_t shares = 8;  // number of groups of blocks; each group is summed separately
 constexpr std::size_t width = RayRows::width;
 using Block = RayRows::Block;
 
-/// Of a ray, in its block.
+/// The groups of four coefficients on which one ray of a block depends: from number `begin` to
+/// `end` - 1.
 struct Fours {
   std::size_t begin, end;
 };
 
-/// use(ray in the block, its fours) of each.
+/// Calls use(number of the ray within the block, its range of groups) for each ray of a block.
 template <class Use>
 void each_ray(const Block& block, const Use& use) {
   std::size_t begin = 0;
@@ -32,7 +33,7 @@ void each_ray(const Block& block, const Use& use) {
   }
 }
 
-/// With room for the last four.
+/// Returns the coefficients padded with zeros, so that the last group of four is complete.
 std::vector<double> padded(std::span<const double> coefficients) {
   std::vector<double> values(coefficients.begin(), coefficients.end());
   values.resize(values.size() + width - 1);
@@ -40,7 +41,8 @@ std::vector<double> padded(std::span<const double> coefficients) {
 }
 
 template <std::size_t K>
-std::array<double, K> read(const Block& block, const Fours& fours, const double* coefficients) {
+std::array<double, K> row_products(const Block& block, const Fours& fours,
+                                   const double* coefficients) {
   std::array<std::array<double, width>, K> sums{};
   for (std::size_t i = fours.begin; i < fours.end; ++i) {
     const double* const at = coefficients + block.index[i];
@@ -49,10 +51,10 @@ std::array<double, K> read(const Block& block, const Fours& fours, const double*
       for (std::size_t j = 0; j < width; ++j)
         sums[k][j] += static_cast<double>(values[k * width + j]) * at[j];
   }
-  std::array<double, K> readings;
+  std::array<double, K> measurements;
   for (std::size_t k = 0; k < K; ++k)
-    readings[k] = (sums[k][0] + sums[k][1]) + (sums[k][2] + sums[k][3]);
-  return readings;
+    measurements[k] = (sums[k][0] + sums[k][1]) + (sums[k][2] + sums[k][3]);
+  return measurements;
 }
 
 template <std::size_t K>
@@ -78,27 +80,30 @@ void add_squares(const Block& block, const Fours& fours, const double* weights, 
       }
 }
 
-/// Rays of which K numbers are read; a visit chooses the field, once for each pass over all rays.
+/// Rays with K measurements each. Each pass over all rays selects the type of the field only once,
+/// by std::visit.
 template <int K>
 class RaySystemOf : public RaySystem {
  public:
-  using Reader = std::function<Reading<K>(std::size_t, const RayState&)>;
+  using Measure = std::function<RayMeasurement<K>(std::size_t, const RayState&)>;
 
-  RaySystemOf(std::vector<DesignRay> rays, Reader reader, const RayWalk& walk)
-      : rays_(std::move(rays)), read_(std::move(reader)), walk_(walk), ends_(rays_.size()) {}
+  RaySystemOf(std::vector<DesignRay> rays, Measure measure, const RayWalk& walk)
+      : rays_(std::move(rays)), measure_(std::move(measure)), walk_(walk), ends_(rays_.size()) {}
 
   std::size_t rays() const override { return rays_.size(); }
-  int readings() const override { return K; }
+  int measurements() const override { return K; }
 
   std::optional<std::vector<double>> trace(const FieldForm& form, std::span<const double> values,
                                            int parts) override {
-    if (readings_ && parts == parts_ && std::ranges::equal(values, coefficients_)) return readings_;
+    if (measurements_ && parts == parts_ && std::ranges::equal(values, coefficients_))
+      return measurements_;
     form_ = form;
     parts_ = parts;
     coefficients_.assign(values.begin(), values.end());
     const RayWalk walk{walk_.h / parts, walk_.most_steps * parts};
-    readings_ = std::visit([&](const auto& of) { return trace_in(of.field(values), walk); }, form);
-    return readings_;
+    measurements_ =
+        std::visit([&](const auto& of) { return trace_in(of.field(values), walk); }, form);
+    return measurements_;
   }
 
   RayRows linearised() const override {
@@ -112,18 +117,18 @@ class RaySystemOf : public RaySystem {
  private:
   template <class F>
   std::optional<std::vector<double>> trace_in(const F& field, const RayWalk& walk) {
-    std::vector<double> readings(K * rays());
+    std::vector<double> measurements(K * rays());
     std::atomic<bool> lost = false;
     each_block([&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end && !lost; ++i) {
         ends_[i] = follow<Pefrl>(field, rays_[i], walk);
-        const auto values = read_(i, ends_[i].state).values;
+        const auto values = measure_(i, ends_[i].state).values;
         if (ends_[i].lost || !values.allFinite()) lost = true;
-        for (int k = 0; k < K; ++k) readings[K * i + k] = values[k];
+        for (int k = 0; k < K; ++k) measurements[K * i + k] = values[k];
       }
     });
     if (lost) return std::nullopt;
-    return readings;
+    return measurements;
   }
 
   template <class F>
@@ -133,7 +138,8 @@ class RaySystemOf : public RaySystem {
     each_block([&](std::size_t b, std::size_t begin, std::size_t end) {
       CoefficientSums<K> sums(shape);
       for (std::size_t i = begin; i < end; ++i) {
-        pull_back<Pefrl>(field, rays_[i], walk_, ends_[i], read_(i, ends_[i].state).by, sums);
+        backpropagate<Pefrl>(field, rays_[i], walk_, ends_[i], measure_(i, ends_[i].state).by,
+                             sums);
         RayRows::Block& block = rows.block(b);
         sums.take([&](std::size_t number, const std::array<double, K>& derivatives) {
           block.add(number, derivatives);
@@ -144,7 +150,8 @@ class RaySystemOf : public RaySystem {
     return rows;
   }
 
-  /// Adds up parts of the rays, then these in turn: the same sum for any number of threads.
+  /// Sums over fixed subsets of the rays, then over these subsets in order, so that the sum does
+  /// not depend on the number of threads.
   template <class F>
   std::vector<double> gradient_in(const F& field, std::span<const double> weights) const {
     constexpr std::size_t parts = 16;
@@ -154,7 +161,7 @@ class RaySystemOf : public RaySystem {
       CoefficientSums<1> sums(shape);
       for (std::size_t i = p * rays() / parts; i < (p + 1) * rays() / parts; ++i) {
         stop_if_interrupted();
-        pull_back<Pefrl>(field, rays_[i], walk_, ends_[i], weighted(i, &weights[K * i]), sums);
+        backpropagate<Pefrl>(field, rays_[i], walk_, ends_[i], weighted(i, &weights[K * i]), sums);
       }
       of_part[p].assign(shape.size(), 0.0);
       sums.take(
@@ -165,9 +172,10 @@ class RaySystemOf : public RaySystem {
       for (std::size_t i = 0; i < gradient.size(); ++i) gradient[i] += part[i];
     return gradient;
   }
-  /// Derivatives by the end of a ray of the weighted sum of its readings.
+  /// Returns the derivatives of the weighted sum of a ray's measurements with respect to the state
+  /// at the ray's end.
   RayAdjoint<1> weighted(std::size_t i, const double* weights) const {
-    const RayAdjoint<K> by = read_(i, ends_[i].state).by;
+    const RayAdjoint<K> by = measure_(i, ends_[i].state).by;
     const Eigen::Map<const Eigen::Matrix<double, K, 1>> w(weights);
     RayAdjoint<1> sum;
     sum.x = by.x * w;
@@ -187,30 +195,31 @@ class RaySystemOf : public RaySystem {
   }
 
   std::vector<DesignRay> rays_;
-  Reader read_;
+  Measure measure_;
   RayWalk walk_;
   std::vector<FollowedRay> ends_;
   FieldForm form_;
   int parts_ = 0;
   std::vector<double> coefficients_;
-  std::optional<std::vector<double>> readings_;  ///< of the last trace
+  std::optional<std::vector<double>> measurements_;  ///< measurements of the last trace
 };
 
 }  // namespace
 
-RayRows::RayRows(std::size_t rays, int readings, std::size_t coefficients)
-    : readings_(readings),
+RayRows::RayRows(std::size_t rays, int measurements, std::size_t coefficients)
+    : measurements_(measurements),
       coefficients_(coefficients),
       blocks_((rays + block_size - 1) / block_size) {}
 
-/// use(K) of the type that says how many readings there are.
+/// Calls use(K), where K is the number of measurements per ray as an integral constant.
 template <class Use>
-void RayRows::of_readings(const Use& use) const {
-  if (readings_ == 1) return use(std::integral_constant<std::size_t, 1>());
+void RayRows::of_measurements(const Use& use) const {
+  if (measurements_ == 1) return use(std::integral_constant<std::size_t, 1>());
   use(std::integral_constant<std::size_t, 2>());
 }
 
-/// add(block, its first ray, sums): sums of the blocks of a share in turn, then of the shares.
+/// Calls add(block, number of its first ray, sums) for the blocks of each group of blocks in order,
+/// then adds up the sums of all groups.
 template <class Add>
 void RayRows::sum_up(std::span<double> coefficients, const Add& add) const {
   std::vector<std::vector<double>> sums(shares);
@@ -226,24 +235,25 @@ void RayRows::sum_up(std::span<double> coefficients, const Add& add) const {
     for (std::size_t i = 0; i < coefficients_; ++i) coefficients[i] += share[i];
 }
 
-void RayRows::times(std::span<const double> coefficients, std::span<double> readings) const {
+void RayRows::times(std::span<const double> coefficients, std::span<double> measurements) const {
   const auto values = padded(coefficients);
-  of_readings([&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
+  of_measurements([&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
     parallel_for(blocks_.size(), [&](std::size_t b) {
       stop_if_interrupted();
       each_ray(blocks_[b], [&](std::size_t r, const Fours& fours) {
-        std::ranges::copy(read<K>(blocks_[b], fours, values.data()),
-                          &readings[(b * block_size + r) * K]);
+        std::ranges::copy(row_products<K>(blocks_[b], fours, values.data()),
+                          &measurements[(b * block_size + r) * K]);
       });
     });
   });
 }
 
-void RayRows::transposed(std::span<const double> readings, std::span<double> coefficients) const {
-  of_readings([&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
+void RayRows::transposed(std::span<const double> measurements,
+                         std::span<double> coefficients) const {
+  of_measurements([&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
     sum_up(coefficients, [&](const Block& block, std::size_t first, double* sums) {
       each_ray(block, [&](std::size_t r, const Fours& fours) {
-        add_transposed<K>(block, fours, &readings[(first + r) * K], sums);
+        add_transposed<K>(block, fours, &measurements[(first + r) * K], sums);
       });
     });
   });
@@ -251,18 +261,18 @@ void RayRows::transposed(std::span<const double> readings, std::span<double> coe
 
 void RayRows::normal(std::span<const double> coefficients, std::span<double> result) const {
   const auto values = padded(coefficients);
-  of_readings([&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
+  of_measurements([&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
     sum_up(result, [&](const Block& block, std::size_t, double* sums) {
       each_ray(block, [&](std::size_t, const Fours& fours) {
-        const auto readings = read<K>(block, fours, values.data());
-        add_transposed<K>(block, fours, readings.data(), sums);
+        const auto measurements = row_products<K>(block, fours, values.data());
+        add_transposed<K>(block, fours, measurements.data(), sums);
       });
     });
   });
 }
 
 void RayRows::squares(std::span<const double> weights, std::span<double> coefficients) const {
-  of_readings([&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
+  of_measurements([&]<std::size_t K>(std::integral_constant<std::size_t, K>) {
     sum_up(coefficients, [&](const Block& block, std::size_t first, double* sums) {
       each_ray(block, [&](std::size_t r, const Fours& fours) {
         add_squares<K>(block, fours, &weights[(first + r) * K], sums);
@@ -271,16 +281,16 @@ void RayRows::squares(std::span<const double> weights, std::span<double> coeffic
   });
 }
 
-std::unique_ptr<RaySystem> make_ray_system(std::vector<DesignRay> rays, Readings readings,
+std::unique_ptr<RaySystem> make_ray_system(std::vector<DesignRay> rays, Measurements measurements,
                                            const RayWalk& walk) {
   return std::visit(
-      [&]<class Reader>(std::vector<Reader>& readers) -> std::unique_ptr<RaySystem> {
-        return std::make_unique<RaySystemOf<Reader::count>>(
+      [&]<class Each>(std::vector<Each>& of_rays) -> std::unique_ptr<RaySystem> {
+        return std::make_unique<RaySystemOf<Each::count>>(
             std::move(rays),
-            [all = std::move(readers)](std::size_t i, const RayState& end) { return all[i](end); },
+            [all = std::move(of_rays)](std::size_t i, const RayState& end) { return all[i](end); },
             walk);
       },
-      readings);
+      measurements);
 }
 
 }  // namespace flatspeckle::grin::design

@@ -8,29 +8,31 @@
 #include <vector>
 
 #include "grin/design/adjoint/design_ray.h"
-#include "grin/design/adjoint/reading.h"
+#include "grin/design/adjoint/measurement.h"
 #include "grin/design/forms/field_form.h"
 
 namespace flatspeckle::grin::design {
 
-/// Derivatives of what is read off rays by the coefficients: K rows of each ray, at the same
-/// coefficients, four neighbours at a time. All sums are made in an order that does not depend on
-/// the threads.
+/// Sparse matrix of the derivatives of the rays' measurements with respect to the coefficients. A
+/// ray with K measurements has K rows of the same sparsity. The derivatives are stored in groups of
+/// four neighbouring coefficients. All sums are made in an order that does not depend on the number
+/// of threads.
 class RayRows {
  public:
   RayRows() = default;
-  /// readings: 1 or 2.
-  RayRows(std::size_t rays, int readings, std::size_t coefficients);
+  /// measurements: number of measurements per ray, 1 or 2.
+  RayRows(std::size_t rays, int measurements, std::size_t coefficients);
 
-  /// Rays of a block, to be filled in their order.
+  /// Number of rays in a block of rows. Rays are added to a block in order.
   static constexpr std::size_t block_size = 32;
   static constexpr std::size_t width = 4;
   struct Block {
-    std::vector<std::uint32_t> index;  ///< of the first of four
-    std::vector<float> values;         ///< of each reading by these four
-    std::vector<std::size_t> end;      ///< of each ray in index
+    std::vector<std::uint32_t> index;  ///< index of the first coefficient of each group of four
+    /// Derivatives of each measurement with respect to the four coefficients of each group.
+    std::vector<float> values;
+    std::vector<std::size_t> end;  ///< for each ray, the end of its groups in `index`
 
-    /// Of the next ray, in the order of the coefficients.
+    /// Adds derivatives of the next ray; must be called in the order of the coefficients.
     template <std::size_t K>
     void add(std::size_t coefficient, const std::array<double, K>& derivatives) {
       const std::size_t begin = end.empty() ? 0 : end.back();
@@ -45,49 +47,55 @@ class RayRows {
   };
   Block& block(std::size_t b) { return blocks_[b]; }
 
-  /// readings[ray K + k] = row . coefficients
-  void times(std::span<const double> coefficients, std::span<double> readings) const;
-  /// coefficients = sum of rows times readings
-  void transposed(std::span<const double> readings, std::span<double> coefficients) const;
-  /// The latter of the former, in one pass.
+  /// Multiplies the matrix by `coefficients`: measurements[ray * K + k] is the product of row k of
+  /// a ray and the coefficients.
+  void times(std::span<const double> coefficients, std::span<double> measurements) const;
+  /// Multiplies the transposed matrix by `measurements`: the result is the sum over all rows of the
+  /// row times its measurement.
+  void transposed(std::span<const double> measurements, std::span<double> coefficients) const;
+  /// Computes transposed(times(coefficients)) in one pass over the rows.
   void normal(std::span<const double> coefficients, std::span<double> result) const;
-  /// Sum of the squares of each column, weighted by those of the readings.
+  /// Computes, for each column of the matrix, the sum of its squared elements, each multiplied by
+  /// the squared weight of its measurement.
   void squares(std::span<const double> weights, std::span<double> coefficients) const;
 
  private:
   template <class Use>
-  void of_readings(const Use& use) const;
+  void of_measurements(const Use& use) const;
   template <class Add>
   void sum_up(std::span<double> coefficients, const Add& add) const;
 
-  std::size_t readings_ = 1, coefficients_ = 0;
+  std::size_t measurements_ = 1, coefficients_ = 0;
   std::vector<Block> blocks_;
 };
 
-/// What is read off all rays as a function of the coefficients of the field.
+/// Measurements of all rays as a function of the field's coefficients.
 class RaySystem {
  public:
   virtual ~RaySystem() = default;
 
   virtual std::size_t rays() const = 0;
-  virtual int readings() const = 0;  ///< of each ray
+  virtual int measurements() const = 0;  ///< number of measurements per ray
 
-  /// All readings; nothing where a ray is lost. parts: of a step, of which so many take its place.
+  /// Returns all measurements; nullopt if a ray is lost. Each integration step is divided into
+  /// `parts` equal substeps.
   virtual std::optional<std::vector<double>> trace(const FieldForm& form,
                                                    std::span<const double> coefficients,
                                                    int parts = 1) = 0;
-  /// Their derivatives, along the rays that were traced last.
+  /// Returns the derivatives of the measurements with respect to the coefficients, for the last
+  /// traced rays.
   virtual RayRows linearised() const = 0;
-  /// The sum of those derivatives, each times a weight of its reading.
+  /// Returns the gradient of the weighted sum of all measurements with respect to the coefficients,
+  /// for the last traced rays.
   virtual std::vector<double> gradient(std::span<const double> weights) const = 0;
 };
 
-/// One kind of reading, of each ray.
-using Readings = std::variant<std::vector<ScreenReading>, std::vector<SurfaceReading>,
-                              std::vector<DirectionReading>, std::vector<PathReading>,
-                              std::vector<PathPerLengthReading>>;
+/// Measurements of one kind, one for each ray.
+using Measurements = std::variant<std::vector<ScreenMeasurement>, std::vector<SurfaceMeasurement>,
+                                  std::vector<DirectionMeasurement>, std::vector<PathMeasurement>,
+                                  std::vector<PathPerLengthMeasurement>>;
 
-std::unique_ptr<RaySystem> make_ray_system(std::vector<DesignRay> rays, Readings readings,
+std::unique_ptr<RaySystem> make_ray_system(std::vector<DesignRay> rays, Measurements measurements,
                                            const RayWalk& walk);
 
 }  // namespace flatspeckle::grin::design

@@ -6,7 +6,7 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// use(field) of all terms.
+/// Calls use(field) for each field in `terms`, a tuple of one vector for each kind of field.
 template <class Vectors, class Use>
 void each_term(const Vectors& terms, const Use& use) {
   const auto use_all = [&](const auto& fields) {

@@ -24,7 +24,7 @@
 
 namespace flatspeckle::grin {
 
-/// All kinds of index fields (field_kind.h); the one list of them.
+/// All kinds of index fields (explained in field_kind.h). To add a kind, extend only this list.
 using IndexFieldKinds =
     std::tuple<HomogeneousValues, LuneburgValues, FisheyeValues, ParabolicValues, SechValues,
                LinearValues, TanhValues, BlobsValues, UltrasoundValues, FocusedSoundValues,
@@ -39,8 +39,9 @@ struct FieldsOf<std::tuple<Kind...>> {
   using VariantWith = std::variant<typename Kind::Field..., Other>;
 };
 
-/// n = 1 + the sum of the terms' excesses: any number of each kind, chosen at run time and without
-/// a choice in the loop. Compiled once: a sum is long enough for a call.
+/// A sum of index fields: n - 1 is the sum of n - 1 over all terms. It contains any number of terms
+/// of each kind, chosen at run time, without branches in the loop over the terms. Its functions are
+/// not inlined, because a call costs little compared with a sum.
 class AnySum {
  public:
   template <IndexField F>
@@ -58,13 +59,16 @@ class AnySum {
   FieldsOf<IndexFieldKinds>::Vectors terms_;
 };
 
-/// A field chosen at run time: std::visit it once for a bundle of rays, never for a step.
+/// An index field of any kind, chosen at run time. Call std::visit once for a bundle of rays, never
+/// for each integration step.
 using AnyIndexField = FieldsOf<IndexFieldKinds>::VariantWith<AnySum>;
 
-/// A number of the index field, and the fields with a little less and more of it.
+/// A parameter of the index field, and two copies of the field in which this parameter is smaller
+/// and larger by `step`, for finite differences.
 struct FieldParameter {
   std::string name;
-  double scale;  ///< what counts as a whole of it: its size, or 1
+  /// Magnitude of the parameter (1 if it is 0), to which relative changes refer.
+  double scale;
   double step;
   AnyIndexField less, more;
 };

@@ -15,11 +15,12 @@ Sphere ball_in(const FieldGrid& grid) {
   const Vec3 size = grid.end() - grid.origin;
   const auto [least, most] = std::minmax({size[0], size[1], size[2]});
   if (!(most - least <= rounding * most))
-    throw InputError("sides of the cube about a ball", listed(size), "must be equal");
+    throw InputError("sides of the grid around a ball", listed(size), "must be equal");
   return {grid.origin + size / 2, least / 2};
 }
 
-/// A grid of coefficients, two more than nodes along each axis, as a file has it.
+/// Constructs a BallSpline from the grid of spline coefficients in a file. Along each axis, there
+/// are two more coefficients than nodes.
 struct BallGrid {
   BallGrid(const FieldGrid& where, std::span<const double> values)
       : ball(nodes_of(where), {values.begin(), values.end()}) {

@@ -7,12 +7,13 @@
 
 namespace flatspeckle::grin {
 
-/// A ball whose index comes down to 1 at its rim: n - 1 = (1 - r^2/R^2) s(x), s a cubic spline over
-/// the cube about it. Inside of the rim it is smooth; there its gradient jumps.
+/// Index field of a ball, whose index falls to 1 at its rim: n - 1 = (1 - r^2/R^2) s(x). r is the
+/// distance from the centre, R the radius, and s a cubic spline on the cube around the ball. The
+/// index is smooth inside; its gradient jumps at the rim.
 class BallSpline {
  public:
-  /// grid: the nodes of s, of a cube. Throws InputError for anything else, or another number of
-  /// coefficients than two more along each axis than nodes.
+  /// grid: nodes of the spline s, which must form a cube. Throws InputError if they do not form a
+  /// cube, or if there are not two more coefficients than nodes along each axis.
   BallSpline(const FieldGrid& grid, std::vector<double> coefficients);
 
   const SplineField& spline() const { return spline_; }
@@ -22,35 +23,38 @@ class BallSpline {
   IndexGradient gradient(const Vec3& x) const {
     const Vec3 r = x - ball_.centre;
     const IndexGradient s = spline_.gradient(x);
-    return {height(r) * s.excess, height(r) * s.gradient + s.excess * slope(r)};
+    return {height(r) * s.excess, height(r) * s.gradient + s.excess * height_gradient(r)};
   }
   IndexHessian hessian(const Vec3& x) const {
     return product(x - ball_.centre, spline_.hessian(x));
   }
 
-  /// A place, the field there, and the spline.
-  struct Look {
+  /// Result of evaluate(x): vector r from the centre to x, and the spline s and the field at x,
+  /// with derivatives.
+  struct Evaluation {
     Vec3 r;
-    SplineField::Look spline;
+    SplineField::Evaluation spline;
     IndexHessian jet;
   };
-  Look look(const Vec3& x) const {
+  Evaluation evaluate(const Vec3& x) const {
     const Vec3 r = x - ball_.centre;
-    const SplineField::Look at = spline_.look(x);
+    const SplineField::Evaluation at = spline_.evaluate(x);
     return {r, at, product(r, at.jet)};
   }
-  /// As the spline's own.
+  /// Adds the derivatives of a (n - 1) + b . grad n with respect to the spline coefficients to rows
+  /// of sums, as SplineField::add_derivative() does.
   template <class Rows>
-  void add_derivative(const Look& at, double a, const Vec3& b, const Rows& row_of) const {
-    SplineField::add_derivative(at.spline, spline_.extent(), a * height(at.r) + b.dot(slope(at.r)),
-                                height(at.r) * b, row_of);
+  void add_derivative(const Evaluation& at, double a, const Vec3& b, const Rows& row_of) const {
+    SplineField::add_derivative(at.spline, spline_.extent(),
+                                a * height(at.r) + b.dot(height_gradient(at.r)), height(at.r) * b,
+                                row_of);
   }
 
  private:
   double height(const Vec3& r) const { return 1 - r.squaredNorm() * inverse_area_; }
-  Vec3 slope(const Vec3& r) const { return -2 * inverse_area_ * r; }
+  Vec3 height_gradient(const Vec3& r) const { return -2 * inverse_area_ * r; }
   IndexHessian product(const Vec3& r, const IndexHessian& s) const {
-    const Vec3 q = slope(r);
+    const Vec3 q = height_gradient(r);
     Mat3 hessian = height(r) * s.hessian + q * s.gradient.transpose() + s.gradient * q.transpose();
     hessian.diagonal().array() -= 2 * inverse_area_ * s.excess;
     return {height(r) * s.excess, height(r) * s.gradient + s.excess * q, hessian};
@@ -71,7 +75,7 @@ struct BallValues {
 };
 
 void add_keys(Keys& keys, BallValues& values);
-/// Throws InputError naming the file.
+/// Reads the field from the file given by its key. Throws an InputError that names the file.
 BallSpline make_field(const Keys& keys, const BallValues& values, const FieldUse& use);
 
 }  // namespace flatspeckle::grin

@@ -5,7 +5,8 @@
 
 namespace flatspeckle::grin {
 
-/// Maxwell's fisheye, n = n0 / (1 + r^2/a^2); n0 is 1 + centre_excess.
+/// Maxwell's fisheye lens, n = n0 / (1 + r^2/a^2), at the distance r from the centre; a is its
+/// radius and n0 is 1 + centre_excess.
 struct FisheyeProfile {
   static constexpr bool goes_in_lanes = true;
   double centre_excess = 1, radius = 1;
@@ -22,7 +23,7 @@ struct FisheyeProfile {
 };
 using Fisheye = RadialField<FisheyeProfile, 3>;
 
-/// Smooth everywhere.
+/// Returns the field unchanged. It is smooth everywhere, also beyond the sphere on which rays end.
 inline Fisheye smooth_within(const Fisheye& field, const Sphere& /*end*/) {
   return field;
 }
@@ -41,10 +42,10 @@ struct FisheyeValues {
 
 inline void add_keys(Keys& keys, FisheyeValues& values) {
   add_index_key(keys, values.index, "in the centre");
-  keys.add("radius", values.radius, "Where the index is half that of the centre")
+  keys.add("radius", values.radius, "Radius at which the index is half its value at the centre")
       .positive()
       .unit("length");
-  add_vector(keys, "centre", values.centre, "Centre").unit("length");
+  add_vector(keys, "centre", values.centre, "Centre of the field").unit("length");
 }
 
 inline Fisheye make_field(const Keys& keys, const FisheyeValues& values, const FieldUse&) {

@@ -35,13 +35,14 @@ std::vector<Vec3> arc_directions(int count, double aperture) {
   return directions;
 }
 
-/// A Fibonacci spiral.
+/// Places the directions on a Fibonacci spiral.
 std::vector<Vec3> cap_directions(int count, double aperture) {
   const double golden_angle = pi * (3 - std::sqrt(5.0));
   const double half_sine = std::sin(aperture / 2);
   std::vector<Vec3> directions;
   for (int i = 0; i < count; ++i) {
-    const double drop = 2 * half_sine * half_sine * (i + 0.5) / count;  // 1 - cos
+    // 1 - cosine of the angle to the z axis
+    const double drop = 2 * half_sine * half_sine * (i + 0.5) / count;
     const double radius = std::sqrt(drop * (2 - drop)), azimuth = golden_angle * i;
     directions.emplace_back(radius * std::cos(azimuth), radius * std::sin(azimuth), 1 - drop);
   }
@@ -50,13 +51,16 @@ std::vector<Vec3> cap_directions(int count, double aperture) {
 
 void add_keys(Keys& keys, FocusedSoundValues& values) {
   add_keys(keys, static_cast<SoundValues&>(values));
-  keys.add("emitters", values.emitters, "Plane waves").from(1, 100'000);
-  keys.add("aperture", values.aperture, "Half angle of their directions about z")
+  keys.add("emitters", values.emitters, "Number of plane waves").from(1, 100'000);
+  keys.add("aperture", values.aperture,
+           "Largest angle between the directions of the plane waves and z")
       .positive_to(pi)
       .unit("rad");
-  keys.add("focusing", values.focusing, "On a point or, all directions in x-z, on a line")
+  keys.add("focusing", values.focusing,
+           "cone: directions about z, which focus at a point; arc: directions in the x-z plane, "
+           "which focus on a line along y")
       .one_of({"cone", "arc"});
-  add_vector(keys, "centre", values.centre, "The focus").unit("length");
+  add_vector(keys, "centre", values.centre, "Position of the focus").unit("length");
 }
 
 FocusedSound make_field(const Keys& keys, const FocusedSoundValues& values, const FieldUse& use) {

@@ -9,21 +9,22 @@
 
 namespace flatspeckle::grin {
 
-/// Sound focused by an array in its far field: plane waves of equal strength, all in phase at the
-/// focus, frozen at the sound's phase psi,
+/// Sound focused by an array, in the far-field approximation: N plane waves of equal strength,
+/// equal wavenumber k and unit directions d_j, all in phase at the focus. At the phase psi of the
+/// sound,
 ///   n = 1 + background + amplitude / N sum_j cos(k d_j.(x - focus) - psi).
-/// Directions in one plane focus on the line through the focus across that plane, a cone of them on
-/// a point.
+/// Waves whose directions lie in one plane focus on a line, which passes through the focus
+/// perpendicular to this plane. Waves whose directions fill a cone focus at a point.
 class FocusedSound : public SoundWaves {
  public:
-  /// One direction at least, of any lengths but 0; k > 0.
+  /// Requires k > 0 and at least one direction. Directions are vectors of any length except 0.
   FocusedSound(double background, double amplitude, double k, const std::vector<Vec3>& directions,
                const Vec3& focus, double psi = 0);
 
-  /// The wave that a ray meets at another phase of the sound.
+  /// Returns the field of this sound at the phase psi.
   FocusedSound frozen(double psi) const;
 
-  /// Of one wave.
+  /// Returns the amplitude of the index modulation by one plane wave.
   double amplitude() const { return waves_.front().amplitude; }
   double wavenumber() const { return k_; }
 
@@ -31,15 +32,15 @@ class FocusedSound : public SoundWaves {
   double k_, psi_;
 };
 
-/// `count` directions in the x-z plane, evenly over the angles from -aperture to aperture to the z
-/// axis: a line focus along y.
+/// Returns `count` directions in the x-z plane, whose angles to the z axis are evenly distributed
+/// from -aperture to aperture. They give a line focus along y.
 std::vector<Vec3> arc_directions(int count, double aperture);
 
-/// `count` directions spread evenly over the cap of that half-angle about the z axis: a point
-/// focus.
+/// Returns `count` directions spread evenly over the cap of half-angle `aperture` about the z axis.
+/// They give a point focus.
 std::vector<Vec3> cap_directions(int count, double aperture);
 
-/// As light meets it at this phase of the sound.
+/// Returns the field of the sound at the given phase.
 inline FocusedSound at_phase(const FocusedSound& field, double phase) {
   return field.frozen(phase);
 }

@@ -28,7 +28,8 @@ FieldFacts facts(const GaussianBlobs& field) {
 void add_keys(Keys& keys, BlobsValues& values) {
   add_index_key(keys, values.index, "around the blobs");
   keys.add("blobs", values.blobs,
-           "CSV with columns x, y, z, height, width: height exp(-r^2/(2 width^2))")
+           "CSV with columns x, y, z, height, width: each blob adds height exp(-r^2/(2 width^2)) "
+           "to the index")
       .file();
 }
 

@@ -10,13 +10,13 @@
 
 namespace flatspeckle::grin {
 
-/// height exp(-|x - centre|^2 / (2 width^2))
+/// A Gaussian blob, which adds height exp(-|x - centre|^2 / (2 width^2)) to the index.
 struct GaussianBlob {
   Vec3 centre;
   double height, width;
 };
 
-/// n = 1 + background + sum of blobs.
+/// Index field n = 1 + background + sum of all Gaussian blobs.
 class GaussianBlobs {
  public:
   explicit GaussianBlobs(std::vector<GaussianBlob> blobs, double background = 0)
@@ -79,7 +79,8 @@ class GaussianBlobs {
   double background_;
 };
 
-/// The narrowest blob sets the scale.
+/// Returns the properties of the field. The length over which the index varies (scale) is the width
+/// of the narrowest blob.
 FieldFacts facts(const GaussianBlobs& field);
 
 struct BlobsValues {
@@ -91,7 +92,7 @@ struct BlobsValues {
 };
 
 void add_keys(Keys& keys, BlobsValues& values);
-/// Throws InputError.
+/// Makes the field from its scene keys. Throws InputError for invalid values.
 GaussianBlobs make_field(const Keys& keys, const BlobsValues& values, const FieldUse& use);
 
 }  // namespace flatspeckle::grin

@@ -51,16 +51,20 @@ FieldFacts facts(const GradedGuide& field) {
 
 void add_keys(Keys& keys, GradedValues& values) {
   add_index_key(keys, values.index, "n0 on the axis");
-  keys.add("delta", values.delta, "Of n^2 = n0^2 (1 - 2 delta (rho/core_radius)^exponent)")
+  keys.add("delta", values.delta, "Contrast in n^2 = n0^2 (1 - 2 delta (rho/core_radius)^exponent)")
       .positive_to(0.499);
-  keys.add("core_radius", values.core_radius, "Where n^2 has come down by 2 delta")
+  keys.add("core_radius", values.core_radius,
+           "Radius at which n^2 has fallen by the fraction 2 delta")
       .positive()
       .unit("length");
-  keys.add("exponent", values.exponent, "Of that law").from(1, 100);
+  keys.add("exponent", values.exponent,
+           "Exponent in n^2 = n0^2 (1 - 2 delta (rho/core_radius)^exponent)")
+      .from(1, 100);
   keys.add("graded_spline", values.graded,
-           "Result of design, or HDF5 with its dataset graded_spline, in place of all these")
+           "Result of design, or HDF5 with its dataset graded_spline, instead of index, delta, "
+           "core_radius and exponent")
       .file();
-  add_vector(keys, "centre", values.centre, "A point of the axis, which is along z").unit("length");
+  add_vector(keys, "centre", values.centre, "A point on the axis, which is along z").unit("length");
 }
 
 GradedGuide make_field(const Keys& keys, const GradedValues& values, const FieldUse&) {

@@ -12,51 +12,53 @@
 
 namespace flatspeckle::grin {
 
-/// The graded index of a fibre: n^2 = n0^2 (1 - 2 Delta p(q)), q = rho^2/R^2, p = q^(g/2) + q (1 -
-/// q) s(q): a power law of exponent g (Gloge and Marcatili 1973) and a spline's correction, which
-/// is nothing on the axis and at the core's radius R.
+/// The graded index of a fibre of core radius R at the distance rho from its axis: n^2 = n0^2 (1 -
+/// 2 Delta p(q)) with q = rho^2/R^2 and p = q^(g/2) + q (1 - q) s(q). The first term of p is a
+/// power law of exponent g [gloge1973]. The second term is a correction by a spline s; it vanishes
+/// on the axis and at rho = R. Functions take u = rho^2 as their argument.
 class GradedProfile {
  public:
   struct Core {
     double axis_excess, delta, radius, exponent = 2;
   };
-  /// correction: coefficients of s, or none.
+  /// correction: coefficients of the spline s; empty for a pure power law.
   explicit GradedProfile(const Core& core, std::vector<double> correction = {});
 
   const Core& core() const { return core_; }
   bool is_corrected() const { return is_corrected_; }
-  /// Coefficients of s; of none, those of 0.
+  /// Returns the coefficients of the spline s; zeros if there is no correction.
   const std::vector<double>& correction() const { return correction_.coefficients(); }
 
   double excess(double u) const { return excess_of(shape(u).value); }
   RadialJet jet(double u) const {
     const Shape p = shape(u);
     const double n = 1 + excess_of(p.value), scale = square_scale() / (2 * n);
-    const double first = scale * p.slope;  // n n' = (n^2)'/2
-    return {n - 1, first, scale * p.bend - first * first / n};
+    const double first = scale * p.derivative;  // n n' = (n^2)'/2
+    return {n - 1, first, scale * p.second_derivative - first * first / n};
   }
-  /// Adds the derivatives of a excess + b d(excess)/du by the coefficients of the correction.
+  /// Adds to `row` the derivatives of a (n - 1) + b dn/du with respect to the coefficients of the
+  /// correction s.
   void add_by_correction(double u, double a, double b, double* row) const {
     const double q = u / area();
-    add_by_shape(u, a, b, [&](double value, double slope) {
+    add_by_shape(u, a, b, [&](double value, double derivative) {
       const double hump = q * (1 - q);
-      ProfileSpline::add(correction_.four(q), value * hump + slope * (1 - 2 * q) / area(),
-                         slope * hump / area(), row);
+      ProfileSpline::add(correction_.four(q), value * hump + derivative * (1 - 2 * q) / area(),
+                         derivative * hump / area(), row);
     });
   }
-  /// The same by the exponent.
+  /// Adds to *exponent the derivative of a (n - 1) + b dn/du with respect to the exponent g.
   void add_by_exponent(double u, double a, double b, double* exponent) const {
     const double q = held(u / area()), power = std::pow(q, core_.exponent / 2), log = std::log(q);
-    add_by_shape(u, a, b, [&](double value, double slope) {
+    add_by_shape(u, a, b, [&](double value, double derivative) {
       *exponent += value * power * log / 2 +
-                   slope * power * (core_.exponent * log / 2 + 1) / (2 * q * area());
+                   derivative * power * (core_.exponent * log / 2 + 1) / (2 * q * area());
     });
   }
 
  private:
-  /// p and its derivatives by u.
+  /// Value of the profile p, and its derivatives with respect to u.
   struct Shape {
-    double value, slope, bend;
+    double value, derivative, second_derivative;
   };
   static double held(double q) { return std::max(q, 1e-30); }
   double area() const { return core_.radius * core_.radius; }
@@ -65,7 +67,8 @@ class GradedProfile {
     return -2 * core_.delta * n0 * n0;
   }
   double excess_of(double p) const {
-    const double e = core_.axis_excess;  // n^2 - 1, with all digits of a weak excess
+    // n - 1 is computed from n0 - 1, so that it keeps all digits even if it is small
+    const double e = core_.axis_excess;
     const double square = e * (2 + e) + square_scale() * p;
     return square / (1 + std::sqrt(1 + square));
   }
@@ -82,17 +85,18 @@ class GradedProfile {
       const double s = correction_.sum(four, four.w), d = correction_.sum(four, four.d),
                    dd = correction_.sum(four, four.dd), hump = q * (1 - q);
       p.value += hump * s;
-      p.slope += (1 - 2 * q) * s + hump * d;
-      p.bend += -2 * s + 2 * (1 - 2 * q) * d + hump * dd;
+      p.derivative += (1 - 2 * q) * s + hump * d;
+      p.second_derivative += -2 * s + 2 * (1 - 2 * q) * d + hump * dd;
     }
-    return {p.value, p.slope / area(), p.bend / (area() * area())};
+    return {p.value, p.derivative / area(), p.second_derivative / (area() * area())};
   }
-  /// use(derivatives of a excess + b d(excess)/du by p and by dp/du)
+  /// Calls use(A, B), where A and B are the derivatives of a (n - 1) + b dn/du with respect to p
+  /// and dp/du.
   template <class Use>
   void add_by_shape(double u, double a, double b, const Use& use) const {
     const Shape p = shape(u);
     const double n = 1 + excess_of(p.value), scale = square_scale() / (2 * n);
-    use(a * scale - b * scale * scale * p.slope / n, b * scale);
+    use(a * scale - b * scale * scale * p.derivative / n, b * scale);
   }
 
   Core core_;
@@ -115,7 +119,7 @@ struct GradedValues {
 };
 
 void add_keys(Keys& keys, GradedValues& values);
-/// Throws InputError.
+/// Makes the field from its scene keys. Throws InputError for invalid values.
 GradedGuide make_field(const Keys& keys, const GradedValues& values, const FieldUse& use);
 
 }  // namespace flatspeckle::grin

@@ -16,7 +16,8 @@ struct HomogeneousValues {
 };
 
 inline void add_keys(Keys& keys, HomogeneousValues& values) {
-  add_index_key(keys, values.index, "everywhere; also what fields without a medium add to");
+  add_index_key(keys, values.index,
+                "everywhere; also the background index of a sum of fields that includes no medium");
 }
 
 inline Homogeneous make_field(const Keys& keys, const HomogeneousValues& values, const FieldUse&) {

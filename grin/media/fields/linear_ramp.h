@@ -5,7 +5,8 @@
 
 namespace flatspeckle::grin {
 
-/// n = 1 + excess_at_origin + slope.x: positive on one side of a plane only.
+/// Index field with a constant gradient: n = 1 + excess_at_origin + slope . x. The index is
+/// positive only on one side of a plane.
 struct LinearRamp {
   double excess_at_origin;
   Vec3 slope;

@@ -7,10 +7,11 @@
 
 namespace flatspeckle::grin {
 
-/// Luneburg 1944: n^2 = 2 - r^2/a^2 up to the rim, 1 outside. The gradient jumps at the rim, where
-/// a ray should be stopped and started again. `beyond`: how far past the rim, relative, the formula
-/// goes on: a hair, so that a ray may start from the rim; up to 0.4 where rays are stopped there
-/// anyhow and steps that reach past it should stay smooth.
+/// Luneburg lens [luneburg1944]: n^2 = 2 - r^2/a^2 from the centre to the rim r = a, 1 outside. The
+/// gradient jumps at the rim, so that a ray should be stopped there and started again. The formula
+/// is continued up to r = (1 + beyond) a. A tiny value of `beyond` allows rays to start on the rim.
+/// If all rays are stopped at the rim, a value up to 0.4 keeps the index smooth for integration
+/// steps that overshoot the rim.
 struct LuneburgProfile {
   static constexpr bool goes_in_lanes = true;
   static constexpr double for_stops = 0.4;
@@ -39,7 +40,8 @@ struct LuneburgProfile {
 };
 using Luneburg = RadialField<LuneburgProfile, 3>;
 
-/// For rays that end on a sphere: where that is within the rim, smooth for steps that reach past.
+/// Returns the field to use for rays that end on the sphere `end`. If this sphere lies within the
+/// rim, the formula is continued beyond the rim, so that steps that overshoot meet a smooth index.
 inline Luneburg smooth_within(const Luneburg& field, const Sphere& end) {
   const double radius = field.profile().radius, rounding = 1e-9 * radius;
   if ((end.centre - field.centre()).norm() + end.radius > radius + rounding) return field;

@@ -7,7 +7,8 @@
 
 namespace flatspeckle::grin {
 
-/// n^2 = n0^2 - alpha^2 rho^2 about the z axis, n0 = 1 + axis_excess: NaN where that is negative.
+/// Parabolic guide: n^2 = n0^2 - alpha^2 rho^2 at the distance rho from its axis, which is along z;
+/// n0 = 1 + axis_excess. The index is NaN where n^2 is negative.
 struct ParabolicProfile {
   static constexpr bool goes_in_lanes = true;
   double axis_excess, alpha;

@@ -11,11 +11,11 @@
 
 namespace flatspeckle::grin {
 
-/// A cubic spline of equal cells from t = 0 to 1, of which it goes on for one beyond.
+/// A cubic spline with equal cells from t = 0 to 1, continued for one cell beyond t = 1.
 class ProfileSpline {
  public:
-  /// coefficients: three more than cells. Throws InputError for fewer than 4, or one that is not
-  /// finite.
+  /// The number of cells is the number of coefficients minus 3. Throws InputError for fewer than 4
+  /// coefficients, or if one is not finite.
   explicit ProfileSpline(std::vector<double> coefficients)
       : coefficients_(std::move(coefficients)) {
     if (coefficients_.size() < 4)
@@ -26,7 +26,8 @@ class ProfileSpline {
 
   const std::vector<double>& coefficients() const { return coefficients_; }
 
-  /// The four splines that are there: the first, their values and derivatives by t.
+  /// The four basis splines that are nonzero at t: index of the first, values w, and first and
+  /// second derivatives d and dd with respect to t.
   struct Four {
     std::size_t cell;
     std::array<double, 4> w, d, dd;
@@ -36,17 +37,18 @@ class ProfileSpline {
     const double held = std::clamp(t * cells, 0.0, cells + 1);
     const double cell = cell_of(held, cells);
     const CubicSplines splines{held - cell};
-    return {static_cast<std::size_t>(cell), splines.values(), splines.slopes(cells),
-            splines.turns(cells * cells)};
+    return {static_cast<std::size_t>(cell), splines.values(), splines.derivatives(cells),
+            splines.second_derivatives(cells * cells)};
   }
   double sum(const Four& at, const std::array<double, 4>& weights) const {
     double sum = 0;
     for (std::size_t i = 0; i < 4; ++i) sum += weights[i] * coefficients_[at.cell + i];
     return sum;
   }
-  /// Adds value times the splines and slope times their derivatives to a row of coefficients.
-  static void add(const Four& at, double value, double slope, double* row) {
-    for (std::size_t i = 0; i < 4; ++i) row[at.cell + i] += value * at.w[i] + slope * at.d[i];
+  /// Adds value * spline + derivative * (derivative of the spline) to `row`, for each of the four
+  /// splines that are nonzero at `at`.
+  static void add(const Four& at, double value, double derivative, double* row) {
+    for (std::size_t i = 0; i < 4; ++i) row[at.cell + i] += value * at.w[i] + derivative * at.d[i];
   }
 
  private:

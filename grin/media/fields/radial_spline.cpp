@@ -13,8 +13,8 @@ namespace {
 std::vector<double> numbers(const ResultReader& file, const char* attribute, std::size_t count) {
   const auto values = file.attribute<std::vector<double>>("radial_spline", attribute);
   if (values.size() != count)
-    throw InputError(std::string("numbers in ") + attribute, values.size(),
-                     "must be " + std::to_string(count));
+    throw InputError(std::string(attribute) + ": has " + std::to_string(values.size()) +
+                     " numbers, must have " + std::to_string(count));
   return values;
 }
 

@@ -11,12 +11,14 @@
 
 namespace flatspeckle::grin {
 
-/// n - 1 = (1 - q) s, q = r^2/R^2: s a cubic spline of equal cells in t, q = t (5 - t)/4, which are
-/// narrower towards the rim, where a lens bends most; it goes on for one cell beyond.
+/// Index profile of a ball of radius R: n - 1 = (1 - q) s with q = r^2/R^2, where r is the distance
+/// from the centre. s is a cubic spline with equal cells in t, where q = t (5 - t)/4. In q, the
+/// cells are narrower towards the rim, where a lens bends rays most. s continues one cell beyond
+/// the rim. Functions take u = r^2 as their argument.
 class RadialSplineProfile {
  public:
-  /// coefficients: three more than cells. Throws InputError for fewer than 4 or one that is not
-  /// finite and above -1.
+  /// The number of cells is the number of coefficients minus 3. Throws InputError for fewer than 4
+  /// coefficients, or if one is not finite and above -1.
   RadialSplineProfile(double radius, std::vector<double> coefficients);
 
   double radius() const { return radius_; }
@@ -31,24 +33,25 @@ class RadialSplineProfile {
     const Place at = place(u);
     const ProfileSpline::Four four = spline_.four(at.t);
     const double s = spline_.sum(four, four.w), by_t = spline_.sum(four, four.d);
-    const double ds = by_t * at.slope,
-                 dds = spline_.sum(four, four.dd) * at.slope * at.slope + by_t * at.bend;
+    const double ds = by_t * at.derivative,
+                 dds = spline_.sum(four, four.dd) * at.derivative * at.derivative +
+                       by_t * at.second_derivative;
     const double area = radius_ * radius_;
     return {(1 - at.q) * s, ((1 - at.q) * ds - s) / area,
             ((1 - at.q) * dds - 2 * ds) / (area * area)};
   }
-  /// Adds the derivatives of a excess + b d(excess)/du by the coefficients.
+  /// Adds to `row` the derivatives of a (n - 1) + b dn/du with respect to the coefficients of s.
   void add_derivative(double u, double a, double b, double* row) const {
     const Place at = place(u);
     const double area = radius_ * radius_;
     ProfileSpline::add(spline_.four(at.t), a * (1 - at.q) - b / area,
-                       b * (1 - at.q) * at.slope / area, row);
+                       b * (1 - at.q) * at.derivative / area, row);
   }
 
  private:
-  /// t and its derivatives by q.
+  /// A value of q, the argument t of the spline there, and the derivatives of t with respect to q.
   struct Place {
-    double q, t, slope, bend;
+    double q, t, derivative, second_derivative;
   };
   Place place(double u) const {
     const double q = u / (radius_ * radius_), root = std::sqrt(std::max(25 - 16 * q, 1.0));
@@ -71,7 +74,7 @@ struct RadialSplineValues {
 };
 
 void add_keys(Keys& keys, RadialSplineValues& values);
-/// Throws InputError naming the file.
+/// Reads the field from the file given by its key. Throws an InputError that names the file.
 RadialSpline make_field(const Keys& keys, const RadialSplineValues& values, const FieldUse& use);
 
 }  // namespace flatspeckle::grin

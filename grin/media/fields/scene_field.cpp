@@ -15,22 +15,23 @@ bool is_medium(const IndexFieldKinds& kinds, const std::string& word) {
   return is;
 }
 
-/// Whether one of them is a medium, not something added to one.
+/// Whether one of the summed fields is a medium, to whose index the other fields are added. Throws
+/// InputError if a kind of field is repeated or two fields are media.
 bool has_medium(const IndexFieldValues& values) {
   std::string medium;
   const auto& words = values.field;
   for (auto word = words.begin(); word != words.end(); ++word) {
     if (std::find(words.begin(), word, *word) != word)
-      throw InputError("field", *word, "must not be there twice");
+      throw InputError("field", *word, "must not be given twice");
     if (!is_medium(values.kinds, *word)) continue;
     if (!medium.empty())
-      throw InputError("field", medium + " " + *word, "only one medium may be in a sum");
+      throw InputError("field", medium + " " + *word, "must have at most one medium in a sum");
     medium = *word;
   }
   return !medium.empty();
 }
 
-/// Fields that add up.
+/// Sums index fields and combines their properties (FieldFacts).
 class Adder {
  public:
   template <class F>
@@ -60,7 +61,7 @@ class Adder {
 
 void add_keys(Keys& keys, IndexFieldValues& values) {
   keys.group("Index field");
-  keys.add("field", values.field, "Index field, or several that add up")
+  keys.add("field", values.field, "Kind of the index field; the fields of several kinds are summed")
       .one_of(kind_words(values.kinds));
   each_kind(values.kinds, [&](auto& kind) {
     keys.group(std::string("Index field: ") + kind.word, kind.word);

@@ -8,8 +8,8 @@
 
 namespace flatspeckle::grin {
 
-/// An index field as keys have it: the words of one kind or of several that add up, and what each
-/// kind needs.
+/// Scene keys of an index field: the names of one or several kinds of field, which are summed, and
+/// the values of each kind.
 struct IndexFieldValues {
   std::vector<std::string> field{"homogeneous"};
   IndexFieldKinds kinds{};
@@ -22,16 +22,17 @@ struct IndexFieldValues {
 
 void add_keys(Keys& keys, IndexFieldValues& values);
 
-/// A field and what its use must know of it.
+/// An index field and its properties (FieldFacts).
 struct SceneField : FieldFacts {
   AnyIndexField field;
-  std::variant<Homogeneous, AnySum> outside = {};  ///< of the rim
+  /// Field outside the surface `rim` (FieldFacts).
+  std::variant<Homogeneous, AnySum> outside = {};
 };
 
-/// Throws InputError.
+/// Makes the index field from its scene keys. Throws InputError for invalid values.
 SceneField make_scene_field(const Keys& keys, const IndexFieldValues& values, const FieldUse& use);
 
-/// 0 where there is no field.
+/// Returns the index at x; 0 outside the grid of the field and where the index is not positive.
 double index_at(const SceneField& scene, const Vec3& x);
 
 }  // namespace flatspeckle::grin

@@ -8,7 +8,8 @@
 
 namespace flatspeckle::grin {
 
-/// n = n0 sech(alpha rho): no dispersion among meridional rays (conventions, C27).
+/// Guide with n = n0 sech(alpha rho) at the distance rho from its axis. All meridional rays have
+/// the same period and delay (conventions, C27).
 struct SechProfile {
   static constexpr bool goes_in_lanes = true;
   double axis_excess, alpha;
@@ -17,19 +18,19 @@ struct SechProfile {
   RadialJet jet(double u) const {
     const double t = alpha * std::sqrt(u), t2 = t * t;
     const double e = wide_exp(-t), larger = 1 / (1 + e * e), sech = 2 * e * larger;
-    const bool is_small = t < 0.3;  // series where the others cancel
-    const double slope = is_small ? 1 + t2 * tangent_series(t2) : (1 - e * e) * larger / t;
-    const double bend = is_small ? bend_series(t2) : (sech * sech - slope) / t2;
-    const double tanh = t * slope, fall = tanh * tanh / (1 + sech);  // 1 - sech
+    const bool is_small = t < 0.3;  // use series where the closed forms cancel
+    const double tanh_ratio = is_small ? 1 + t2 * tangent_series(t2) : (1 - e * e) * larger / t;
+    const double bend = is_small ? bend_series(t2) : (sech * sech - tanh_ratio) / t2;
+    const double tanh = t * tanh_ratio, fall = tanh * tanh / (1 + sech);  // 1 - sech
     const double scale = (1 + axis_excess) * sech * alpha * alpha / 2;
-    return {axis_excess - (1 + axis_excess) * fall, -scale * slope,
-            scale * alpha * alpha / 2 * (slope * slope - bend)};
+    return {axis_excess - (1 + axis_excess) * fall, -scale * tanh_ratio,
+            scale * alpha * alpha / 2 * (tanh_ratio * tanh_ratio - bend)};
   }
 
  private:
   // tanh t = t - t^3/3 + 2/15 t^5 - ...
 
-  /// (tanh(t)/t - 1)/t^2 of t^2
+  /// Returns (tanh(t)/t - 1)/t^2 as a function of z = t^2.
   static double tangent_series(double z) {
     double sum = -443861162 / 1856156927625.;
     sum = sum * z + 6404582 / 10854718875.;
@@ -41,7 +42,8 @@ struct SechProfile {
     sum = sum * z + 2 / 15.;
     return sum * z - 1 / 3.;
   }
-  /// (sech^2 t - tanh(t)/t)/t^2 of t^2: 2 k times the same terms
+  /// Returns (sech^2 t - tanh(t)/t)/t^2 as a function of z = t^2. Its k-th term, k = 1, 2, ..., is
+  /// 2 k times the k-th term of tangent_series().
   static double bend_series(double z) {
     double sum = 18 * (-443861162 / 1856156927625.);
     sum = sum * z + 16 * (6404582 / 10854718875.);

@@ -12,7 +12,7 @@ namespace flatspeckle::grin {
 
 namespace {
 
-constexpr double margin = 1;  // in cells
+constexpr double margin = 1;  // length in cells by which the spline continues beyond the grid
 
 void check_samples(std::span<const double> excess) {
   for (const double e : excess)
@@ -20,9 +20,10 @@ void check_samples(std::span<const double> excess) {
       throw InputError("sample of n - 1", e, "must be finite and above -1");
 }
 
-/// Samples f[0 .. n-1] to coefficients c[0 .. n+1] of the splines about nodes -1 .. n, in place in
-/// c[1 .. n]: (c[i-1] + 4 c[i] + c[i+1]) / 6 = f[i] with a third derivative that does not jump at
-/// the second and the last but one node, from which their coefficients follow at once.
+/// Converts samples f[0 .. n-1], given in c[1 .. n], in place to coefficients c[0 .. n+1] of the
+/// splines about the nodes -1 .. n. They satisfy (c[i-1] + 4 c[i] + c[i+1]) / 6 = f[i-1]. The third
+/// derivative does not jump at the second and the second-to-last node, which determines the
+/// coefficients of these nodes directly.
 void interpolate(std::vector<double>& c, std::vector<double>& pivot) {
   const std::size_t n = c.size() - 2;
   const auto knot = [&](std::size_t i) { return (8 * c[i] - c[i - 1] - c[i + 1]) / 6; };
@@ -30,7 +31,8 @@ void interpolate(std::vector<double>& c, std::vector<double>& pivot) {
   const double first = knot(2), last = knot(n - 1);
   c[2] = first;
   c[n - 1] = last;
-  // Between them 4 on the diagonal, 1 beside it: elimination down, substitution up.
+  // The equations for the coefficients between these two nodes are tridiagonal, with 4 on the
+  // diagonal and 1 beside it. They are solved by elimination downwards and substitution upwards.
   double before = first, p = 0;
   for (std::size_t i = 3; i + 2 <= n; ++i) {
     p = 1 / (4 - p);
@@ -56,8 +58,8 @@ SplineField::SplineField(const FieldGrid& grid, std::size_t samples, int least_n
 SplineField SplineField::of_coefficients(const FieldGrid& grid, std::vector<double> coefficients) {
   SplineField field(grid, grid.size(), 2);
   if (coefficients.size() != field.coefficients_.size())
-    throw InputError("coefficients of a grid", coefficients.size(),
-                     "must be two more along each axis than nodes");
+    throw InputError("coefficients of a grid: there are " + std::to_string(coefficients.size()) +
+                     "; along each axis their number must be that of the nodes plus 2");
   field.coefficients_ = std::move(coefficients);
   return field;
 }
@@ -91,7 +93,7 @@ SplineField::Axis SplineField::axis(const Vec3& x, int which) const {
   const double scale = per_length_[which], cells = grid_.nodes[which] - 1;
   const double position = (x[which] - grid_.origin[which]) * scale;
   const double held = std::clamp(position, -margin, cells + margin);
-  const double cell = cell_of(held, cells), slope = position == held ? scale : 0;
+  const double cell = cell_of(held, cells), scale_inside = position == held ? scale : 0;
   const CubicSplines splines{held - cell};
   const auto four = [](const CubicSplines::Four& values) {
     return Eigen::Map<const Axis::Four>(values.data());
@@ -99,12 +101,13 @@ SplineField::Axis SplineField::axis(const Vec3& x, int which) const {
   Axis result;
   result.cell = static_cast<int>(cell);
   result.w = four(splines.values());
-  if constexpr (Derivatives >= 1) result.d = four(splines.slopes(slope));
-  if constexpr (Derivatives >= 2) result.dd = four(splines.turns(slope * slope));
+  if constexpr (Derivatives >= 1) result.d = four(splines.derivatives(scale_inside));
+  if constexpr (Derivatives >= 2)
+    result.dd = four(splines.second_derivatives(scale_inside * scale_inside));
   return result;
 }
 
-// Sums over x and y are of four splines along z at a time.
+// Sums over x and y process four splines along z at a time.
 
 double SplineField::excess(const Vec3& x) const {
   const Axis a = axis<0>(x, 0), b = axis<0>(x, 1), c = axis<0>(x, 2);
@@ -131,7 +134,8 @@ IndexGradient SplineField::gradient(const Vec3& x) const {
   return {(f * c.w).sum(), {(fx * c.w).sum(), (fy * c.w).sum(), (f * c.d).sum()}};
 }
 
-/// Sums over x and y of a lane's splines, and their derivatives: four numbers along z each.
+/// Sums the splines of one lane (f) and their derivatives with respect to x and y (fx, fy) over x
+/// and y. Each sum consists of four numbers, for the four splines along z.
 inline void SplineField::add_rows(const std::array<LaneAxis, 3>& axes, int lane, WideFour& f,
                                   WideFour& fx, WideFour& fy) const {
   const auto& [a, b, c] = axes;
@@ -152,7 +156,7 @@ inline void SplineField::add_rows(const std::array<LaneAxis, 3>& axes, int lane,
   }
 }
 
-inline void SplineField::look_along(int which, const double* x, LaneAxis& found) const {
+inline void SplineField::locate_along(int which, const double* x, LaneAxis& found) const {
   const double scale = per_length_[which], cells = grid_.nodes[which] - 1;
   const double origin = grid_.origin[which];
 #pragma omp simd
@@ -160,7 +164,8 @@ inline void SplineField::look_along(int which, const double* x, LaneAxis& found)
     const double place = (x[k] - origin) * scale;
     const double held = std::clamp(place, -margin, cells + margin), cell = cell_of(held, cells);
     const CubicSplines splines{held - cell};
-    const CubicSplines::Four w = splines.values(), d = splines.slopes(place == held ? scale : 0);
+    const CubicSplines::Four w = splines.values(),
+                             d = splines.derivatives(place == held ? scale : 0);
     found.cell[k] = cell;
     found.w[0][k] = w[0];
     found.w[1][k] = w[1];
@@ -176,9 +181,9 @@ inline void SplineField::look_along(int which, const double* x, LaneAxis& found)
 FLATSPECKLE_EVERY_WIDTH void SplineField::gradients(const LaneVectors& x,
                                                     LaneGradients& found) const {
   std::array<LaneAxis, 3> axes;
-  look_along(0, x.x, axes[0]);
-  look_along(1, x.y, axes[1]);
-  look_along(2, x.z, axes[2]);
+  locate_along(0, x.x, axes[0]);
+  locate_along(1, x.y, axes[1]);
+  locate_along(2, x.z, axes[2]);
   const LaneAxis& z = axes[2];
   for (int k = 0; k < lanes; k += 4) {
     WideFour f[4], fx[4], fy[4];
@@ -227,12 +232,13 @@ IndexHessian SplineField::hessian(const Vec3& x) const {
   return hessian({axis<2>(x, 0), axis<2>(x, 1), axis<2>(x, 2)});
 }
 
-SplineField::Look SplineField::look(const Vec3& x) const {
+SplineField::Evaluation SplineField::evaluate(const Vec3& x) const {
   const std::array<Axis, 3> axes{axis<2>(x, 0), axis<2>(x, 1), axis<2>(x, 2)};
   return {axes, hessian(axes)};
 }
 
-/// A spline is a mean of its coefficients.
+/// Returns the difference of the largest and the smallest coefficient. This is a bound, because a
+/// spline is a weighted mean of its coefficients.
 double SplineField::range() const {
   const auto [least, most] = std::minmax_element(coefficients_.begin(), coefficients_.end());
   return *most - *least;

@@ -11,49 +11,53 @@
 
 namespace flatspeckle::grin {
 
-/// The tensor-product cubic spline through samples of n - 1, not-a-knot at the ends: it reproduces
-/// cubics, and has two continuous derivatives. It goes on as it is for one cell beyond the grid, so
-/// that the steps of a ray that is stopped on the grid's box stay smooth; farther out the index is
-/// that of the nearest point there.
+/// Tensor-product cubic spline through samples of n - 1, with not-a-knot end conditions. It
+/// reproduces cubics and has two continuous derivatives. It continues for one cell beyond the grid,
+/// so that the steps of a ray that is stopped on the grid's box stay smooth. Farther out, the index
+/// equals its value at the nearest point of the continued region.
 class SplineField {
  public:
-  /// Throws InputError for fewer than 4 nodes along an axis, a spacing <= 0, another number of
-  /// samples than nodes, or a sample that is not a finite number > -1.
+  /// Throws InputError for fewer than 4 nodes along an axis, a spacing <= 0, a number of samples
+  /// other than the number of nodes, or a sample that is not a finite number > -1.
   SplineField(const FieldGrid& grid, std::span<const double> excess);
 
-  /// Of the coefficients of its B-splines themselves, those about nodes -1 .. nodes along each
-  /// axis. Throws InputError for fewer than 2 nodes along an axis, or another number of
-  /// coefficients.
+  /// Returns the field with given coefficients of the B-splines about the nodes -1, 0, ..., N along
+  /// each axis, where N is the number of nodes. Throws InputError for fewer than 2 nodes along an
+  /// axis, or a wrong number of coefficients.
   static SplineField of_coefficients(const FieldGrid& grid, std::vector<double> coefficients);
 
   const FieldGrid& grid() const { return grid_; }
   const std::vector<double>& coefficients() const { return coefficients_; }
-  const std::array<int, 3>& extent() const { return extent_; }  ///< of the coefficients
+  /// Returns the number of coefficients along each axis.
+  const std::array<int, 3>& extent() const { return extent_; }
 
   double excess(const Vec3& x) const;
   IndexGradient gradient(const Vec3& x) const;
   void gradients(const LaneVectors& x, LaneGradients& found) const;
   IndexHessian hessian(const Vec3& x) const;
 
-  /// No two places have indices farther apart.
+  /// Returns an upper bound of the difference of the index between any two points.
   double range() const;
 
-  /// The four splines that are there along an axis: the first, their values and derivatives by x.
+  /// The four splines along an axis that are nonzero at a position x: index of the first (cell),
+  /// values w, and first and second derivatives d and dd with respect to x.
   struct Axis {
     using Four = Eigen::Array4d;
     int cell;
     Four w, d, dd;
   };
-  /// A place, and the field there.
-  struct Look {
+  /// Result of evaluate(): the nonzero splines along each axis at a point, and the field with its
+  /// derivatives there.
+  struct Evaluation {
     std::array<Axis, 3> axes;
     IndexHessian jet;
   };
-  Look look(const Vec3& x) const;
-  /// Adds the derivatives of a excess + b . gradient there by the coefficients, to rows of them
-  /// along z: that of the i-th along x and the j-th along y begins at row_of(i extent[1] + j).
+  Evaluation evaluate(const Vec3& x) const;
+  /// Adds the derivatives of a (n - 1) + b . grad n with respect to the coefficients to sums, one
+  /// for each coefficient. The sums of the coefficients with number i along x and j along y form a
+  /// row along z, which begins at row_of(i * extent[1] + j).
   template <class Rows>
-  static void add_derivative(const Look& at, const std::array<int, 3>& extent, double a,
+  static void add_derivative(const Evaluation& at, const std::array<int, 3>& extent, double a,
                              const Vec3& b, const Rows& row_of) {
     const auto& [x, y, z] = at.axes;
     for (int i = 0; i < 4; ++i)
@@ -69,11 +73,11 @@ class SplineField {
   SplineField(const FieldGrid& grid, std::size_t samples, int least_nodes);
   template <int Derivatives>
   Axis axis(const Vec3& x, int which) const;
-  /// Of one axis, in lanes.
+  /// Cell, values w and derivatives d of the splines along one axis, in each lane.
   struct LaneAxis {
     alignas(64) double cell[lanes], w[4][lanes], d[4][lanes];
   };
-  void look_along(int which, const double* x, LaneAxis& found) const;
+  void locate_along(int which, const double* x, LaneAxis& found) const;
   void add_rows(const std::array<LaneAxis, 3>& axes, int lane, WideFour& f, WideFour& fx,
                 WideFour& fy) const;
   IndexHessian hessian(const std::array<Axis, 3>& axes) const;
@@ -85,15 +89,16 @@ class SplineField {
   }
 
   FieldGrid grid_;
-  Vec3 per_length_;            ///< cells
-  std::array<int, 3> extent_;  ///< nodes + 2
+  Vec3 per_length_;            ///< number of cells per unit of length along each axis
+  std::array<int, 3> extent_;  ///< number of coefficients along each axis: nodes + 2
   std::vector<double> coefficients_;
 };
 
-/// Dataset "excess" (read_samples).
+/// Reads the field from the dataset "excess" of a file, with read_samples().
 SplineField read_spline_field(const std::filesystem::path& path);
 
-/// Two spacings are the scale, and the samples' box the end.
+/// Returns the properties of the field. The length over which the index varies (scale) is two node
+/// spacings, and the field fills the box of the samples (grid).
 FieldFacts facts(const SplineField& field);
 
 struct GridValues {
@@ -104,7 +109,7 @@ struct GridValues {
 };
 
 void add_keys(Keys& keys, GridValues& values);
-/// Throws InputError naming the file.
+/// Reads the field from the file given by its key. Throws an InputError that names the file.
 SplineField make_field(const Keys& keys, const GridValues& values, const FieldUse& use);
 
 }  // namespace flatspeckle::grin

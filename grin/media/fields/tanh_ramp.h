@@ -8,8 +8,8 @@
 
 namespace flatspeckle::grin {
 
-/// From excess `low` to excess `high` along the unit vector `axis`, as tanh of the distance from
-/// the plane through `centre`, over about `width` to each side.
+/// A ramp of n - 1 from `low` to `high` along the unit vector `axis`. It follows tanh(d / width),
+/// where d is the distance from the plane through `centre` perpendicular to `axis`.
 struct TanhRamp {
   double low, high, width;
   Vec3 axis = Vec3::UnitZ(), centre = Vec3::Zero();
@@ -25,25 +25,27 @@ struct TanhRamp {
 #pragma omp simd
     for (int k = 0; k < lanes; ++k) {
       const double t = scale * (ax * x.x[k] + ay * x.y[k] + az * x.z[k] - middle);
-      const double down = t < 0 ? t : -t, e = wide_exp(down);  // the larger side is 1/(1 + e)
+      // Fractions of `high` and `low` in the index; the larger one is 1/(1 + e)
+      const double down = t < 0 ? t : -t, e = wide_exp(down);
       const double most = 1 / (1 + e), least = e * most;
-      const double slope = scale * rise * most * least;
+      const double derivative = scale * rise * most * least;
       found.excess[k] = base + rise * (t < 0 ? least : most);
-      found.gradient.x[k] = slope * ax;
-      found.gradient.y[k] = slope * ay;
-      found.gradient.z[k] = slope * az;
+      found.gradient.x[k] = derivative * ax;
+      found.gradient.y[k] = derivative * ay;
+      found.gradient.z[k] = derivative * az;
     }
   }
   IndexHessian hessian(const Vec3& x) const {
     const auto [below, above] = fractions(x);
-    const double slope = first(below, above);
-    const Mat3 hessian = 2 / width * (below - above) * slope * axis * axis.transpose();
-    return {low + (high - low) * above, slope * axis, hessian};
+    const double derivative = first(below, above);
+    const Mat3 hessian = 2 / width * (below - above) * derivative * axis * axis.transpose();
+    return {low + (high - low) * above, derivative * axis, hessian};
   }
 
  private:
   struct Fractions {
-    double below, above;  ///< (1 -+ tanh)/2, each without cancellation
+    /// Fractions (1 - tanh)/2 and (1 + tanh)/2 of `low` and `high`, each without cancellation.
+    double below, above;
   };
   Fractions fractions(const Vec3& x) const {
     const double t = 2 * axis.dot(x - centre) / width;
@@ -73,12 +75,19 @@ struct TanhValues {
 
 inline void add_keys(Keys& keys, TanhValues& values) {
   keys.add("index_low", values.index_low,
-           "Index far behind; in a sum the ramp adds what index_high is above it")
+           "Index far from the ramp, on the side opposite to ramp_axis; in a sum of fields the "
+           "ramp adds 0 on this side and index_high - index_low on the other")
       .positive();
-  keys.add("index_high", values.index_high, "Index far along the axis").positive();
-  keys.add("ramp_width", values.ramp_width, "Of tanh(distance/width)").positive().unit("length");
-  add_vector(keys, "ramp_axis", values.ramp_axis, "Direction of the ramp, of any length");
-  add_vector(keys, "centre", values.centre, "A point of the ramp's middle").unit("length");
+  keys.add("index_high", values.index_high,
+           "Index far from the ramp, on the side to which ramp_axis points")
+      .positive();
+  keys.add("ramp_width", values.ramp_width,
+           "Width of the ramp: the index follows tanh(distance/width)")
+      .positive()
+      .unit("length");
+  add_vector(keys, "ramp_axis", values.ramp_axis,
+             "Direction from index_low to index_high, of any length");
+  add_vector(keys, "centre", values.centre, "A point on the ramp's middle plane").unit("length");
 }
 
 inline TanhRamp make_field(const Keys& keys, const TanhValues& values, const FieldUse& use) {

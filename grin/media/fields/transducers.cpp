@@ -41,7 +41,7 @@ Transducers::Transducers(double background, const std::vector<Transducer>& all, 
 
 Transducers Transducers::frozen(double phase) const {
   constexpr double periods = 1 << 20, turn = 2 * std::numbers::pi;
-  const double before = std::floor(phase / turn * periods);  // whole periods of the fastest
+  const double before = std::floor(phase / turn * periods);  // whole periods of the fastest wave
   Transducers sound = *this;
   for (Wave& wave : sound.waves_)
     wave.phase += wave.rate * phase + turn * std::remainder(wave.rate * before, 1);
@@ -70,7 +70,8 @@ void check(const Transducer& one) {
     throw InputError("aperture of a transducer", one.aperture, "must be from 0 to pi");
 }
 
-/// Row by row.
+/// Returns the ten numbers of each transducer, first of those in the key, then of those in the
+/// table.
 std::vector<double> all_numbers(const Keys& keys, const TransducersValues& values) {
   std::vector<double> rows = keys.read(values.transducer);
   const std::string& path = keys.read(values.transducer_table);
@@ -88,17 +89,24 @@ std::vector<double> all_numbers(const Keys& keys, const TransducersValues& value
 void add_keys(Keys& keys, TransducersValues& values) {
   add_index_key(keys, values.index, "without the sound");
   keys.add("transducer", values.transducer,
-           "Of each: amplitude of the index, wavenumber and phase of the sound, the point and the "
-           "direction that it is aimed at, half angle of its aperture (0: a plane wave)")
+           "For each transducer: amplitude of the index, wavenumber and phase of the sound, "
+           "position of the focus, direction of the sound, half-angle of the aperture (0: a plane "
+           "wave)")
       .each_of(row_size, "amplitude wavenumber phase x y z dx dy dz aperture");
-  keys.add("transducer_table", values.transducer_table, "CSV with these columns").file();
-  keys.add("transducer_waves", values.transducer_waves, "Plane waves of a transducer's aperture")
+  keys.add("transducer_table", values.transducer_table,
+           "CSV with one transducer in each row; its columns are the numbers of the key "
+           "transducer, in "
+           "that order")
+      .file();
+  keys.add("transducer_waves", values.transducer_waves,
+           "Number of plane waves of each transducer with an aperture")
       .from(1, 100'000);
 }
 
 Transducers make_field(const Keys& keys, const TransducersValues& values, const FieldUse& use) {
   const std::vector<double> rows = all_numbers(keys, values);
-  if (rows.empty()) throw InputError("transducer", "none", "wants one, or a transducer_table");
+  if (rows.empty())
+    throw InputError("transducer is not given: transducers require one, or a transducer_table");
   std::vector<Transducer> all;
   for (std::size_t i = 0; i < rows.size(); i += row_size) {
     all.push_back(transducer(std::span(rows).subspan(i, row_size)));

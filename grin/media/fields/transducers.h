@@ -8,26 +8,28 @@
 
 namespace flatspeckle::grin {
 
-/// Sound of a transducer about the point that it is aimed at, in its far field: plane waves of
-/// equal strength, evenly over a cap of directions, all of the same phase at that point. Aperture
-/// 0: one wave.
+/// A transducer and its sound about the focus, in the far-field approximation: plane waves of equal
+/// strength, all in phase at the focus. Their directions are evenly distributed over a spherical
+/// cap; a transducer with aperture 0 emits one plane wave.
 struct Transducer {
-  double amplitude;   ///< of the index, at that point
-  double wavenumber;  ///< of the sound, 1/length
-  double phase;       ///< there
+  double amplitude;   ///< amplitude of the index at the focus
+  double wavenumber;  ///< wavenumber of the sound, 1/length
+  double phase;       ///< phase of the sound at the focus
   Vec3 focus, direction;
-  double aperture;  ///< half angle, rad
+  double aperture;  ///< half-angle, rad
 };
 
-/// n = 1 + background + sum over all waves of amplitude cos(k d.(x - focus) - phase - psi_j), as
-/// light meets it at a time t: psi_j = w_j t.
+/// Sound of several transducers at a time t: n = 1 + background + sum of amplitude cos(k d . (x -
+/// focus) - phase - psi_j) over all waves. d is the direction of a wave, and psi_j = w_j t for
+/// transducer j with the angular frequency w_j.
 class Transducers : public SoundWaves {
  public:
-  /// waves: of each transducer that has an aperture.
+  /// waves: number of plane waves of each transducer that has an aperture.
   Transducers(double background, const std::vector<Transducer>& all, int waves);
 
-  /// At a phase, from 0 to 2 pi: of sound of one frequency, that; of several, where it finds them
-  /// in a time of many periods.
+  /// Returns the field at a time determined by `phase`, from 0 to 2 pi. For a single frequency,
+  /// `phase` is the phase of the sound. For several frequencies, it selects a time within 2^20
+  /// periods of the highest frequency.
   Transducers frozen(double phase) const;
 
   double largest_wavenumber() const { return largest_wavenumber_; }
@@ -55,7 +57,7 @@ struct TransducersValues {
 };
 
 void add_keys(Keys& keys, TransducersValues& values);
-/// Throws InputError.
+/// Makes the field from its scene keys. Throws InputError for invalid values.
 Transducers make_field(const Keys& keys, const TransducersValues& values, const FieldUse& use);
 
 }  // namespace flatspeckle::grin

@@ -13,7 +13,7 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// g_m(x^2), x > 0.
+/// Returns g_m(x^2) = J_m(x) / x^m for the order m and x > 0 (BesselProfile).
 long double profile(int order, double x) {
   return bessel_j(order, x)[order] / std::pow(static_cast<long double>(x), order);
 }
@@ -28,7 +28,8 @@ BesselProfile::BesselProfile(int order, double reach)
   table_ = table_of(order, static_cast<std::size_t>(cells_) + 1);
 }
 
-/// The longest that has been made, or a longer one.
+/// Returns a table of at least `cells` polynomials for this order. The longest table made so far is
+/// kept for each order; it is extended if it is too short.
 std::shared_ptr<const BesselProfile::Table> BesselProfile::table_of(int order, std::size_t cells) {
   static std::mutex mutex;
   static std::array<std::shared_ptr<const Table>, max_order + 1> longest;
@@ -40,7 +41,8 @@ std::shared_ptr<const BesselProfile::Table> BesselProfile::table_of(int order, s
   return made = longer;
 }
 
-/// Newton's interpolation in Chebyshev nodes, expanded in powers of u - centre.
+/// Returns the polynomial of a cell: interpolates g_m in Chebyshev nodes by Newton's formula and
+/// expands the result in powers of u - centre(cell).
 BesselProfile::Cell BesselProfile::fit(int order, double cell) {
   constexpr int count = degree + 1;
   const long double middle = centre(cell);
@@ -48,7 +50,8 @@ BesselProfile::Cell BesselProfile::fit(int order, double cell) {
   std::array<long double, count> t, f;
   for (int i = 0; i < count; ++i) {
     const long double node = std::cos(std::numbers::pi_v<long double> * (i + 0.5L) / count);
-    const double x = static_cast<double>(std::sqrt(middle + half * node));  // exact from here on
+    // The interpolation nodes t and values f are computed from this rounded x
+    const double x = static_cast<double>(std::sqrt(middle + half * node));
     t[i] = (static_cast<long double>(x) * x - middle) / half;
     f[i] = profile(order, x);
   }
@@ -64,7 +67,7 @@ BesselProfile::Cell BesselProfile::fit(int order, double cell) {
   return result;
 }
 
-/// By the C library's, good to rounding.
+/// Computes jet(u) beyond the table, from the Bessel functions of the C library; exact to rounding.
 BesselProfile::Jet BesselProfile::far_jet(double u) const {
   const double x = std::sqrt(u);
   if (!std::isfinite(x)) return {u, u};
@@ -79,37 +82,40 @@ StandingWave::StandingWave(double background, double amplitude, int m, double kr
       m_(m),
       profile_(std::make_shared<const BesselProfile>(m, kr * reach)) {}
 
-/// Of g(u) Re z^m: 2 g' (delta_ij h + x_i h_j + h_i x_j) + 4 g'' x_i x_j h + g h_ij, where u =
-/// |z|^2, h = Re z^m is harmonic, and Bessel's equation gives 4 u g'' = -4 (m + 1) g' - g.
+/// The Hessian of g(u) Re z^m is 2 g' (delta_ij h + x_i h_j + h_i x_j) + 4 g'' x_i x_j h + g h_ij,
+/// where u = |z|^2, h = Re z^m is harmonic and indices of h denote its derivatives.
 IndexHessian StandingWave::angular_hessian(const Vec3& x) const {
   const double a = kr_ * x[0], b = kr_ * x[1], u = a * a + b * b;
-  const auto at = profile_->bent_jet(u);
-  const double value = at.value, slope = at.slope, bend = at.bend;
+  const auto at = profile_->second_order_jet(u);
+  const double value = at.value, derivative = at.derivative,
+               second_derivative = at.second_derivative;
   const std::complex<double> h = power(x, m_);
   const std::complex<double> h1 = double(m_) * power(x, m_ - 1);
   const std::complex<double> h2 = m_ > 1 ? double(m_ * (m_ - 1)) * power(x, m_ - 2) : 0;
   const double hx = h1.real(), hy = -h1.imag();
-  const double scale = amplitude_ * kr_ * kr_, diagonal = 2 * slope * h.real();
-  const double curved = 4 * bend * h.real();
+  const double scale = amplitude_ * kr_ * kr_, diagonal = 2 * derivative * h.real();
+  const double curved = 4 * second_derivative * h.real();
   Mat3 hessian = Mat3::Zero();
-  hessian(0, 0) = diagonal + 4 * slope * a * hx + curved * a * a + value * h2.real();
-  hessian(1, 1) = diagonal + 4 * slope * b * hy + curved * b * b - value * h2.real();
-  hessian(0, 1) = 2 * slope * (a * hy + b * hx) + curved * a * b - value * h2.imag();
+  hessian(0, 0) = diagonal + 4 * derivative * a * hx + curved * a * a + value * h2.real();
+  hessian(1, 1) = diagonal + 4 * derivative * b * hy + curved * b * b - value * h2.real();
+  hessian(0, 1) = 2 * derivative * (a * hy + b * hx) + curved * a * b - value * h2.imag();
   hessian(1, 0) = hessian(0, 1);
-  const Vec3 gradient(2 * slope * a * h.real() + value * hx, 2 * slope * b * h.real() + value * hy,
-                      0);
+  const Vec3 gradient(2 * derivative * a * h.real() + value * hx,
+                      2 * derivative * b * h.real() + value * hy, 0);
   return {background_ + amplitude_ * value * h.real(), amplitude_ * kr_ * gradient,
           scale * hessian};
 }
 
 void add_keys(Keys& keys, UltrasoundValues& values) {
   add_keys(keys, static_cast<SoundValues&>(values));
-  keys.add("sound_order", values.sound_order, "m of J_m(k rho) cos(m phi)")
+  keys.add("sound_order", values.sound_order, "Order m of the sound J_m(k rho) cos(m phi)")
       .from(0, BesselProfile::max_order);
 }
 
 StandingWave make_field(const Keys& keys, const UltrasoundValues& values, const FieldUse& use) {
-  constexpr double longest_table = 1e3;  // in k rho; beyond it the wave is slow, not wrong
+  // Largest argument kr rho of the Bessel function in the table; beyond, evaluation is slow but
+  // correct.
+  constexpr double longest_table = 1e3;
   const double k = wavenumber_of(keys, values, use);
   return at_phase(StandingWave(background(keys, values.index, use), amplitude_of(keys, values),
                                static_cast<int>(keys.read(values.sound_order)), k,

@@ -5,7 +5,7 @@
 namespace flatspeckle::grin {
 
 Frame frame_across(const Vec3& v) {
-  // Duff et al. 2017, Building an orthonormal basis, revisited
+  // Builds an orthonormal basis without branches [duff2017].
   const Vec3 w = v.normalized();
   const double sign = std::copysign(1.0, w.z());
   const double a = -1 / (sign + w.z());

@@ -7,19 +7,20 @@
 
 namespace flatspeckle::grin {
 
-// Surfaces in closed form: 0 is distance(x) on the surface, negative inside. |distance| is nowhere
-// more than the true distance. normal(x) is a unit vector outwards, meant for points on the
-// surface. curvature(x) is d normal / d x at a point on the surface, for displacements along it;
-// bounds() the box around a closed one.
+// Surfaces in closed form. distance(x) is 0 on the surface and negative inside; |distance| never
+// exceeds the true distance. normal(x) is the outward unit vector at a point on the surface.
+// curvature(x) is d normal / d x at a point on the surface, for displacements along the surface.
+// bounds() is the bounding box of a closed surface.
 
 struct Box;
 
-/// Whether the rounding of a difference from the centre loses digits that x has.
+/// Whether computing x - centre would lose digits of x, because the radius of the sphere is much
+/// larger than the coordinates of x.
 inline bool is_wide(double radius, const Vec3& x) {
   return radius > 8 * x.cwiseAbs().maxCoeff();
 }
-/// Returns |x - centre|^2 - radius^2. Beside a wide surface the constant terms are summed with
-/// their rounding errors, so that the result is as exact as x is.
+/// Returns |x - centre|^2 - radius^2. For a wide sphere (is_wide), the rounding errors of the terms
+/// without x are computed and added, so that the result is as exact as x.
 inline double power_of_point(const Vec3& x, const Vec3& centre, double radius) {
   if (!is_wide(radius, x)) return (x - centre).squaredNorm() - radius * radius;
   double sum = 0, rest = 0;
@@ -53,7 +54,7 @@ struct Sphere {
   Box bounds() const;
 };
 
-/// Outside is the side that `outwards`, a unit vector, points to.
+/// A plane whose outside is the side that `outwards`, a unit vector, points to.
 struct Plane {
   Vec3 point, outwards;
 
@@ -67,7 +68,7 @@ struct Box {
 
   double distance(const Vec3& x) const {
     const Vec3 beyond = (low - x).cwiseMax(x - high);
-    const bool is_inside = (beyond.array() < 0).all();  // never with NaN
+    const bool is_inside = (beyond.array() < 0).all();  // false for NaN
     return is_inside ? beyond.maxCoeff() : beyond.cwiseMax(0).norm();
   }
   Vec3 normal(const Vec3& x) const {
@@ -84,7 +85,7 @@ inline Box Sphere::bounds() const {
   return {centre - Vec3::Constant(radius), centre + Vec3::Constant(radius)};
 }
 
-/// Boxes that share no volume.
+/// Whether two boxes share no volume.
 inline bool are_apart(const Box& a, const Box& b) {
   return (a.low.array() >= b.high.array()).any() || (b.low.array() >= a.high.array()).any();
 }

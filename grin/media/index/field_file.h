@@ -7,8 +7,8 @@
 
 namespace flatspeckle::grin {
 
-/// What read(path) makes of the file that a key names; what it throws as InputError names key and
-/// file.
+/// Returns read(path), where `path` is the value of a key. If read() throws an InputError, adds the
+/// names of the key and the file to its message.
 template <class Read>
 auto read_field(const Keys& keys, const std::string& path, const Read& read) {
   try {

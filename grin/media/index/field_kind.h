@@ -10,34 +10,41 @@
 
 namespace flatspeckle::grin {
 
-// A kind of index field is a file with: the field, a concept IndexField; its facts(field); its
-// values, with the word of the key `field` for it and whether it is a medium or added to one;
-// add_keys(keys, values); and make_field(keys, values, use). It is listed in any_index_field.h.
+// Each kind of index field has its own header. It declares the class of the field, which models the
+// concept IndexField; facts(field); a struct of the scene keys, with the name of the kind in the
+// key `field` (word) and whether the field is a medium or is added to one (is_medium);
+// add_keys(keys, values); and make_field(keys, values, use). any_index_field.h lists all kinds.
 
-/// What a ray keeps by the symmetry of the field (conventions, C27).
+/// Symmetry of the index field, which determines the quantities that are constant along a ray
+/// (conventions, C27).
 enum class Symmetry { none, sphere, guide, round_guide, stratified };
 
-/// What the use of a field must know of it.
+/// Properties of an index field from which integration methods and step lengths for rays are
+/// chosen.
 struct FieldFacts {
-  double scale = 0;  ///< over which the index varies; 0: nowhere
-  /// By how much it does; its gradient is nowhere more than this by the scale.
+  double scale = 0;  ///< length over which the index varies; 0 for a uniform index
+  /// Magnitude of the variation of the index. The gradient of the index is nowhere larger than
+  /// strength / scale.
   double strength = std::numeric_limits<double>::infinity();
-  std::vector<Vec3> places = {};  ///< where it does, if that may be in a small part of space
+  std::vector<Vec3> places = {};  ///< points where the index varies, for fields that may vary only
+                                  ///< in a small part of space
   Symmetry symmetry = Symmetry::none;
   Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();
-  std::optional<Sphere> rim = {};  ///< of a ball, where the gradient jumps: the field is inside
-  std::optional<Box> grid = {};    ///< beyond which there is no field
+  /// Surface of the ball that contains the field. The gradient of the index jumps there.
+  std::optional<Sphere> rim = {};
+  std::optional<Box> grid = {};  ///< box outside which there is no field
 };
 
-/// What a field is made for.
+/// Conditions under which a field is used.
 struct FieldUse {
-  double reach;                            ///< distance from the z axis that rays stay within
-  bool any_phase = false;                  ///< each path meets sound at a phase of its own
-  bool is_added = false;                   ///< to another field's index
-  std::optional<double> length_unit = {};  ///< metres, where that is known
+  double reach;            ///< largest distance of rays from the z axis
+  bool any_phase = false;  ///< whether each path has its own phase of the sound
+  bool is_added = false;   ///< whether the field is added to the index of another field
+  std::optional<double> length_unit = {};  ///< unit of length in metres, if given
 };
 
-/// Excess of the index that a field stands on.
+/// Returns the background index of a field minus 1; 0 if the field is added to another field, which
+/// has the background.
 inline double background(const Keys& keys, const double& index, const FieldUse& use) {
   return use.is_added ? 0 : keys.read(index) - 1;
 }

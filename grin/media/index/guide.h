@@ -4,7 +4,7 @@
 
 namespace flatspeckle::grin {
 
-// What guides of light have in common that are round about an axis along z.
+// Common parts of light guides that are rotationally symmetric about an axis along z.
 
 inline FieldFacts guide_facts(double alpha, const Vec3& centre) {
   return {.scale = 1 / alpha, .symmetry = Symmetry::round_guide, .centre = centre};
@@ -20,10 +20,11 @@ struct GuideValues {
 inline void add_keys(Keys& keys, GuideValues& values) {
   add_index_key(keys, values.index, "n0 on the axis");
   keys.add("alpha", values.alpha,
-           "Of n^2 = n0^2 - alpha^2 rho^2 (parabolic), of n = n0 sech(alpha rho) (sech)")
+           "Gradient constant of n^2 = n0^2 - alpha^2 rho^2 (parabolic) or n = n0 sech(alpha rho) "
+           "(sech)")
       .positive()
       .unit("1/length");
-  add_vector(keys, "centre", values.centre, "A point of the axis, which is along z").unit("length");
+  add_vector(keys, "centre", values.centre, "A point on the axis, which is along z").unit("length");
 }
 
 }  // namespace flatspeckle::grin

@@ -6,31 +6,34 @@
 
 namespace flatspeckle::grin {
 
-/// Of an index field, at places all over its part of the stage.
+/// Lowest and highest index of a field, sampled over the region of the scene that the field fills.
 struct IndexRange {
   double lowest = 1, highest = 1;
 };
 
-/// n = 1 + excess. A field computes the excess as such: an index of 1 + 1e-6 keeps all its digits.
+/// Index n = 1 + excess and its gradient. Fields compute n - 1 (the excess) directly, so that an
+/// index of 1 + 1e-6 keeps all its digits.
 struct IndexGradient {
   double excess;
-  Vec3 gradient;  ///< 1/length
+  Vec3 gradient;  ///< gradient of n, 1/length
 };
 struct IndexHessian {
   double excess;
   Vec3 gradient;
-  Mat3 hessian;  ///< 1/length^2, symmetric
+  Mat3 hessian;  ///< second derivatives of n, 1/length^2, symmetric
 };
 
-/// n grad n, which bends rays, and its derivative; of a field where that is diagonal.
+/// The vector n grad n, which bends rays, and its derivative, for fields where the derivative is a
+/// diagonal matrix.
 struct DiagonalForce {
   double excess;
-  Vec3 force;       ///< 1/length
-  Vec3 derivative;  ///< 1/length^2
+  Vec3 force;       ///< n grad n, 1/length
+  Vec3 derivative;  ///< diagonal of the derivative of `force`, 1/length^2
 };
 
-/// A refractive index n(x) > 0 in space, twice differentiable but for surfaces that the field
-/// names. Where n^2 is a sum of squares, field.force(x) may tell a DiagonalForce.
+/// A refractive index n(x) > 0 in space, twice differentiable except on the surfaces listed in
+/// FieldFacts. If n^2 is a constant plus a weighted sum of squared coordinates, field.force(x) may
+/// return a DiagonalForce.
 template <class F>
 concept IndexField = requires(const F& field, const Vec3& x) {
   { field.excess(x) } -> std::same_as<double>;
@@ -38,7 +41,7 @@ concept IndexField = requires(const F& field, const Vec3& x) {
   { field.hessian(x) } -> std::same_as<IndexHessian>;
 };
 
-/// The same index everywhere. Code that meets it at compile time runs no solver.
+/// A uniform index. Code that is compiled for this type does not use a ray solver.
 struct Homogeneous {
   double n_excess = 0;
 

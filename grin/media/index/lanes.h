@@ -4,12 +4,13 @@
 
 namespace flatspeckle::grin {
 
-// Rays side by side in lanes, which loops over all of them make vectors of: nothing in such a loop
-// depends on another lane, so that what becomes of a ray depends neither on its lane nor on its
-// neighbours, nor on how wide vectors are but for fused multiply-adds, which SSE2 has none of.
+// Rays are traced in SIMD lanes, one ray in each. Loops over all lanes are vectorised, and no lane
+// depends on another. The result of a ray therefore depends neither on its lane nor on the rays in
+// other lanes. It depends on the vector width only through fused multiply-adds, which SSE2 lacks.
 
-/// Three of the widest vectors: a step is a long chain, of which some work while others wait; and
-/// so few that short batches fill them.
+/// Number of lanes: three times the width of the widest vectors. This is enough to hide the latency
+/// of the long chain of operations in a step, and few enough for short batches of rays to fill all
+/// lanes.
 inline constexpr int lanes = 24;
 
 struct LaneVectors {
@@ -23,21 +24,22 @@ struct LaneVectors {
   }
 };
 
-/// IndexGradient.
+/// The index n = 1 + excess and its gradient, in each lane.
 struct LaneGradients {
   alignas(64) double excess[lanes];
   LaneVectors gradient;
 };
 
-/// A field that tells its gradients in lanes, for less than one by one; NaN where it would be slow
-/// at that: there a ray goes by itself.
+/// A field whose function gradients() computes the gradients in all lanes at less cost than one by
+/// one. It returns NaN in lanes where this would be slow; the ray of such a lane is then traced
+/// alone.
 template <class F>
 concept LaneField = IndexField<F> &&
     requires(const F& field, const LaneVectors& x, LaneGradients& found) {
   field.gradients(x, found);
 };
 
-/// Of any field: one by one where it has none in lanes.
+/// Computes the gradients of any field in lanes, one by one if the field is not a LaneField.
 template <IndexField F>
 void lane_gradients(const F& field, const LaneVectors& x, LaneGradients& found) {
   if constexpr (LaneField<F>) {

@@ -6,22 +6,26 @@
 
 namespace flatspeckle::grin {
 
-/// A profile by u = r^2, and its derivatives by u: n is smooth on the axis where they are.
+/// Value of a radial profile n - 1 as a function of u = r^2, where r is the distance from a centre
+/// or an axis, and its first and second derivatives with respect to u. The index is smooth at r = 0
+/// if these derivatives are.
 struct RadialJet {
   double excess, first, second;
 };
 
-/// And that of n^2 by u, where it is the same everywhere.
+/// The excess n - 1, and the derivative of n^2 with respect to u for profiles where this derivative
+/// is constant.
 struct RadialSquare {
-  double excess, slope;
+  double excess, derivative;
 };
 
-/// A profile whose jet has no branch that vectors cannot take.
+/// A profile whose function jet() has no branches, so that a loop over SIMD lanes can be
+/// vectorised.
 template <class Profile>
 concept LaneProfile = Profile::goes_in_lanes;
 
-/// n = 1 + profile(r^2) about a centre (Dimension 3) or about the line through it along z
-/// (Dimension 2). Profile: excess(u), jet(u) with derivatives, and maybe
+/// n = 1 + profile(r^2), where r is the distance from a centre (Dimension 3) or from the line
+/// through the centre along z (Dimension 2). Profile must have excess(u) and jet(u), and may have
 /// square(u).
 template <class Profile, int Dimension>
 class RadialField {
@@ -65,8 +69,8 @@ class RadialField {
   }
   {
     const Vec3 r = radius_vector(x);
-    const auto [excess, slope] = profile_.square(r.squaredNorm());
-    return {excess, slope * r, {slope, slope, Dimension == 3 ? slope : 0}};
+    const auto [excess, derivative] = profile_.square(r.squaredNorm());
+    return {excess, derivative * r, {derivative, derivative, Dimension == 3 ? derivative : 0}};
   }
 
  private:

@@ -11,7 +11,7 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// A dataset over x, y and z, and where its nodes lie.
+/// A dataset of a file with axes x, y and z, and the positions of its nodes.
 class GridDataset {
  public:
   GridDataset(const ResultReader& file, std::string name) : file_(file), name_(std::move(name)) {}
@@ -28,7 +28,9 @@ class GridDataset {
  private:
   Vec3 vector(const std::string& attribute) const {
     const auto values = file_.attribute<std::vector<double>>(name_, attribute);
-    if (values.size() != 3) throw InputError("numbers in " + attribute, values.size(), "must be 3");
+    if (values.size() != 3)
+      throw InputError(attribute + ": has " + std::to_string(values.size()) +
+                       " numbers, must have 3");
     return {values[0], values[1], values[2]};
   }
 
@@ -36,8 +38,8 @@ class GridDataset {
   std::string name_;
 };
 
-/// So far from the limits of numbers that rays do not come to them, with nodes that can be told
-/// apart.
+/// Checks that coordinates and values are far from overflow, and that neighbouring nodes differ by
+/// more than the rounding of coordinates.
 void check_range(const GridSamples& samples) {
   const auto& [grid, values] = samples;
   constexpr double least = 1e-100, most = 1e100, most_value = 1e6, rounding = 1e-12;
@@ -49,7 +51,7 @@ void check_range(const GridSamples& samples) {
     if (!(farthest < most)) throw InputError("end of a grid", farthest, "must be below 1e100");
     if (grid.spacing[a] < std::max(least, rounding * farthest))
       throw InputError("spacing of a grid", grid.spacing[a],
-                       "must be above 1e-100 and the rounding of its coordinates");
+                       "must be above 1e-100 and above the rounding of the coordinates");
   }
 }
 

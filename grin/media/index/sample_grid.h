@@ -11,7 +11,7 @@
 
 namespace flatspeckle::grin {
 
-/// Where the samples of a field lie: node (i, j, k) at origin + (i, j, k) * spacing, k fastest.
+/// Nodes of sampled fields: node (i, j, k) is at origin + (i, j, k) * spacing, k varies fastest.
 struct FieldGrid {
   Vec3 origin, spacing;
   std::array<int, 3> nodes;
@@ -22,20 +22,22 @@ struct FieldGrid {
   }
 };
 
-/// Throws InputError for fewer nodes along an axis, a spacing that is not positive, an origin that
-/// is not finite, or another number of samples than nodes.
+/// Throws InputError for fewer than least_nodes nodes along an axis, a spacing that is not
+/// positive, an origin that is not finite, or a number of samples other than the number of nodes.
 void check(const FieldGrid& grid, std::size_t samples, int least_nodes);
 
 struct GridSamples {
   FieldGrid where;
   std::vector<double> values;
 };
-/// A dataset of an HDF5 file with axes x, y, z, and on it the attributes "origin" and "spacing",
-/// three numbers each; so far from the limits of numbers that rays do not come to them, with nodes
-/// that can be told apart. Throws InputError naming what is missing or of another shape.
+/// Reads a dataset of an HDF5 file with axes x, y, z and its attributes "origin" and "spacing",
+/// three numbers each. Throws an InputError that names a dataset or attribute that is missing or
+/// has another shape. Also throws InputError for values near overflow and for nodes that are closer
+/// than the rounding of their coordinates.
 GridSamples read_samples(const std::filesystem::path& path, const std::string& dataset);
 
-/// What is made of such samples. Every InputError names the file.
+/// Returns an object of type Grid, constructed from the samples in a file (read_samples). Every
+/// InputError names the file.
 template <class Grid>
 Grid read_grid(const std::filesystem::path& path, const std::string& dataset) {
   try {

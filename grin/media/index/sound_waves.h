@@ -8,12 +8,12 @@
 
 namespace flatspeckle::grin {
 
-/// Sound of plane waves, frozen: n = 1 + background + sum of amplitude cos(k.x - phase). An exact
-/// solution of the wave equation where all |k| are the same.
+/// Sound that consists of plane waves, at a fixed time: n = 1 + background + sum of amplitude
+/// cos(k.x - phase). It solves the wave equation exactly if all |k| are equal.
 class SoundWaves {
  public:
   double background() const { return background_; }
-  /// No place has more.
+  /// Returns an upper bound of the change of the index by the sound, |excess - background|.
   double largest() const {
     double sum = 0;
     for (const Wave& wave : waves_) sum += std::abs(wave.amplitude);
@@ -48,11 +48,11 @@ class SoundWaves {
 #pragma omp simd
       for (int i = 0; i < lanes; ++i) {
         const auto at = wide_sine_cosine(kx * x.x[i] + ky * x.y[i] + kz * x.z[i] - phase);
-        const double slope = amplitude * at.sine;
+        const double amplitude_sine = amplitude * at.sine;
         sum.excess[i] += amplitude * at.cosine;
-        sum.gradient.x[i] -= slope * kx;
-        sum.gradient.y[i] -= slope * ky;
-        sum.gradient.z[i] -= slope * kz;
+        sum.gradient.x[i] -= amplitude_sine * kx;
+        sum.gradient.y[i] -= amplitude_sine * ky;
+        sum.gradient.z[i] -= amplitude_sine * kz;
       }
     }
     const double background = background_;
@@ -66,8 +66,8 @@ class SoundWaves {
 
   struct Wave {
     Vec3 k;
-    double amplitude, phase;  ///< phase: at the origin
-    double rate;              ///< of its frequency, to the largest
+    double amplitude, phase;  ///< phase: phase of the wave at the origin
+    double rate;              ///< frequency of this wave relative to the highest frequency
   };
   double background_;
   std::vector<Wave> waves_;

@@ -4,11 +4,11 @@
 
 namespace flatspeckle::grin {
 
-SlowMode::SlowMode(double albedo, double g)
-    : kappa_(diffusion_rate(albedo, g, 3)), g_(g), drift_(1 / (1 - g)) {
+CaseMode::CaseMode(double albedo, double g)
+    : kappa_(diffusion_rate(albedo, g, 3)), g_(g), transport_length_(1 / (1 - g)) {
   constexpr int most = 1000;
   constexpr double negligible = 1e-14;
-  std::vector<double> ratio(most + 2);  // psi_l / psi_(l-1), downwards
+  std::vector<double> ratio(most + 2);  // psi_l / psi_(l-1), by downward recurrence
   for (int l = most; l >= 1; --l)
     ratio[l] = kappa_ * l /
                ((2 * l + 1) * (1 - albedo * std::pow(g, l)) - kappa_ * (l + 1) * ratio[l + 1]);
@@ -22,16 +22,19 @@ SlowMode::SlowMode(double albedo, double g)
 
 namespace {
 
-/// Whether a rate lies below the smallest root of the dispersion relation
-///   h_0 = c_1 r^2 / (h_1 - c_2 r^2 / (h_2 - c_3 r^2 / ...)),  h_n = 1 - albedo g^n,
-/// the condition that the moments of the angle decay: in flatland those of Fourier, c_n = 1/4 but
-/// c_1 = 1/2, in space those of Legendre, c_n = n^2 / (4 n^2 - 1).
+/// Whether a rate r lies below the smallest root of the dispersion relation
+///   h_0 = c_1 r^2 / (h_1 - c_2 r^2 / (h_2 - c_3 r^2 / ...)),  h_n = 1 - albedo g^n.
+///
+/// The relation states that the angular moments of the light decay with their order n. Flatland
+/// uses Fourier moments, with c_1 = 1/2 and all other c_n = 1/4; space uses Legendre moments, with
+/// c_n = n^2 / (4 n^2 - 1).
 bool below_root(double albedo, double g, int dimension, double rate) {
   const auto share = [&](int n) {
     const double square = static_cast<double>(n) * n;
     return rate * rate * (dimension == 3 ? square / (4 * square - 1) : n == 1 ? 0.5 : 0.25);
   };
-  double tail = 1;  // of high moments, which scattering does not feed
+  // Value of the continued fraction beyond order 1000, where albedo g^n is neglected
+  double tail = 1;
   for (int n = 1000; n >= 1; --n) {
     tail = 1 - albedo * std::pow(g, n) - share(n + 1) / tail;
     if (tail <= 0) return false;

@@ -5,35 +5,38 @@
 
 namespace flatspeckle::grin {
 
-/// Of the modes of light in a uniform medium without edges, that which dies out slowest (Case
-/// 1960), backwards: what light at depth z, at cosine mu from the axis, is worth far ahead. Lengths
-/// in mean free paths. A flight from z, mu on average keeps departing(z, mu), if it is worth
-/// arriving(z', mu) in the collision at its end, or departing(z', mu) where it is cut short; a turn
-/// from mu on average makes departing(z, mu') of arriving(z, mu), the albedo included. So a path
-/// that is followed in any manner gains nothing on average, and most of the light that is through
-/// has come to the same worth.
-///   departing = exp(kappa z) psi(mu),  arriving = exp(kappa z) (1 - kappa mu) psi(mu),
-/// psi from its moments psi_l, (2l+1) (1 - albedo g^l) psi_l = kappa [(l+1) psi_(l+1) + l
-/// psi_(l-1)]; without absorption departing = z + mu / (1 - g) and arriving = z + g mu / (1 - g).
-class SlowMode {
+/// Adjoint of the most slowly decaying eigenmode of transport in an unbounded uniform medium
+/// [case1960]. It is the importance of light at depth z, with cosine mu to the axis, for a detector
+/// far ahead. Lengths are in mean free paths. The importance is a martingale along a path, for any
+/// sampling of free flights: departing(z, mu) is the expected importance after a free flight, which
+/// is arriving(z', mu) if the flight ends in a collision at z' and departing(z', mu) if it is cut
+/// short at z'. arriving(z, mu) is albedo times the expected departing(z, mu') after scattering.
+/// Most of the transmitted light leaves the medium with about the same importance.
+///   departing = exp(kappa z) psi(mu),  arriving = exp(kappa z) (1 - kappa mu) psi(mu).
+/// Here kappa is diffusion_rate() in 3D, and psi is computed from its Legendre moments psi_l, with
+/// (2l+1) (1 - albedo g^l) psi_l = kappa [(l+1) psi_(l+1) + l psi_(l-1)]. Without absorption,
+/// departing = z + mu / (1 - g) and arriving = z + g mu / (1 - g).
+class CaseMode {
  public:
-  /// Of Henyey-Greenstein scattering.
-  SlowMode(double albedo, double g);
+  /// Computes the eigenmode for Henyey-Greenstein scattering with mean cosine g.
+  CaseMode(double albedo, double g);
 
   double kappa() const { return kappa_; }
 
-  /// exp(kappa z); without absorption z.
+  /// Returns exp(kappa z), or z without absorption.
   double growth(double z) const { return kappa_ > 0 ? std::exp(kappa_ * z) : z; }
-  /// At such a growth.
+  /// Returns the importance before a free flight. `growth` is growth(z) at the start of the flight.
   double departing(double growth, double mu) const {
-    return kappa_ > 0 ? growth * scattered(mu) / (1 - kappa_ * mu) : growth + drift_ * mu;
+    return kappa_ > 0 ? growth * scattered(mu) / (1 - kappa_ * mu)
+                      : growth + transport_length_ * mu;
   }
+  /// Returns the importance before a collision. `growth` is growth(z) at the collision.
   double arriving(double growth, double mu) const {
-    return kappa_ > 0 ? growth * scattered(mu) : growth + g_ * drift_ * mu;
+    return kappa_ > 0 ? growth * scattered(mu) : growth + g_ * transport_length_ * mu;
   }
 
  private:
-  /// Legendre series, by Clenshaw's recurrence.
+  /// Returns (1 - kappa mu) psi(mu), by Clenshaw's recurrence for its Legendre series.
   double scattered(double mu) const {
     double next = 0, after = 0;
     for (std::size_t l = series_.size(); l-- > 1;) {
@@ -46,13 +49,14 @@ class SlowMode {
     return series_[0] + mu * next - after / 2;
   }
 
-  double kappa_, g_, drift_;
+  double kappa_, g_, transport_length_;
   std::vector<double> series_;
 };
 
-/// How fast light of all directions dies out with depth deep inside a medium, per mean free path
-/// and as a factor: exp(-rate mu_t z). The smallest root of the transport equation's dispersion
-/// relation for Henyey-Greenstein scattering in flatland or in space; 0 without absorption.
+/// Returns the rate at which light decays with depth deep inside a medium, per mean free path.
+/// There, the light of all directions decays as exp(-rate mu_t z). The rate is the smallest root of
+/// the transport equation's dispersion relation for Henyey-Greenstein scattering in flatland or in
+/// space; 0 without absorption.
 double diffusion_rate(double albedo, double g, int dimension);
 
 }  // namespace flatspeckle::grin

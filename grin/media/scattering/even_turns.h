@@ -9,8 +9,9 @@
 
 namespace flatspeckle::grin {
 
-/// Directions into which `count` copies of light scatter at one place, each by the phase function:
-/// the first number that it draws is of an own stratum, and azimuths are a golden angle apart.
+/// Samples the directions of `count` copies of a path after scattering at one point. Each direction
+/// follows the phase function. The first random number of each copy is stratified over the copies,
+/// and successive azimuths differ by the golden angle.
 class EvenTurns {
  public:
   EvenTurns(const SpacePhaseFunction& phase, const Vec3& direction, double count,
@@ -25,7 +26,7 @@ class EvenTurns {
     sine_ = std::sin(azimuth);
   }
 
-  /// Of the next copy; random: its numbers.
+  /// Returns the direction of the next copy. random: random stream of that copy.
   Vec3 next(RandomStream& random) {
     random.put_back(place_++ / count_);
     const double beside = phase_.one_minus_cosine(random);
@@ -35,7 +36,7 @@ class EvenTurns {
   }
 
  private:
-  /// By the golden angle.
+  /// Rotates the azimuth by the golden angle.
   void go_round() {
     constexpr double c = -0.73736887807831990, s = 0.67549029426152365;
     const double cosine = c * cosine_ - s * sine_;
@@ -49,15 +50,15 @@ class EvenTurns {
   double count_, place_, cosine_, sine_;
 };
 
-/// Roulette of many whose chances add up: as many stay as that sum, to the whole number before or
-/// after it.
-class EvenRoulette {
+/// Systematic Russian roulette for a sequence of paths. The number of survivors is the sum of the
+/// survival probabilities, rounded down or up.
+class EvenTermination {
  public:
-  explicit EvenRoulette(RandomStream& random) : sum_(random.uniform()) {}
+  explicit EvenTermination(RandomStream& random) : sum_(random.uniform()) {}
 
-  /// chance: below 1.
-  bool keeps(double chance) {
-    sum_ += chance;
+  /// Returns whether the next path survives, which has the given probability, below 1.
+  bool keeps(double probability) {
+    sum_ += probability;
     if (sum_ < 1) return false;
     sum_ -= 1;
     return true;

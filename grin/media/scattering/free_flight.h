@@ -4,25 +4,29 @@
 
 namespace flatspeckle::grin {
 
-/// Attenuation of intensity over a length, in any number of dimensions.
+/// Returns the fraction of the intensity that is left after a length, for the attenuation
+/// coefficient mu_t.
 inline double transmittance(double mu_t, double length) {
   return std::exp(-mu_t * length);
 }
 
-/// Distance to the next scattering event of density mu_t exp(-mu_t s), from a uniform u in (0, 1).
+/// Samples the distance s to the next collision, whose density is mu_t exp(-mu_t s). u: uniform in
+/// (0, 1).
 inline double sample_free_flight(double mu_t, double u) {
   return -std::log(u) / mu_t;
 }
 
-/// Where the worth of light grows along a flight as exp(pull mu_t s): half of the flights are
-/// stretched (Dwivedi 1982), else long ones, rare and worth all the more, would carry the result.
-/// weight(): the density of plain flights over that of these, of one that ends in a collision;
-/// weight_beyond(): that of the chance to come so far.
-class StretchedFlight {
+/// Biased free flights, for light whose importance grows along the flight as exp(growth_rate mu_t
+/// s). Half of the flights use the exponential transform [dwivedi1982]; without it, rare long
+/// flights of high importance would dominate the result. weight(s) is the ratio of the unbiased to
+/// the sampled density of a collision at s. weight_beyond(s) is the ratio of the unbiased to the
+/// sampled probability that the flight is longer than s.
+class BiasedFlight {
  public:
-  static constexpr double most_pull = 0.9;
+  static constexpr double largest_bias = 0.9;
 
-  StretchedFlight(double mu_t, double pull) : mu_t_(mu_t), share_(1 - std::fmin(pull, most_pull)) {}
+  BiasedFlight(double mu_t, double growth_rate)
+      : mu_t_(mu_t), share_(1 - std::fmin(growth_rate, largest_bias)) {}
 
   double sample(double u) const {
     return u < 0.5 ? sample_free_flight(share_ * mu_t_, 2 * u)
@@ -37,29 +41,30 @@ class StretchedFlight {
   double mu_t_, share_;
 };
 
-/// A flight by a place in (0, 1), where the worth of light grows along it as exp(pull s), s in mean
-/// free paths, up to a depth: shorter flights are drawn in proportion to what is worth there,
-/// longer ones as often as plain ones are.
-struct PulledFlight {
-  double u;       ///< of sample_free_flight()
-  double weight;  ///< the density of plain flights over that of these
+/// A free flight of light whose importance grows along the flight as exp(growth_rate s), with s in
+/// mean free paths, up to s = depth. Flights shorter than depth are sampled in proportion to their
+/// importance, longer flights with the unbiased density. at() computes the flight from a number
+/// `place`, which is uniform in (0, 1).
+struct ImportanceSampledFlight {
+  double u;       ///< random number u for which sample_free_flight() returns this flight
+  double weight;  ///< unbiased density divided by sampled density
 
-  static PulledFlight at(double place, double depth, double pull) {
+  static ImportanceSampledFlight at(double place, double depth, double growth_rate) {
     const double longer = std::exp(-depth), shorter = -std::expm1(-depth);
     if (!(place > longer)) return {place, 1};
-    const double share = 1 - pull, all = -std::expm1(-share * depth) / share;
-    const double pulled = 1 - share * all * (place - longer) / shorter;  // exp(-share s)
-    const double u = std::pow(pulled, 1 / share);
-    return {u, all / shorter * u / pulled};
+    const double share = 1 - growth_rate, all = -std::expm1(-share * depth) / share;
+    const double decay = 1 - share * all * (place - longer) / shorter;  // equals exp(-share s)
+    const double u = std::pow(decay, 1 / share);
+    return {u, all / shorter * u / decay};
   }
 };
 
-/// The same as sample_free_flight() on condition that it is no longer than `longest`: exact also
-/// where mu_t longest is tiny.
+/// A free flight under the condition that it is no longer than `longest`. Formulas keep their
+/// accuracy if mu_t * longest is tiny.
 struct BoundedFlight {
   double mu_t, longest;
 
-  /// Of a flight no longer than that.
+  /// Probability that an unconditioned flight is no longer than `longest`.
   double probability() const { return -std::expm1(-mu_t * longest); }
   double sample(double u) const {
     if (mu_t * longest == 0) return u * longest;

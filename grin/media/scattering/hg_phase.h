@@ -4,10 +4,10 @@
 
 namespace flatspeckle::grin {
 
-/// Henyey and Greenstein 1941.
+/// Phase function of Henyey and Greenstein [henyey1941].
 struct HgPhase {
   static constexpr const char* word = "henyey_greenstein";
-  double g = 0;  ///< |g| < 1
+  double g = 0;  ///< mean cosine of the scattering angle; |g| < 1
 
   double density(double cosine) const { return HenyeyGreenstein<3>{g}.density_at(cosine); }
   double one_minus_cosine(RandomStream& random) const {
@@ -17,7 +17,9 @@ struct HgPhase {
 };
 
 inline void add_keys(Keys& keys, HgPhase& phase, const std::string& prefix) {
-  keys.add(prefix + "g", phase.g, "Mean cosine").between(-1, 1).only_of(phase.word);
+  keys.add(prefix + "g", phase.g, "Mean cosine of the scattering angle")
+      .between(-1, 1)
+      .only_of(phase.word);
 }
 inline HgPhase make_phase(const Keys& keys, const HgPhase& phase) {
   return {keys.read(phase.g)};

@@ -12,12 +12,14 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// Beyond it psi_n(z) / xi_n(z) is below rounding.
+/// Returns the order n beyond which the ratio psi_n / xi_n of Riccati-Bessel functions is below
+/// rounding at the argument `size`.
 int last_order(double size) {
   return static_cast<int>(size + 8 * std::cbrt(size)) + 12;
 }
 
-/// psi_{n+1}(z) / psi_n(z), n = 0 .. last, downwards: (n + 1)/z less the logarithmic derivative.
+/// Returns the ratios psi_{n+1}(z) / psi_n(z) of Riccati-Bessel functions, n = 0 .. last, by
+/// downward recurrence. The ratio equals (n + 1)/z minus the logarithmic derivative of psi_n.
 std::vector<Complex> psi_ratios(Complex z, int last) {
   std::vector<Complex> ratios(static_cast<std::size_t>(last) + 1);
   Complex ratio = 0;
@@ -28,7 +30,8 @@ std::vector<Complex> psi_ratios(Complex z, int last) {
   return ratios;
 }
 
-/// psi_n(x) = x j_n(x), n = 0 .. last, by Miller's algorithm: sum (2 n + 1) j_n^2 = 1.
+/// Returns the Riccati-Bessel functions psi_n(x) = x j_n(x), n = 0 .. last, by Miller's algorithm
+/// with the normalisation sum (2 n + 1) j_n^2 = 1.
 std::vector<double> psi(double x, int last) {
   constexpr double large = 1e100;
   const int start = std::max(last, last_order(x)) + 12;
@@ -52,7 +55,8 @@ std::vector<double> psi(double x, int last) {
   return f;
 }
 
-/// xi_n(x) = x h_n(x) of waves that leave, upwards.
+/// Returns xi_n(x) = x h_n(x), where h_n is the spherical Hankel function of outgoing waves, by
+/// upward recurrence.
 std::vector<Complex> xi(double x, const std::vector<double>& psi) {
   std::vector<Complex> values;
   double before = std::sin(x), eta = -std::cos(x);  // x y_{-1}, x y_0
@@ -65,7 +69,7 @@ std::vector<Complex> xi(double x, const std::vector<double>& psi) {
 
 using std::numbers::pi;
 
-/// Of cos(k angle), k = 0 .. degree, of a polynomial of the cosine.
+/// Returns the coefficients of cos(k angle), k = 0 .. degree, of a polynomial f of the cosine.
 template <typename F>
 std::vector<double> cosine_modes(const F& f, std::size_t degree) {
   const std::size_t steps = degree + 1;
@@ -81,7 +85,8 @@ std::vector<double> cosine_modes(const F& f, std::size_t degree) {
   return modes;
 }
 
-/// Of 2 pi int p sin from 0 to an angle, as sum_m modes[m] (1 - cos(m angle)).
+/// Returns the Fourier modes of the integral of 2 pi p sin from 0 to an angle, for a phase function
+/// p with the given modes. This integral equals sum_m modes[m] (1 - cos(m angle)).
 std::vector<double> integral_modes(const std::vector<double>& p) {
   const auto at = [&](std::size_t k) { return k < p.size() ? p[k] : 0; };
   std::vector<double> modes = {0, pi * (2 * at(0) - at(2))};
@@ -109,9 +114,10 @@ MieSphere::MieSphere(double size, Complex index)
   sum();
 }
 
-/// With r_n = psi_{n+1}(mx) / psi_n(mx):
-///   a_n = (((n + 1)/x (m - 1/m) + r_n) psi_n - m psi_{n+1}) / (the same of xi),
-///   b_n = (m r_n psi_n - psi_{n+1}) / (the same of xi).
+/// Returns a_n and b_n for the size parameter x and the relative index m, with r_n = psi_{n+1}(mx)
+/// / psi_n(mx):
+///   a_n = (((n + 1)/x (m - 1/m) + r_n) psi_n - m psi_{n+1}) / (the same with xi for psi),
+///   b_n = (m r_n psi_n - psi_{n+1}) / (the same with xi for psi).
 std::vector<MieSphere::Coefficients> MieSphere::coefficients() const {
   if (index_ == 1.0) return {};
   const int last = last_order(size_);
@@ -150,7 +156,7 @@ void MieSphere::sum() {
 
 MieSphere::Amplitudes MieSphere::amplitudes(double cosine) const {
   Amplitudes found{};
-  double before = 0, pi_n = 1;  // of P_n^1 / sin: n - 1, n
+  double before = 0, pi_n = 1;  // Legendre functions P_k^1 / sin for k = n - 1 and k = n
   for (std::size_t i = 0; i < coefficients_.size(); ++i) {
     const auto& [a, b] = coefficients_[i];
     const double n = static_cast<double>(i + 1), tau = n * cosine * pi_n - (n + 1) * before,
@@ -175,7 +181,7 @@ MiePhase::MiePhase(const MieSphere& sphere) {
   shape_ = std::make_shared<const Shape>(std::move(shape));
 }
 
-/// By Clenshaw's recurrence.
+/// Returns the integral of the phase function from 0 to the angle, by Clenshaw's recurrence.
 double MiePhase::up_to(const Shape& shape, double angle) {
   const double twice = 2 * std::cos(angle);
   double sum = 0, later = 0, all = 0;
@@ -190,7 +196,8 @@ double MiePhase::density(double cosine) const {
   return unpolarized(shape_->sphere, cosine);
 }
 
-/// Newton's method within the step that is drawn.
+/// Samples an interval of the table so_far, then finds the angle in this interval by Newton's
+/// method.
 double MiePhase::one_minus_cosine(RandomStream& random) const {
   constexpr int most = 60;
   constexpr double close = 1e-13;
@@ -215,9 +222,10 @@ MiePhase make_phase(const Keys& keys, const MiePhaseValues& values) {
                     &text = keys.required(values.sphere_index);
   const Complex index = parse_complex(name, text);
   if (index == 0.0 || index.real() < 0 || index.imag() < 0)
-    throw InputError(name, text, "must not be 0, nor negative, nor amplify (Im >= 0 absorbs)");
+    throw InputError(name, text, "must not be 0, negative or amplifying (Im >= 0 absorbs)");
   const MieSphere sphere(keys.required(values.size_parameter), index);
-  if (!(sphere.scattering() > 0)) throw InputError(name, text, "does not scatter");
+  if (!(sphere.scattering() > 0))
+    throw InputError(name, text, "must differ from 1: the sphere does not scatter");
   return MiePhase(sphere);
 }
 

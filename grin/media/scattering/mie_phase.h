@@ -10,26 +10,31 @@
 
 namespace flatspeckle::grin {
 
-/// A homogeneous sphere in a plane wave (conventions, C43).
+/// Scattering of a plane wave by a homogeneous sphere (conventions, C43).
 class MieSphere {
  public:
-  /// Of what size() may be: 2 pi radius over the wavelength around it.
+  /// Range of the size parameter size(): 2 pi radius divided by the wavelength in the surroundings
+  /// of the sphere.
   static constexpr double smallest = 1e-6, largest = 1e4;
 
-  /// index: relative, not 0; Im >= 0 absorbs.
+  /// index: index of the sphere divided by the index of the surroundings; must not be 0. A positive
+  /// imaginary part absorbs.
   MieSphere(double size, Complex index);
 
   double size() const { return size_; }
-  /// The last order n above rounding.
+  /// Returns the largest order n whose coefficients a_n and b_n are above rounding.
   int order() const { return static_cast<int>(coefficients_.size()); }
 
-  /// Cross sections over pi radius^2.
+  /// Returns the extinction cross section divided by pi radius^2.
   double extinction() const { return extinction_; }
+  /// Returns the scattering cross section divided by pi radius^2.
   double scattering() const { return scattering_; }
-  /// Of unpolarized light; the sphere scatters.
+  /// Returns the mean cosine of the scattering angle for unpolarized light. Requires that the
+  /// sphere scatters.
   double mean_cosine() const { return mean_cosine_; }
 
-  /// Perpendicular and parallel to the plane of scattering, of a turn by its cosine.
+  /// Scattering amplitudes for light polarised perpendicular (s1) and parallel (s2) to the
+  /// scattering plane.
   struct Amplitudes {
     Complex s1, s2;
   };
@@ -44,15 +49,16 @@ class MieSphere {
 
   double size_;
   Complex index_;
-  std::vector<Coefficients> coefficients_;  ///< of n = 1 .. order()
+  std::vector<Coefficients> coefficients_;  ///< a_n and b_n for n = 1 .. order()
   double extinction_ = 0, scattering_ = 0, mean_cosine_ = 0;
 };
 
-/// Unpolarized light on equal spheres: (|S_1|^2 + |S_2|^2) / 2 of C43, normalised. Turns are drawn
-/// from it exactly: it is a polynomial of the cosine, and so is its integral.
+/// Phase function of equal spheres for unpolarized light: (|S_1|^2 + |S_2|^2) / 2 of C43,
+/// normalised. Sampling is exact, because the phase function and its integral are polynomials of
+/// the cosine.
 class MiePhase {
  public:
-  /// The sphere scatters.
+  /// Requires that the sphere scatters.
   explicit MiePhase(const MieSphere& sphere);
 
   double density(double cosine) const;
@@ -62,8 +68,9 @@ class MiePhase {
  private:
   struct Shape {
     MieSphere sphere;
-    std::vector<double> integral;  ///< over the sphere up to an angle: its Fourier modes
-    std::vector<double> so_far;    ///< the same at equal steps from 0 to pi
+    /// Fourier modes of the integral of the phase function from angle 0.
+    std::vector<double> integral;
+    std::vector<double> so_far;  ///< values of this integral at equal steps from 0 to pi
   };
   static double up_to(const Shape& shape, double angle);
 
@@ -78,14 +85,15 @@ struct MiePhaseValues {
 
 inline void add_keys(Keys& keys, MiePhaseValues& values, const std::string& prefix) {
   keys.add(prefix + "size_parameter", values.size_parameter,
-           "2 pi radius of the spheres over the wavelength around them")
+           "Size parameter: 2 pi radius of the spheres divided by the wavelength around them")
       .from(MieSphere::smallest, MieSphere::largest)
       .only_of(values.word);
   keys.add(prefix + "sphere_index", values.sphere_index,
-           "Relative index of the spheres, as \"1.33+0.1i\" (which absorbs)")
+           "Index of the spheres relative to their surroundings, such as \"1.33+0.1i\"; a positive "
+           "imaginary part absorbs")
       .only_of(values.word);
 }
-/// Throws InputError.
+/// Makes the phase function from its scene keys. Throws InputError for invalid values.
 MiePhase make_phase(const Keys& keys, const MiePhaseValues& values);
 
 }  // namespace flatspeckle::grin

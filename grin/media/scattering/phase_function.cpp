@@ -34,10 +34,11 @@ double TabulatedPhaseFunction::sample(double u) const {
   const auto above = std::upper_bound(cumulative_.begin(), cumulative_.end() - 1, target);
   const auto i =
       static_cast<std::size_t>(std::max<std::ptrdiff_t>(above - cumulative_.begin() - 1, 0));
-  // In the interval the integral of 2p is step (2 p0 t + (p1 - p0) t^2): the stable root.
-  const double p0 = density_[i], slope = density_[i + 1] - density_[i];
+  // Within the interval, the integral of twice the density p is step (2 p0 t + (p1 - p0) t^2). This
+  // is solved for t in a form without cancellation.
+  const double p0 = density_[i], difference = density_[i + 1] - density_[i];
   const double rest = (target - cumulative_[i]) / step_;
-  const double root = p0 + std::sqrt(std::max(0.0, p0 * p0 + slope * rest));
+  const double root = p0 + std::sqrt(std::max(0.0, p0 * p0 + difference * rest));
   const double t = root > 0 ? std::clamp(rest / root, 0.0, 1.0) : 0.5;
   return sign * (static_cast<double>(i) + t) * step_;
 }

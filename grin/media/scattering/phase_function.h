@@ -8,9 +8,10 @@
 
 namespace flatspeckle::grin {
 
-/// Phase functions of flatland (Dimension 2: per radian, scattering angle in (-pi, pi]) and of
-/// space (Dimension 3: per steradian, polar angle in [0, pi], azimuth uniform and left to the
-/// caller). sample() takes a uniform u in (0, 1).
+/// Phase functions of flatland (Dimension 2) and of space (Dimension 3). In flatland, densities are
+/// per radian and the scattering angle is in (-pi, pi]. In space, densities are per steradian and
+/// the angle is the polar angle in [0, pi]; the caller samples the uniform azimuth. sample() takes
+/// a uniform u in (0, 1).
 
 template <int Dimension>
 struct Isotropic {
@@ -26,16 +27,17 @@ struct Isotropic {
 };
 
 /// Henyey-Greenstein: the wrapped Cauchy law in flatland (conventions, C22); Henyey and Greenstein
-/// 1941 in space. |g| < 1.
+/// [henyey1941] in space. |g| < 1.
 template <int Dimension>
 struct HenyeyGreenstein {
   static_assert(Dimension == 2 || Dimension == 3);
   double g;
 
   double density_at(double cosine) const { return density_beside(1 - cosine); }
-  /// By 1 - cosine, which keeps its digits in the peak of g near 1.
+  /// Returns the density as a function of 1 - cosine. This keeps all digits in the forward peak for
+  /// g near 1.
   double density_beside(double one_minus_cosine) const {
-    // 1 + g^2 - 2 g cos, without its cancellation for g near 1
+    // equals 1 + g^2 - 2 g cos, without cancellation for g near 1
     const double denominator = (1 - g) * (1 - g) + 2 * g * one_minus_cosine;
     const double numerator = (1 - g) * (1 + g) * Isotropic<Dimension>::value;
     if constexpr (Dimension == 2) return numerator / denominator;
@@ -51,19 +53,21 @@ struct HenyeyGreenstein {
     else
       return 2 * std::asin(std::sqrt(sample_one_minus_cosine(u) / 2));
   }
-  /// Of the angle that sample(u) returns.
+  /// Returns 1 - cosine of the angle that sample(u) returns.
   double sample_one_minus_cosine(double u) const requires(Dimension == 3) {
-    // the usual inverse, written so that nothing is divided by g or cancels
+    // The usual inverse of the cumulative distribution, written without division by g and without
+    // cancellation
     const double s = 1 - g + 2 * g * u;
     return std::min(2.0, 2 * (1 - g) * (1 - g) * (1 - u) * (1 + g * u) / (s * s));
   }
 };
 
 /// A flatland phase function that is even in the angle, given at equally spaced angles and linear
-/// between them; density and sampling are those of the table to rounding.
+/// between them. Density and sampling agree with the table to rounding.
 class TabulatedPhaseFunction {
  public:
-  /// p is evaluated at `intervals`+1 angles from 0 to pi and normalised to integral 1 over 2 pi.
+  /// p is evaluated at `intervals` + 1 angles from 0 to pi and normalised so that its integral over
+  /// 2 pi is 1.
   TabulatedPhaseFunction(const std::function<double(double)>& p, std::size_t intervals);
 
   double density(double angle) const;
@@ -71,8 +75,9 @@ class TabulatedPhaseFunction {
 
  private:
   double step_;
-  std::vector<double> density_;     ///< at the nodes
-  std::vector<double> cumulative_;  ///< integral of 2 p from 0 to the node; ends at 1
+  std::vector<double> density_;  ///< density at the equally spaced angles
+  /// Integral of 2 p from 0 to each of these angles. The last value is 1.
+  std::vector<double> cumulative_;
 };
 
 }  // namespace flatspeckle::grin

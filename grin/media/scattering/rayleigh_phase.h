@@ -6,14 +6,16 @@
 
 namespace flatspeckle::grin {
 
-/// 3/4 (1 + cos^2) of isotropic: unpolarized light on what is small against its wavelength.
+/// Scattering of unpolarized light by particles much smaller than a wavelength: 3/4 (1 + cos^2)
+/// times the isotropic phase function.
 struct RayleighPhase {
   static constexpr const char* word = "rayleigh";
 
   double density(double cosine) const {
     return 3 / (16 * std::numbers::pi) * (1 + cosine * cosine);
   }
-  /// The integral of 3/8 (1 + c^2) from -1 is u where c^3 + 3 c = 8 u - 4; Cardano.
+  /// Solves c^3 + 3 c = 8 u - 4 for the cosine c by Cardano's formula, where u is a random number
+  /// in (0, 1). The equation states that the integral of 3/8 (1 + c^2) from -1 to c is u.
   double one_minus_cosine(RandomStream& random) const {
     const double half = 4 * random.uniform() - 2;
     const double root = std::cbrt(half + std::sqrt(half * half + 1));

@@ -11,11 +11,12 @@
 
 namespace flatspeckle::grin {
 
-/// A relative density on a grid, trilinear between the nodes, 0 outside the grid.
+/// Relative density of a medium, given on a grid. It is interpolated trilinearly between the nodes
+/// and is 0 outside the grid.
 class DensityGrid {
  public:
-  /// Throws InputError for fewer than 2 nodes along an axis, a spacing <= 0, another number of
-  /// values than nodes, or a value that is negative or not finite.
+  /// Throws InputError for fewer than 2 nodes along an axis, a spacing <= 0, a number of values
+  /// other than the number of nodes, or a value that is negative or not finite.
   DensityGrid(const FieldGrid& grid, std::span<const double> density);
 
   double operator()(const Vec3& x) const;
@@ -29,21 +30,22 @@ class DensityGrid {
   double largest_ = 0;
 };
 
-/// Dataset "density" (read_samples).
+/// Reads the dataset "density" of a file, with read_samples().
 DensityGrid read_density_grid(const std::filesystem::path& path);
 
-/// What scatters and absorbs, 1/length.
+/// A scattering and absorbing medium; coefficients in 1/length.
 struct ScatteringMedium {
-  double mu_s = 0, mu_a = 0;  ///< where the relative density is 1
+  /// Scattering and absorption coefficients where the relative density is 1.
+  double mu_s = 0, mu_a = 0;
   SpacePhaseFunction phase = {};
-  std::shared_ptr<const DensityGrid> density = {};  ///< relative; nothing: 1 everywhere
+  std::shared_ptr<const DensityGrid> density = {};  ///< relative density; null: 1 everywhere
 
   double mu_t() const { return mu_s + mu_a; }
   double albedo() const { return mu_s > 0 ? mu_s / mu_t() : 0; }
   double absorption(const Vec3& x) const { return density ? mu_a * (*density)(x) : mu_a; }
 };
 
-/// A medium as keys have it; without mu_s and mu_a there is none.
+/// Scene keys of a medium. If neither mu_s nor mu_a is given, there is no medium.
 struct MediumValues {
   std::optional<double> mu_s = {}, mu_a = {};
   std::string phase = IsotropicPhase::word, density = {};
@@ -55,10 +57,10 @@ struct MediumValues {
   }
 };
 
-/// prefix: of the keys, "" or "body_".
+/// Adds the scene keys of a medium. Their names begin with `prefix`, which is "" or "body_".
 void add_keys(Keys& keys, MediumValues& values, const std::string& prefix);
 
-/// Throws InputError.
+/// Makes the medium from its scene keys. Throws InputError for invalid values.
 ScatteringMedium make_medium(const Keys& keys, const MediumValues& values);
 
 }  // namespace flatspeckle::grin

@@ -14,7 +14,7 @@
 
 namespace flatspeckle::grin {
 
-/// All phase functions in space (space_phase.h); the one list of them.
+/// All phase functions in space (explained in space_phase.h). To add one, extend only this list.
 using SpacePhaseKinds = std::tuple<IsotropicPhase, HgPhase, RayleighPhase, TwoTermPhaseValues,
                                    TablePhaseValues, MiePhaseValues>;
 
@@ -35,7 +35,7 @@ struct SpacePhaseFunction {
   double one_minus_cosine(RandomStream& random) const {
     return std::visit([&](const auto& phase) { return phase.one_minus_cosine(random); }, which);
   }
-  /// Where light that goes along `direction`, a unit vector, goes next.
+  /// Samples the direction after scattering of light along `direction`, a unit vector.
   Vec3 sample(const Vec3& direction, RandomStream& random) const {
     return random_turn(direction, one_minus_cosine(random), random);
   }

@@ -9,16 +9,17 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// Integral of the table times sin(k angle) over its interval i, exactly: d^2 j_1(d) is sin d -
-/// d cos d without its cancellation for small d.
+/// Returns the exact integral of the table times sin(k angle) over interval i of the table. Uses
+/// d^2 j_1(d), with the spherical Bessel function j_1, for sin d - d cos d, which cancels for small
+/// d.
 double moment(const AngleTable& table, std::size_t i, int k) {
   const double middle = k * (table.angles()[i] + table.angles()[i + 1]) / 2,
                half = k * (table.angles()[i + 1] - table.angles()[i]) / 2,
                mean = (table.values()[i] + table.values()[i + 1]) / 2,
-               slope = (table.values()[i + 1] - table.values()[i]) / (2 * half);
+               derivative = (table.values()[i + 1] - table.values()[i]) / (2 * half);
   return 2 / static_cast<double>(k) *
          (mean * std::sin(middle) * std::sin(half) +
-          slope * std::cos(middle) * half * half * std::sph_bessel(1, half));
+          derivative * std::cos(middle) * half * half * std::sph_bessel(1, half));
 }
 
 double one_minus_cosine_of(double angle) {
@@ -45,8 +46,9 @@ double TablePhase::density(double cosine) const {
   return shape_->table(angle_of(1 - cosine)) / shape_->so_far.back();
 }
 
-/// In the interval that is drawn, uniformly over the sphere, until the table accepts: where it
-/// falls from something to nothing at once, one of three is.
+/// Samples an interval of the table, then an angle in this interval by rejection from a uniform
+/// distribution over the sphere. In an interval where the table falls to 0, one of three trials is
+/// accepted.
 double TablePhase::one_minus_cosine(RandomStream& random) const {
   const AngleTable& table = shape_->table;
   const auto& so_far = shape_->so_far;

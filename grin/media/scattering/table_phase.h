@@ -9,9 +9,9 @@
 
 namespace flatspeckle::grin {
 
-/// A phase function that was measured or computed elsewhere: a CSV file with columns angle
-/// (radians, rising from 0 to pi) and value (per solid angle; not negative, in any unit), linear in
-/// between.
+/// A phase function that was measured or computed elsewhere. A CSV file contains it in the columns
+/// angle (radians, rising from 0 to pi) and value (per solid angle; not negative, in any unit). The
+/// phase function is linear between the rows of the table.
 class TablePhase {
  public:
   explicit TablePhase(AngleTable table);
@@ -23,7 +23,8 @@ class TablePhase {
  private:
   struct Shape {
     AngleTable table;
-    std::vector<double> so_far = {0};  ///< integral over the sphere up to each angle
+    /// Integral of the table over the sphere, from angle 0 to each angle of the table.
+    std::vector<double> so_far = {0};
     double mean_cosine = 0;
   };
   std::shared_ptr<const Shape> shape_;
@@ -36,11 +37,12 @@ struct TablePhaseValues {
 
 inline void add_keys(Keys& keys, TablePhaseValues& values, const std::string& prefix) {
   keys.add(prefix + "phase_table", values.phase_table,
-           "CSV with columns angle (0 to pi) and value (any unit), linear in between")
+           "CSV with columns angle (0 to pi) and value (any unit), linear between the rows")
       .file()
       .only_of(values.word);
 }
-/// Throws InputError for a file that is no such table.
+/// Reads the phase function from the file given by its key. Throws InputError if the file does not
+/// contain such a table.
 TablePhase make_phase(const Keys& keys, const TablePhaseValues& values);
 
 }  // namespace flatspeckle::grin

@@ -6,11 +6,11 @@
 
 namespace flatspeckle::grin {
 
-/// Two Henyey-Greenstein functions mixed, as tissue and ice are described: a forward peak and what
-/// goes backwards.
+/// Mixture of two Henyey-Greenstein functions, a forward peak and a backward part, as used for
+/// tissue and ice.
 struct TwoTermPhase {
   HenyeyGreenstein<3> first, second;
-  double share;  ///< of the first
+  double share;  ///< weight of the first term
 
   double density(double cosine) const {
     return share * first.density_at(cosine) + (1 - share) * second.density_at(cosine);
@@ -28,13 +28,15 @@ struct TwoTermPhaseValues {
 };
 
 inline void add_keys(Keys& keys, TwoTermPhaseValues& values, const std::string& prefix) {
-  keys.add(prefix + "g", values.g, "Mean cosine of the first term")
+  keys.add(prefix + "g", values.g, "Mean cosine of the first term of phase = two_term_hg")
       .between(-1, 1)
       .only_of(values.word);
-  keys.add(prefix + "g_back", values.g_back, "Mean cosine of the second term")
+  keys.add(prefix + "g_back", values.g_back,
+           "Mean cosine of the second term of phase = two_term_hg")
       .between(-1, 1)
       .only_of(values.word);
-  keys.add(prefix + "forward_share", values.forward_share, "Share of the first term")
+  keys.add(prefix + "forward_share", values.forward_share,
+           "Weight of the first term (the one with g) of phase = two_term_hg")
       .from(0, 1)
       .only_of(values.word);
 }

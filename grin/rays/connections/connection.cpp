@@ -24,13 +24,13 @@ double ConnectionStatistics::success_rate() const {
 double ConnectionStatistics::iterations_per_trial() const {
   return ratio(iterations, trials());
 }
-double ConnectionStatistics::mean_refind() const {
-  return ratio(refind, found);
+double ConnectionStatistics::mean_trials() const {
+  return ratio(further, found);
 }
 
-void ConnectionStatistics::record_refind(std::uint64_t further_trials) {
-  refind += further_trials;
-  refind_max = std::max(refind_max, further_trials);
+void ConnectionStatistics::record_trials(std::uint64_t further_trials) {
+  further += further_trials;
+  most_trials_of_one = std::max(most_trials_of_one, further_trials);
 }
 
 ConnectionStatistics& ConnectionStatistics::operator+=(const ConnectionStatistics& other) {
@@ -41,9 +41,9 @@ ConnectionStatistics& ConnectionStatistics::operator+=(const ConnectionStatistic
   tangent_steps += other.tangent_steps;
   pairs += other.pairs;
   found += other.found;
-  refind += other.refind;
-  refind_max = std::max(refind_max, other.refind_max);
-  roulette_ends += other.roulette_ends;
+  further += other.further;
+  most_trials_of_one = std::max(most_trials_of_one, other.most_trials_of_one);
+  roulette_terminations += other.roulette_terminations;
   return *this;
 }
 
@@ -56,21 +56,26 @@ bool same_curve(const Connection& a, const Connection& b, double tolerance) {
 
 const DatasetTable trials_table{
     "trials",
-    {{"trials/converged", Data::count, "", "1", "trials that ended so"},
-     {"trials/no_approach", Data::count, "", "1", "trials that ended so"},
-     {"trials/not_converged", Data::count, "", "1", "trials that ended so"},
-     {"trials/left_region", Data::count, "", "1", "trials that ended so"},
-     {"trials/too_long", Data::count, "", "1", "trials that ended so"},
-     {"trials/degenerate", Data::count, "", "1", "trials that ended so"},
+    {{"trials/converged", Data::count, "", "1", "number of trials that converged to a curve"},
+     {"trials/no_approach", Data::count, "", "1",
+      "number of trials whose first ray never approaches the second point"},
+     {"trials/not_converged", Data::count, "", "1",
+      "number of trials whose corrections do not converge"},
+     {"trials/left_region", Data::count, "", "1", "number of trials whose curve leaves the region"},
+     {"trials/too_long", Data::count, "", "1",
+      "number of trials whose curve is longer than max_length"},
+     {"trials/degenerate", Data::count, "", "1",
+      "number of trials that end at a caustic or a focus"},
      {"trials/iterations", Data::count, "", "1", "Gauss-Newton steps of all trials"},
-     {"trials/pairs", Data::count, "", "1", "pairs of points that a curve was sought between"},
-     {"trials/found", Data::count, "", "1", "pairs whose first trial found one"},
-     {"trials/further", Data::count, "", "1", "further trials until a curve was found again"},
-     {"trials/roulette_ends", Data::count, "", "1", "searches that roulette ended"}}};
+     {"trials/pairs", Data::count, "", "1", "pairs of points for which curves were searched"},
+     {"trials/found", Data::count, "", "1", "pairs whose first trial found a curve"},
+     {"trials/further", Data::count, "", "1",
+      "further trials until the curve of the first trial was found again"},
+     {"trials/roulette_ends", Data::count, "", "1", "searches terminated by Russian roulette"}}};
 
 void write_trials(ResultFile& file, const ConnectionStatistics& statistics) {
   const ResultGroup root(file, trials_table);
-  for (std::size_t i = 0; i < trial_outcomes; ++i)  // the first rows
+  for (std::size_t i = 0; i < trial_outcomes; ++i)  // the first rows of the table are the outcomes
     root.put(trials_table.rows[i].path, statistics.outcomes[i]);
   root.put("trials/iterations", statistics.iterations);
 }
@@ -79,8 +84,8 @@ void write_pairs(ResultFile& file, const ConnectionStatistics& statistics) {
   const ResultGroup root(file, trials_table);
   root.put("trials/pairs", statistics.pairs);
   root.put("trials/found", statistics.found);
-  root.put("trials/further", statistics.refind);
-  root.put("trials/roulette_ends", statistics.roulette_ends);
+  root.put("trials/further", statistics.further);
+  root.put("trials/roulette_ends", statistics.roulette_terminations);
 }
 
 }  // namespace flatspeckle::grin

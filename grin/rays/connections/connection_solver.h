@@ -5,34 +5,37 @@
 
 namespace flatspeckle::grin {
 
-/// Survives each doubling of the number of trials with this probability. Below 1/2, the expected
-/// number of trials is finite even for a curve that is never found again; and the weight grows as
-/// a power of the number of trials only, so that its variance is finite for every curve.
-inline constexpr double refind_survival = 0.25;
+/// A search is repeated until it finds the same curve again (C26). This is the probability that it
+/// survives each doubling of its number of trials. Because this
+/// probability is below 1/2, the expected number of trials is finite even for a curve that is never
+/// found again. The weight of a search grows only as a power of the number of trials, so that its
+/// variance is finite for every curve.
+inline constexpr double bernoulli_survival = 0.25;
 
-/// Independent trials until a curve is found again, failures counted: K of C26, unbiased for one
-/// over the curve's chance. After roulette_after trials the search goes on by Russian roulette: K
-/// is the sum over j of [not found in j trials], and each term is divided by the chance to get
-/// there. refinds() makes a trial and says whether it found the curve.
-template <class Refinds>
-double trials_to_refind(const Refinds& refinds, std::uint64_t roulette_after, RandomStream& random,
-                        ConnectionStatistics& statistics) {
+/// Returns the number of independent Bernoulli trials until a curve is found again: K of C26, an
+/// unbiased estimate of the reciprocal probability of the curve. After roulette_after trials the
+/// search continues by Russian roulette: K is a sum over j = 0, 1, ...; term j is 1 if the first j
+/// trials have not found the curve, otherwise 0. Each term is divided by the probability that the
+/// search continues up to it. finds_again() makes a trial and returns whether it found the curve.
+template <class FindsAgain>
+double reciprocal_probability(const FindsAgain& finds_again, std::uint64_t roulette_after,
+                              RandomStream& random, ConnectionStatistics& statistics) {
   double expected = 0, weight = 1;
   std::uint64_t roulette_at = roulette_after;
   std::uint64_t tried = 0;
   for (bool again = false; !again; ++tried) {
     if (tried >= roulette_at) {
-      if (random.uniform() > refind_survival) {
-        ++statistics.roulette_ends;
+      if (random.uniform() > bernoulli_survival) {
+        ++statistics.roulette_terminations;
         break;
       }
-      weight /= refind_survival;
+      weight /= bernoulli_survival;
       roulette_at *= 2;
     }
     expected += weight;
-    again = refinds();
+    again = finds_again();
   }
-  statistics.record_refind(tried);
+  statistics.record_trials(tried);
   return expected;
 }
 
@@ -45,13 +48,13 @@ ConnectionEstimate connect_by(const Draw& draw, const ConnectionTrial<F, R, Step
   const auto first = draw();
   if (first.outcome != TrialOutcome::converged) return {first.outcome, std::nullopt, 0};
   ++statistics.found;
-  const auto refinds = [&] {
+  const auto finds_again = [&] {
     const auto again = draw();
     return again.outcome == TrialOutcome::converged &&
            same_curve(first.curve, again.curve, trial.options().same);
   };
   const double multiplicity =
-      trials_to_refind(refinds, trial.options().roulette_after, random, statistics);
+      reciprocal_probability(finds_again, trial.options().roulette_after, random, statistics);
   return {
       first.outcome,
       trial.options().count_caustics ? trial.with_caustics(first.curve, statistics) : first.curve,
@@ -60,7 +63,8 @@ ConnectionEstimate connect_by(const Draw& draw, const ConnectionTrial<F, R, Step
 
 }  // namespace connection_parts
 
-/// One random curve with its multiplicity (C26).
+/// Returns a random curve from P to Q and its multiplicity, an unbiased estimate of the reciprocal
+/// probability of finding the curve (C26).
 template <IndexField F, Region R, class Step>
 ConnectionEstimate connect(const ConnectionTrial<F, R, Step>& trial, RandomStream& random,
                            ConnectionStatistics& statistics) {
@@ -68,24 +72,26 @@ ConnectionEstimate connect(const ConnectionTrial<F, R, Step>& trial, RandomStrea
   return connection_parts::connect_by(draw, trial, random, statistics);
 }
 
-/// The same at half the cost where most pairs of points have one curve. Each trial starts along the
-/// chord with a chance that depends on the pair alone, and at random otherwise; where the chord
-/// leads is computed once. The rarer a random start is, the less often a second curve is found, and
-/// the more it weighs.
+/// Computes the estimate of connect() at half the cost if most pairs of points have one curve. Each
+/// trial starts along the chord, the straight line from P to Q, with a probability that depends
+/// only on P and Q, otherwise in a random direction. The trial along the chord always has the same
+/// result and is computed once. If random starts are rare, a second curve is rarely found and then
+/// has a large weight.
 template <IndexField F, Region R, class Step>
 ConnectionEstimate connect_chord_first(const ConnectionTrial<F, R, Step>& trial,
                                        RandomStream& random, ConnectionStatistics& statistics) {
   const auto chord = trial.along_chord(statistics);
-  const double chance = chord.outcome != TrialOutcome::converged ? 0
-                        : trial.is_nearly_straight(chord.curve)  ? 0.95
-                                                                 : 0.6;
+  const double chord_probability = chord.outcome != TrialOutcome::converged ? 0
+                                   : trial.is_nearly_straight(chord.curve)  ? 0.95
+                                                                            : 0.6;
   const auto draw = [&] {
-    return random.uniform() < chance ? chord : trial.run(random, statistics);
+    return random.uniform() < chord_probability ? chord : trial.run(random, statistics);
   };
   return connection_parts::connect_by(draw, trial, random, statistics);
 }
 
-/// In a homogeneous field the curve is the straight line, and no trial runs.
+/// Returns the straight line from P to Q, which is the only connection in a homogeneous field. No
+/// trial runs.
 template <IndexField F, Region R, class Step>
 requires HomogeneousField<F> ConnectionEstimate connect(const ConnectionTrial<F, R, Step>& trial,
                                                         RandomStream&, ConnectionStatistics&) {
@@ -94,8 +100,9 @@ requires HomogeneousField<F> ConnectionEstimate connect(const ConnectionTrial<F,
   return {outcome, line, 1};
 }
 
-/// Every curve that so many trials find, by optical path, caustics counted. A curve of chance p is
-/// missed with probability (1-p)^trials. Trials that end on caustics are in the statistics only.
+/// Returns every curve from P to Q found by `trials` trials, sorted by optical path, with its
+/// caustics counted. A curve that a trial finds with probability p is missed with probability
+/// (1-p)^trials. Trials that end on caustics find no curve, but are counted in the statistics.
 template <IndexField F, Region R, class Step>
 std::vector<FoundConnection> all_connections(const ConnectionTrial<F, R, Step>& trial,
                                              std::uint64_t trials, RandomStream& random,

@@ -14,7 +14,8 @@ namespace flatspeckle::grin {
 
 namespace connection_parts {
 
-/// Far from Q: Leapfrog, unless a step knows better.
+/// Integrator for rays that end far from Q: Leapfrog, unless the integrator Step defines another
+/// one as Step::Rough.
 template <class Step>
 struct RoughStep {
   using type = Leapfrog;
@@ -27,7 +28,8 @@ struct RoughStep<Step> {
   using type = typename Step::Rough;
 };
 
-/// Whether a step is no better than that.
+/// Whether the integrator Step is no more accurate than its rough integrator, so that Step alone
+/// is used.
 template <class Step, class F>
 bool is_rough(const F& field) {
   if constexpr (requires { Step::is_rough(field); })
@@ -38,17 +40,18 @@ bool is_rough(const F& field) {
 
 }  // namespace connection_parts
 
-/// Curves from P to Q through a field, inside a region, with an integrator of ray_step.h. One trial
-/// (conventions, C26) draws a start direction, follows its ray, picks one of the points where the
-/// ray comes closest to Q, and mends direction and length from there by damped Gauss-Newton steps
-/// on the distance from Q. As long as the end is far from Q, rays go by Leapfrog, which is cheaper.
+/// Finds curves from P to Q through a field, inside a region, with an integrator of ray_step.h. A
+/// trial (conventions, C26) samples a start direction, traces its ray, and chooses one of the
+/// points of closest approach to Q. From there, damped Gauss-Newton steps adjust the direction and
+/// length of the ray until it ends at Q. While the end is far from Q, rays use Leapfrog, which is
+/// cheaper.
 ///
-/// A curve consists of equal steps, their number given by its sigma alone, so that the way back is
-/// the same curve.
+/// A curve consists of equal steps. Their number depends only on the length of the curve in sigma,
+/// so that the reverse curve is the same.
 template <IndexField F, Region R, class Step = Sharma>
 class ConnectionTrial {
  public:
-  /// Refers to the field. Coincident points are legal; every trial is degenerate then.
+  /// Keeps a reference to the field. P and Q may coincide; every trial is then degenerate.
   ConnectionTrial(const F& field, const R& region, const Vec3& from, const Vec3& to,
                   const ConnectionOptions& options)
       : field_(field),
@@ -62,7 +65,7 @@ class ConnectionTrial {
 
   struct Result {
     TrialOutcome outcome;
-    Connection curve;  ///< if converged; caustics not counted
+    Connection curve;  ///< valid if converged; caustics are not counted
   };
 
   Result run(RandomStream& random, ConnectionStatistics& statistics) const {
@@ -72,8 +75,8 @@ class ConnectionTrial {
     });
   }
 
-  /// The trial that starts along the chord and goes for the first closest approach: no chance in
-  /// it.
+  /// Makes the deterministic trial whose first ray starts along the chord, the straight line from P
+  /// to Q, and ends at its first closest approach to Q.
   Result along_chord(ConnectionStatistics& statistics) const {
     return trial(statistics, [&] {
       const Vec3 direction = (to_ - from_) / gap_;
@@ -86,13 +89,13 @@ class ConnectionTrial {
     });
   }
 
-  /// Of a curve: it is hardly bent, and neighbours spread about as straight rays do.
+  /// Whether a curve is nearly straight, and rays next to it spread about as much as straight rays.
   bool is_nearly_straight(const Connection& curve) const {
     const double spread = curve.spreading / (gap_ * gap_);
     return curve.start_direction.dot(to_ - from_) > 0.9 * gap_ && spread > 0.3 && spread < 3;
   }
 
-  /// The straight line, exactly.
+  /// Returns the straight line from P to Q, which is the exact curve.
   Result straight() const requires HomogeneousField<F> {
     if (coincident()) return {TrialOutcome::degenerate, {}};
     if (gap_ > options_.max_length) return {TrialOutcome::too_long, {}};
@@ -104,7 +107,7 @@ class ConnectionTrial {
             {direction, direction, gap_ / n_from_, gap_, n_from_ * gap_, gap_ * gap_, 1, steps, 0}};
   }
 
-  /// Caustics counted along the curve.
+  /// Returns the curve with the number of its caustics, which are counted by tracing it.
   Connection with_caustics(Connection curve, ConnectionStatistics& statistics) const {
     curve.caustics =
         follow({curve.start_direction, curve.sigma, curve.steps, true}, statistics).count();
@@ -115,23 +118,26 @@ class ConnectionTrial {
 
  private:
   using Rough = typename connection_parts::RoughStep<Step>::type;
-  static constexpr double suspicious = 1e-2;  // narrow against length: look closer
-  static constexpr double near = 1e-2;        // of Q, in units of |PQ|
-  static constexpr int most_steps = 1 << 20;  // of a ray that creeps where the index is near 0
+  // Ratio of beam width to ray length at Q below which a curve is tested for caustics
+  static constexpr double suspicious = 1e-2;
+  // Distance from Q, in units of |PQ|, within which rays use the accurate integrator Step
+  static constexpr double near = 1e-2;
+  // Largest number of steps, for rays that cross regions where the index is near 0
+  static constexpr int most_steps = 1 << 20;
 
   struct Aim {
-    Vec3 direction;  // unit
+    Vec3 direction;  // start direction, a unit vector
     double sigma;
     int steps;
     bool precise;
-    bool raised = false;  // the number of steps, at the last change
+    bool raised = false;  // whether the last change of the number of steps was an increase
   };
   struct Shot {
     RayState end;
     RayTangent tangent = {};
-    bool inside = true;   // what the region says
-    bool uniform = true;  // steps
-    Vec3 error = {};      // of the end, and its length
+    bool inside = true;   // whether the ray stays in the region
+    bool uniform = true;  // whether all steps are equal
+    Vec3 error = {};      // vector from Q to the end of the ray; its length is `miss`
     double miss = 0;
   };
 
@@ -139,7 +145,7 @@ class ConnectionTrial {
     return {direction, sigma, steps_for(sigma), connection_parts::is_rough<Step>(field_)};
   }
 
-  /// Or so close that no direction is known well enough to tell whether two curves are one.
+  /// Whether P and Q are so close that the rounding of directions prevents distinguishing curves.
   bool coincident() const { return gap_ * std::min(options_.same, 1e-3) <= rounding_; }
 
   int steps_for(double sigma) const {
@@ -147,7 +153,7 @@ class ConnectionTrial {
     return steps < most_steps ? std::max(1, static_cast<int>(steps)) : most_steps;
   }
 
-  /// begin(): the first aim.
+  /// Makes a trial; begin() returns the direction and the length of its first ray.
   template <class Begin>
   Result trial(ConnectionStatistics& statistics, const Begin& begin) const {
     Result result{TrialOutcome::degenerate, {}};
@@ -159,8 +165,9 @@ class ConnectionTrial {
     return result;
   }
 
-  /// The sigma of one of the points where the ray comes closest to Q, drawn with weights
-  /// 1 / distance^2; where it ends while still approaching, the end is one. 0 if there is none.
+  /// Samples one of the points where a ray is closest to Q with weights 1 / distance^2 and returns
+  /// its sigma, 0 if there is none. The end of a ray that still approaches Q counts as such a
+  /// point.
   double draw_approach(const Vec3& direction, RandomStream& random,
                        ConnectionStatistics& statistics) const {
     double drawn = 0, total = 0;
@@ -173,7 +180,8 @@ class ConnectionTrial {
     return drawn;
   }
 
-  /// offer(sigma, squared distance) -> whether to go on.
+  /// Calls offer(sigma, squared distance from Q) for each point where a ray is closest to Q, until
+  /// offer() returns false.
   template <class Offer>
   void each_approach(const Vec3& direction, ConnectionStatistics& statistics,
                      const Offer& offer) const {
@@ -185,7 +193,8 @@ class ConnectionTrial {
       const double was_nearing = nearing;
       Rough::step(field_, ray, h);
       ++statistics.guess_steps;
-      if (!(ray.arc_length > before.arc_length)) return;  // no ray: the index is not positive
+      // The ray is lost where the index is not positive
+      if (!(ray.arc_length > before.arc_length)) return;
       nearing = (to_ - ray.x).dot(ray.v);
       if (was_nearing > 0 && nearing <= 0) {
         const double part = was_nearing / (was_nearing - nearing);
@@ -216,12 +225,12 @@ class ConnectionTrial {
     }
     steps_made += i;
     shot.error = shot.end.x - to_;
-    // NaN where there is no ray, or one far too long
+    // NaN if the ray is lost or longer than twice max_length
     shot.miss = shot.end.arc_length <= longest ? shot.error.norm() : std::nan("");
     return shot;
   }
 
-  /// The two end points are not asked about.
+  /// Whether a step of the ray stays in the region. The two end points of the ray are not tested.
   bool keeps(const RayState& start, const RayState& end, double h) const {
     if constexpr (requires { region_.keep(start, end, h); })
       return region_.keep(start, end, h);
@@ -244,7 +253,8 @@ class ConnectionTrial {
   Result refine(Aim aim, ConnectionStatistics& statistics) const {
     Shot shot = shoot(aim, statistics);
     DampedStep damped;
-    double miss_before = std::numeric_limits<double>::infinity();  // by the same steps
+    // Distance from Q of the end of the previous ray, if it had the same number of steps
+    double miss_before = std::numeric_limits<double>::infinity();
     for (int i = 0; i < options_.max_iterations && !damped.stuck(); ++i) {
       if (!aim.precise && shot.miss <= near * gap_) {
         aim.precise = true;
@@ -256,12 +266,12 @@ class ConnectionTrial {
         aim.raised = steps_for(aim.sigma) > aim.steps;
         aim.steps = steps_for(aim.sigma);
         shot = shoot(aim, statistics);
-        continue;  // as a rule it is still there, and rounding lets no move mend it
+        continue;  // usually the ray still ends at Q, and rounding prevents any further improvement
       }
       Aim next = moved(aim, shot, damped);
       if (next.steps != aim.steps) miss_before = std::numeric_limits<double>::infinity();
       const double left = shot.miss * std::pow(shot.miss / miss_before, 2);
-      if (shot.uniform && has_its_steps(next) && ends_well(aim, shot, left))
+      if (shot.uniform && has_its_steps(next) && ends_on_target(aim, shot, left))
         return judge(next, carried(aim, shot, next, left), statistics);
       Shot tried = shoot(next, statistics);
       ++statistics.iterations;
@@ -278,16 +288,16 @@ class ConnectionTrial {
     return {judge_failure(aim, shot, statistics), {}};
   }
 
-  /// The end is at Q, and so well that the direction is known.
+  /// Whether the ray ends so close to Q that its start direction is accurate enough.
   bool arrived(const Aim& aim, const Shot& shot) const {
     const double rounding = rounding_ * std::sqrt(aim.steps);
     if (!aim.precise || !(shot.miss <= std::max(rounding, options_.tolerance * gap_))) return false;
     return shot.miss <= std::max(rounding, options_.same / 10 * end_widths(aim, shot).narrow);
   }
 
-  /// The next move, from so close that it leaves `left` of the miss, needs no shot to be believed:
-  /// what that would tell follows from the derivative.
-  bool ends_well(const Aim& aim, const Shot& shot, double left) const {
+  /// Whether the next correction of the ray need not be traced, because its result follows from
+  /// derivatives. left: distance from Q that is expected to remain after this correction.
+  bool ends_on_target(const Aim& aim, const Shot& shot, double left) const {
     if (!aim.precise || !(shot.miss <= options_.carry * gap_ && left <= options_.tolerance * gap_))
       return false;
     const double narrow = end_widths(aim, shot).narrow;
@@ -295,7 +305,7 @@ class ConnectionTrial {
   }
   Shot carried(const Aim& aim, Shot shot, const Aim& next, double left) const {
     const double longer = next.sigma - aim.sigma, along = shot.error.dot(shot.end.v);
-    shot.end.optical_path -= along;  // Fermat's principle
+    shot.end.optical_path -= along;  // first-order change by Fermat's principle
     shot.end.arc_length -= along / shot.end.v.norm();
     shot.end.v += n_from_ * (shot.tangent.dv * (next.direction - aim.direction)) +
                   longer * ray_force(field_, shot.end.x).force;
@@ -305,16 +315,17 @@ class ConnectionTrial {
     return shot;
   }
 
-  /// Where sigma is a multiple of the step to rounding, both numbers of steps may ask for the other
-  /// one: the larger stays.
+  /// Whether the number of steps is steps_for(sigma). If sigma is a multiple of the step within
+  /// rounding, two numbers of steps may alternate; the larger one is then kept.
   bool has_its_steps(const Aim& aim) const {
     const int steps = steps_for(aim.sigma);
     return steps == aim.steps || (aim.raised && steps < aim.steps);
   }
 
-  /// Moves the end along its ray to where it comes closest to Q: a turned ray may pass closer
-  /// though it ends farther, as at a focus, where the directions agree in optical path and not in
-  /// sigma. Returns the change of sigma.
+  /// Moves the end of the ray along the ray to the point closest to Q and returns the change of
+  /// sigma. A ray with a new direction may pass closer to Q although it ends farther away. This
+  /// happens at a focus, where rays of different directions have the same optical path but not the
+  /// same sigma.
   double draw_near(Shot& shot, double sigma) const {
     const double wanted = -shot.error.dot(shot.end.v) / shot.end.v.squaredNorm();
     const double change = std::clamp(wanted, -sigma / 2, sigma / 2);
@@ -325,7 +336,8 @@ class ConnectionTrial {
     return change;
   }
 
-  /// Near the end the number of steps stays, which would move the end.
+  /// Returns direction and length of the next ray, by a damped Gauss-Newton step. Near Q the number
+  /// of steps is kept, because a change would move the end.
   Aim moved(const Aim& aim, const Shot& shot, DampedStep& damped) const {
     const CurveStart start =
         stepped({aim.direction, aim.sigma}, n_from_, shot.end, shot.tangent, shot.error, damped);
@@ -350,7 +362,8 @@ class ConnectionTrial {
              shot.end.optical_path, std::abs(spreading), spreading < 0 ? -1 : 1, aim.steps}};
   }
 
-  /// Where rays focus, the discrete ones miss the focus a little, and no step mends that.
+  /// Returns the outcome of a failed trial. If Q is at a focus, discretised rays miss it slightly,
+  /// and no correction improves this.
   TrialOutcome judge_failure(const Aim& aim, const Shot& shot,
                              ConnectionStatistics& statistics) const {
     if (!(shot.miss < near * gap_)) return TrialOutcome::not_converged;
@@ -370,7 +383,7 @@ class ConnectionTrial {
   Vec3 from_, to_;
   ConnectionOptions options_;
   double n_from_, gap_;
-  double rounding_;  ///< of the points' coordinates in a step
+  double rounding_;  ///< rounding error of the coordinates in one integration step
 };
 
 }  // namespace flatspeckle::grin

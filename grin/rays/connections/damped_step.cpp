@@ -11,7 +11,7 @@ namespace flatspeckle::grin {
 
 namespace {
 
-constexpr double longest_turn = 0.7;  // rad
+constexpr double longest_turn = 0.7;  // largest turn of the start direction in one step, rad
 
 double turn(const CurveChange& change) {
   return std::hypot(change.first_angle, change.second_angle);

@@ -9,11 +9,12 @@ namespace flatspeckle::grin {
 
 namespace {
 
-// A map this much narrower than wide has a determinant of rounding errors.
+// Ratio of the two singular values of a transverse map below which its determinant consists of
+// rounding errors.
 constexpr double rounding = 1e-13;
 
-/// Caustics between two points with the transverse maps `before` and `after`: the negative
-/// eigenvalues of after before^-1.
+/// Returns the number of caustics between two points with the transverse maps `before` and `after`:
+/// the number of negative eigenvalues of the matrix after before^-1.
 int crossings(const Mat2& before, const Mat2& after) {
   Mat2 adjugate;
   adjugate << before(1, 1), -before(0, 1), -before(1, 0), before(0, 0);
@@ -37,7 +38,8 @@ void CausticCount::pass(const RayState& ray, const RayTangent& tangent) {
   const Mat2 map = transverse_map(tangent, n_start_, start_, here_);
   const auto [narrow, wide] = widths(map);
   widest_ = std::max(widest_, wide);
-  if (narrow < rounding * widest_) return;  // on a caustic: judge by the points on both sides
+  // A point on a caustic is skipped: the points before and after it are compared instead
+  if (narrow < rounding * widest_) return;
   count_ += crossings(before_, map);
   before_ = map;
 }

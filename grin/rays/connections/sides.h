@@ -8,18 +8,19 @@
 
 namespace flatspeckle::grin {
 
-/// The region on one side of each surface.
+/// The region that lies on a given side of each of several surfaces.
 struct Sides {
   std::span<const Surface> surfaces;
-  std::span<const double> signs;  ///< 1: inside, -1: outside
-  double tolerance = 0;           ///< so far beyond a surface is still on its side
+  /// For each surface, the side on which the region lies: 1 for inside, -1 for outside.
+  std::span<const double> signs;
+  double tolerance = 0;  ///< points up to this distance beyond a surface count as inside the region
 
   bool operator()(const Vec3& x) const {
     for (std::size_t i = 0; i < surfaces.size(); ++i)
       if (!(signs[i] * distance(surfaces[i], x) <= tolerance)) return false;
     return true;
   }
-  /// A step h, its ends and what is between them.
+  /// Whether a step, including its ends, stays in the region. h: length of the step in sigma.
   bool keep(const RayState& start, const RayState& end, double h) const {
     const StepCurve curve(start, end, h);
     const double arc = 1.1 * (end.arc_length - start.arc_length);

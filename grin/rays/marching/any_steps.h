@@ -12,15 +12,15 @@
 
 namespace flatspeckle::grin {
 
-/// What a ray passes, so that it can be drawn: points evenly spaced in arc length, by cubics
-/// between steps.
+/// Path of a ray for plots: points evenly spaced in arc length, interpolated by cubics between the
+/// ends of steps.
 class RayPath {
  public:
   void add(const RayState& ray);
-  /// The ray goes no farther than here; what was added beyond does not count.
+  /// Ends the path at the given state of the ray and removes nodes beyond it.
   void end_with(const RayState& ray);
 
-  /// From first to last; count >= 2.
+  /// Returns `count` points, at least 2, from the start to the end of the path.
   std::vector<Vec3> points(std::size_t count) const;
 
  private:
@@ -33,45 +33,51 @@ class RayPath {
   std::vector<Node> nodes_;
 };
 
-/// All integrators; the one list of them.
+/// All integrators of rays. To add one, extend only this list.
 using Integrators = std::variant<Sharma, Yoshida4, Leapfrog>;
 
-/// Steps of equal length, or controlled by a tolerance.
+/// Integrator of rays and its step length: `longest` for all steps or, if there is a tolerance,
+/// controlled by the estimated error.
 struct RaySteps {
   Integrators integrator;
   double longest;
   std::optional<double> tolerance = {};
 };
 
-/// How a ray is followed, and what is to be known of it on its way.
+/// Record of a ray while it is traced: length of its next step, its path, and the largest
+/// difference between |v| and the index n (C23).
 class RayLog {
  public:
   RayLog(const RaySteps& steps, bool keeps_path)
       : steps_(steps), next_(steps.longest / 16), keeps_path_(keeps_path) {}
 
-  /// Steps from one look at the index to the next: a look costs as much as a cheap step.
-  static constexpr int steps_unseen = 4;
+  /// Number of steps between checks of |v| = n. A check costs as much as a cheap step.
+  static constexpr int steps_between_checks = 4;
 
-  /// Takes what others have seen of its steps.
-  void met(double index_mismatch) { index_mismatch_ = std::max(index_mismatch_, index_mismatch); }
+  /// Includes a difference between |v| and n that was measured elsewhere.
+  void record_mismatch(double index_mismatch) {
+    index_mismatch_ = std::max(index_mismatch_, index_mismatch);
+  }
 
   void start(const RayState& ray) {
     if (keeps_path_) path_.add(ray);
   }
-  /// At the end of a step, of one that is not controlled with a look at the index.
+  /// Records the end of a step. If steps are not controlled by a tolerance, checks |v| = n at
+  /// regular intervals.
   template <IndexField F>
   void pass(const F& field, const RayState& ray) {
-    if (!steps_.tolerance && ++steps_made_ % steps_unseen == 0) look(field, ray);
+    if (!steps_.tolerance && ++steps_made_ % steps_between_checks == 0) check_index(field, ray);
     if (keeps_path_) path_.add(ray);
   }
-  /// Here, whatever the steps went beyond.
+  /// Records the end of the ray. The last recorded step may have gone beyond this end.
   template <IndexField F>
   void end(const F& field, const RayState& ray) {
     if (keeps_path_) path_.end_with(ray);
-    look(field, ray);
+    check_index(field, ray);
   }
 
-  /// Largest ||v| - n| on the way, of controlled steps before it is restored.
+  /// Returns the largest difference between |v| and n along the ray. Controlled steps measure it
+  /// before |v| = n is restored.
   double index_mismatch() const { return index_mismatch_; }
   const RayPath& path() const { return path_; }
 
@@ -80,20 +86,21 @@ class RayLog {
 
  private:
   template <IndexField F>
-  void look(const F& field, const RayState& ray) {
-    // NaN, beyond the last index, is not kept
+  void check_index(const F& field, const RayState& ray) {
+    // The index is NaN outside the field; this is ignored
     index_mismatch_ = std::max(index_mismatch_, std::abs(ray.v.norm() - index(field, ray.x)));
   }
 
   const RaySteps& steps_;
-  double next_;  ///< of controlled steps
+  double next_;  ///< length of the next step, if steps are controlled by a tolerance
   bool keeps_path_;
   std::uint64_t steps_made_ = 0;
   double index_mismatch_ = 0;
   RayPath path_;
 };
 
-/// Steps that trace() takes, equal or controlled as the log says, and that the log is told of.
+/// Steps for trace(). The RayLog specifies whether steps are equal or controlled by a tolerance,
+/// and records them.
 template <class Integrator>
 class LoggedSteps {
  public:
@@ -104,7 +111,7 @@ class LoggedSteps {
         controlled_{log.steps().tolerance.value_or(0), log.next_step(), log.steps().longest} {}
   ~LoggedSteps() {
     log_.next_step() = controlled_.h;
-    log_.met(controlled_.index_mismatch);
+    log_.record_mismatch(controlled_.index_mismatch);
   }
 
   template <IndexField F>

@@ -7,14 +7,17 @@
 
 namespace flatspeckle::grin {
 
-/// Rays that are far from everything go on side by side, so many steps at a time; the others take
-/// steps one by one. Where a ray is, and how far it may go unseen, is the work's to say:
-///   begin(lane, ray)      another ray for a lane, or false where none is left;
-///   go(rays, clearance, steps)  steps of all lanes, of which so much is known;
-///   clearance(lane, ray)  no more than the arc that is left to what the ray must not pass unseen;
-///   passed(lane, rays, clearance)  those steps were made by the lane's ray, and so much is left;
-///                         may go on by itself where the ray has come to something. False: it ends;
-///   careful(lane, ray, index_mismatch)  makes a few steps by itself, or ends the ray: false.
+/// Traces rays in SIMD lanes. Rays far from all surfaces make steps_at_once steps together; the
+/// other rays step one by one. The clearance of a ray is a lower bound of its arc length to the
+/// next surface or to its end. Work provides the rays and their clearances by these functions:
+///   begin(lane, ray): starts another ray in a lane; returns false if no ray is left;
+///   go(rays, clearance, steps): makes steps in all lanes; `clearance` is known for each lane;
+///   clearance(lane, ray): returns the clearance of a ray;
+///   passed(lane, rays, clearance): is called after these steps if the ray of a lane has met no
+///     surface; `clearance` is what remains. It may continue the ray alone. Returns false if the
+///     ray has ended;
+///   careful(lane, ray, index_mismatch): makes a few steps with tests for crossings. Returns false
+///     if the ray has ended.
 template <class Work>
 class LanePool {
  public:
@@ -25,7 +28,7 @@ class LanePool {
   void run() {
     for (int lane = 0; lane < lanes; ++lane) fill(lane);
     while (active_ > 0) {
-      look_ahead();
+      refresh_clearances();
       before_ = rays_;
       work_.go(rays_, clearance_, steps_at_once);
       spend_clearance();
@@ -35,20 +38,20 @@ class LanePool {
   }
 
  private:
-  /// Where what is known of the clearance may not be enough.
-  void look_ahead() {
+  /// Recomputes clearances of rays that may be too short for the next steps.
+  void refresh_clearances() {
     for (int lane = 0; lane < lanes; ++lane)
       if (is_active_[lane] && !(clearance_[lane] > arc_[lane]))
         clearance_[lane] = work_.clearance(lane, rays_.at(lane));
   }
 
-  /// By what the rays have gone.
+  /// Reduces the clearances of all rays by the arc lengths of their last steps.
   void spend_clearance() {
-    constexpr double margin = 1.1;  // an integrator's arc is not exact
+    constexpr double margin = 1.1;  // the arc length of an integrator is not exact
 #pragma omp simd
     for (int k = 0; k < lanes; ++k) {
       const double arc = margin * (rays_.arc_length[k] - before_.arc_length[k]);
-      const bool is_known = arc > 0 && rays_.index_mismatch[k] >= 0;  // no NaN
+      const bool is_known = arc > 0 && rays_.index_mismatch[k] >= 0;  // false for NaN
       const bool is_free = is_known && clearance_[k] > arc;
       arc_[k] = is_known ? arc : 0;
       clearance_[k] -= is_free ? arc : 0;
@@ -56,8 +59,8 @@ class LanePool {
     }
   }
 
-  /// Spheres about where the ray was and where it is, with nothing in them, hold all that it may
-  /// have gone.
+  /// Whether the last steps of a ray met no surface, because they lie within two spheres that
+  /// contain no surface. The spheres are centred at the start and the end of these steps.
   bool was_free(int lane) {
     if (is_free_[lane] != 0) return true;
     if (!(arc_[lane] > 0)) return false;
@@ -90,7 +93,8 @@ class LanePool {
 
   Work& work_;
   RayLanes rays_{}, before_;
-  /// arc: of the last steps, with a margin; 0 where they failed. free: 1 or 0.
+  /// For each lane: clearance of its ray (clearance_), arc length of the last steps with a margin,
+  /// 0 if they failed (arc_), and 1 if these steps met no surface, otherwise 0 (is_free_).
   alignas(64) double clearance_[lanes] = {}, arc_[lanes] = {}, is_free_[lanes] = {};
   std::array<bool, lanes> is_active_{};
   int active_ = 0;

@@ -6,13 +6,15 @@
 
 namespace flatspeckle::grin {
 
-/// What a ray keeps, by the symmetry of its field (conventions, C27).
+/// Quantities that are constant along a ray in fields of different symmetries (conventions, C27).
 struct RayInvariants {
-  double index_mismatch;  ///< |v| - n: 0 in any field
-  Vec3 angular_momentum;  ///< (x - centre) cross v: spherical symmetry
-  double axial_momentum;  ///< v along the axis: a guide
-  double axial_rotation;  ///< angular momentum along the axis through the centre: a round guide
-  Vec3 transverse;  ///< v across the axis, of length n sin(angle): a field stratified along it
+  double index_mismatch;  ///< |v| - n; 0 in any field
+  Vec3 angular_momentum;  ///< (x - centre) cross v; constant in a spherically symmetric field
+  double axial_momentum;  ///< component of v along the axis; constant in a guide
+  double axial_rotation;  ///< angular momentum along the axis through the centre; constant in a
+                          ///< round guide
+  Vec3 transverse;  ///< part of v perpendicular to the axis, of length n sin(angle); constant in a
+                    ///< field that varies only along the axis
 };
 
 template <IndexField F>

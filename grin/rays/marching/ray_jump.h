@@ -8,11 +8,11 @@
 
 namespace flatspeckle::grin {
 
-/// A ray at a surface where the index jumps (conventions, C25: the jump in dx/dv0): it goes on
-/// refracted or reflected, and its neighbours with it, each from where it meets the surface.
+/// Refraction or reflection of a ray at a surface where the index jumps. Neighbouring rays meet the
+/// surface at other points, so that the tangent map dx/dv0 jumps too (conventions, C25).
 class RayJump {
  public:
-  /// from, to: the index on the side that the ray comes from, and beyond.
+  /// from, to: index and gradient on the side from which the ray comes and on the other side.
   RayJump(const Surface& surface, const RayState& ray, const IndexGradient& from,
           const IndexGradient& to)
       : normal_(normal(surface, ray.x)),
@@ -20,7 +20,7 @@ class RayJump {
         turn_(std::visit([&](const auto& s) { return s.curvature(ray.x); }, surface)),
         force_(ray_force(from)),
         change_of_force_(ray_force(to) - force_),
-        is_hollow_(hollow(surface)) {
+        has_concave_parts_(has_concavity(surface)) {
     if (ray.v.dot(normal_) >= 0) return;
     normal_ = -normal_;
     turn_ = -turn_;
@@ -28,12 +28,14 @@ class RayJump {
 
   bool is_total() const { return face_.is_total(); }
   double reflectance() const { return face_.reflectance(); }
-  /// Of what happens here, Fresnel's.
-  double chance(bool reflected) const { return reflected ? reflectance() : 1 - reflectance(); }
-  /// Of a surface by which there may be many ways between two points, each seldom found.
-  bool is_hollow() const { return is_hollow_; }
+  /// Returns the Fresnel probability that the ray is reflected or, if `reflected` is false,
+  /// refracted.
+  double probability(bool reflected) const { return reflected ? reflectance() : 1 - reflectance(); }
+  /// Whether the surface has concave parts. Between two points there may then be many paths through
+  /// the surface, each of which is rarely found.
+  bool has_concave_parts() const { return has_concave_parts_; }
 
-  /// Not where the reflection is total.
+  /// Refracts the ray. Must not be called if the reflection is total.
   void refract(RayState& ray, RayTangent* tangent = nullptr) const {
     const Vec3 refracted = *face_.refracted();
     if (tangent) {
@@ -56,13 +58,14 @@ class RayJump {
   }
 
  private:
-  static bool hollow(const Surface& surface) {
+  static bool has_concavity(const Surface& surface) {
     const auto* level = std::get_if<LevelSurface>(&surface);
-    return level && !level->looks_convex();
+    return level && !level->is_probably_convex();
   }
 
   using RowVec3 = Eigen::RowVector3d;
-  /// Derivatives by v0 where neighbours meet the surface: of the normal, and of q1 = v.normal.
+  /// Derivatives of the normal and of q1 = v . normal with respect to the start vector v0 of the
+  /// ray, at the points where neighbouring rays meet the surface.
   struct Turned {
     Mat3 normal;
     RowVec3 q1;
@@ -75,11 +78,11 @@ class RayJump {
     return {turned, normal_.transpose() * tangent.dv + ray.v.transpose() * turned};
   }
 
-  Vec3 normal_;  ///< along the ray
+  Vec3 normal_;  ///< unit normal on the side towards which the ray goes
   Interface face_;
   Mat3 turn_;
   Vec3 force_, change_of_force_;
-  bool is_hollow_;
+  bool has_concave_parts_;
 };
 
 }  // namespace flatspeckle::grin

@@ -8,7 +8,8 @@
 
 namespace flatspeckle::grin {
 
-/// RayState in lanes, the largest ||v| - n| where it was looked at, and how long steps are.
+/// The state of the ray in each lane (RayState), the largest measured difference between |v| and
+/// the index n, and the step length.
 struct RayLanes {
   LaneVectors x, v;
   alignas(64) double arc_length[lanes], optical_path[lanes], index_mismatch[lanes], step[lanes];
@@ -26,7 +27,7 @@ struct RayLanes {
 
 namespace lane_parts {
 
-// `part` is of the step of each lane.
+// In the following functions, `part` is a fraction of each lane's step.
 
 inline void drift(RayLanes& rays, double part) {
 #pragma omp simd
@@ -38,7 +39,7 @@ inline void drift(RayLanes& rays, double part) {
   }
 }
 
-/// A whole kick, and half a drift after it.
+/// Makes a kick over `part` of the step, and then a drift over half of it.
 inline void kick(RayLanes& rays, const LaneGradients& at, double part) {
 #pragma omp simd
   for (int k = 0; k < lanes; ++k) {
@@ -54,7 +55,7 @@ inline void kick(RayLanes& rays, const LaneGradients& at, double part) {
   }
 }
 
-/// x + h v + h^2/2 n grad n
+/// Computes x + h v + h^2/2 n grad n in each lane, where h is `part` of the step.
 inline void displaced(const RayLanes& rays, double part, const LaneGradients& at, LaneVectors& to) {
 #pragma omp simd
   for (int k = 0; k < lanes; ++k) {
@@ -65,7 +66,7 @@ inline void displaced(const RayLanes& rays, double part, const LaneGradients& at
   }
 }
 
-/// Of Sharma's step, from its three forces.
+/// Makes a step of the integrator Sharma from the gradients a, b and c at its three points.
 inline void advance(RayLanes& rays, const LaneGradients& a, const LaneGradients& b,
                     const LaneGradients& c) {
 #pragma omp simd
@@ -86,7 +87,7 @@ inline void advance(RayLanes& rays, const LaneGradients& a, const LaneGradients&
   }
 }
 
-// The steps of ray_step.h, of all lanes.
+// The following functions make the steps of ray_step.h in all lanes.
 
 template <LaneField F>
 void leap(const F& field, RayLanes& rays, double part) {
@@ -109,13 +110,14 @@ void sharma(const F& field, RayLanes& rays) {
 
 }  // namespace lane_parts
 
-/// So many steps.
+/// Makes `steps` steps of the integrator Sharma in all lanes.
 template <LaneField F>
 FLATSPECKLE_EVERY_WIDTH void make_steps(Sharma, const F& field, RayLanes& __restrict rays,
                                         int steps) {
   for (int i = 0; i < steps; ++i) lane_parts::sharma(field, rays);
 }
-/// Each made of leaps, by parts of the step.
+/// Makes `steps` steps in all lanes. Each step consists of several leapfrog steps, over the given
+/// fractions of its length.
 template <LaneField F>
 FLATSPECKLE_EVERY_WIDTH void make_leaps(const F& field, RayLanes& __restrict rays,
                                         std::span<const double> parts, int steps) {
@@ -132,9 +134,9 @@ void make_steps(Yoshida4, const F& field, RayLanes& rays, int steps) {
   make_leaps(field, rays, Yoshida4::parts, steps);
 }
 
-/// For the largest ||v| - n|.
+/// Updates the largest difference between |v| and n in all lanes.
 template <LaneField F>
-FLATSPECKLE_EVERY_WIDTH void look_for_mismatch(const F& field, RayLanes& __restrict rays) {
+FLATSPECKLE_EVERY_WIDTH void check_for_mismatch(const F& field, RayLanes& __restrict rays) {
   LaneGradients at;
   field.gradients(rays.x, at);
 #pragma omp simd

@@ -15,17 +15,19 @@ namespace {
 
 constexpr double golden_angle = std::numbers::pi * (3 - 2.23606797749978969641);
 
-/// A light, its axis and two directions across it.
+/// A light source of rays, with its axis and two directions perpendicular to the axis.
 struct RayLight {
   Vec3 origin, along, first, second;
-  double size;  ///< beam radius, or half angle
+  double size;  ///< beam radius or half-angle, depending on the kind of light
   std::size_t count;
 
-  /// -1 to 1; of a single ray, 0.
+  /// Returns the coordinate of ray i if all rays are evenly spaced from -1 to 1; 0 for a single
+  /// ray.
   double evenly(std::size_t i) const {
     return count > 1 ? 2.0 * static_cast<double>(i) / static_cast<double>(count - 1) - 1 : 0;
   }
-  /// The part of the cross section within ray i: the middle of equal shares.
+  /// Returns the fraction of the cross section that is closer to the axis than ray i. The cross
+  /// section is divided into equal parts, and each ray is in the middle of its part.
   double share(std::size_t i) const {
     return (static_cast<double>(i) + 0.5) / static_cast<double>(count);
   }
@@ -33,14 +35,15 @@ struct RayLight {
     const double azimuth = golden_angle * static_cast<double>(i);
     return std::cos(azimuth) * first + std::sin(azimuth) * second;
   }
-  /// Parallel to the axis, so many beam radii from it.
+  /// Returns a ray parallel to the axis, at a given offset from the axis in beam radii.
   RayStart parallel(const Vec3& offset) const { return {origin + size * offset, along}; }
 };
 
 RayStart line(const RayLight& light, std::size_t i) {
   return light.parallel(light.evenly(i) * light.first);
 }
-/// The additive sequence of the plastic number (Roberts 2018), which fills a square evenly.
+/// Returns ray i of a square beam. Uses the additive sequence of the plastic number [roberts2018],
+/// which fills a square evenly.
 RayStart square(const RayLight& light, std::size_t i) {
   constexpr double plastic = 1.32471795724474602596;  // x^3 = x + 1
   const auto place = [&](double share) {
@@ -53,7 +56,8 @@ RayStart square(const RayLight& light, std::size_t i) {
 RayStart disk(const RayLight& light, std::size_t i) {
   return light.parallel(std::sqrt(light.share(i)) * light.around(i));
 }
-/// Intensity exp(-2 rho^2 / beam_radius^2).
+/// Returns ray i of a Gaussian beam of intensity exp(-2 rho^2 / beam_radius^2) at the distance rho
+/// from its axis.
 RayStart beam(const RayLight& light, std::size_t i) {
   return light.parallel(std::sqrt(-std::log1p(-light.share(i)) / 2) * light.around(i));
 }
@@ -61,14 +65,16 @@ RayStart fan(const RayLight& light, std::size_t i) {
   const double angle = light.size * light.evenly(i);
   return {light.origin, std::cos(angle) * light.along + std::sin(angle) * light.first};
 }
-/// Equal solid angles.
+/// Returns ray i of a cone of light, in which all rays represent equal solid angles.
 RayStart cone(const RayLight& light, std::size_t i) {
-  const double sine = std::sin(light.size / 2) * std::sqrt(light.share(i));  // of half the angle
+  // Sine of half the angle between ray and axis
+  const double sine = std::sin(light.size / 2) * std::sqrt(light.share(i));
   return {light.origin, (1 - 2 * sine * sine) * light.along +
                             2 * sine * std::sqrt(1 - sine * sine) * light.around(i)};
 }
 
-/// A kind of light: what its size is, and its ray of a number.
+/// A kind of light source: its name in the key `light`, the member that contains its size, and the
+/// function that returns its i-th ray.
 struct LightKind {
   const char* word;
   double RayStartValues::*size;
@@ -102,7 +108,8 @@ RayLight light_of(const Keys& keys, const RayStartValues& values, double size) {
   const Vec3 given = direction_of(keys, values.across);
   const Vec3 across = given - along * along.dot(given);
   if (!(across.norm() > 1e-6))
-    throw InputError("across", listed(vector_of(values.across)), "must not be along the direction");
+    throw InputError("across", listed(vector_of(values.across)),
+                     "must not be parallel to the direction");
   const Vec3 first = across.normalized();
   return {vector_of(keys.read(values.origin)),
           along,
@@ -116,21 +123,23 @@ RayLight light_of(const Keys& keys, const RayStartValues& values, double size) {
 
 void add_keys(Keys& keys, RayStartValues& values) {
   keys.group("Rays");
-  keys.add("rays", values.rays, "CSV with columns x, y, z, dx, dy, dz, in place of a light").file();
+  keys.add("rays", values.rays, "CSV with columns x, y, z, dx, dy, dz, instead of a light").file();
   keys.group("Rays", "a light of rays");
   keys.add("light", values.light,
-           "Parallel rays: line, square and disk (even), beam (Gaussian); from a point: fan, cone")
+           "line, square, disk: parallel rays, evenly distributed; beam: parallel rays of a "
+           "Gaussian beam; fan, cone: rays from a point")
       .one_of(words());
-  keys.add("ray_count", values.ray_count, "Rays of the light").from(1, 1e8);
-  add_vector(keys, "origin", values.origin, "The light's middle").unit("length");
-  add_vector(keys, "direction", values.direction, "Of its axis, of any length");
-  add_vector(keys, "across", values.across, "Of the line, or of the fan's spread");
+  keys.add("ray_count", values.ray_count, "Number of rays of the light").from(1, 1e8);
+  add_vector(keys, "origin", values.origin, "Centre of the light").unit("length");
+  add_vector(keys, "direction", values.direction, "Direction of the light's axis, of any length");
+  add_vector(keys, "across", values.across, "Direction along which the line or the fan extends");
   keys.add("beam_radius", values.beam_radius,
-           "Half the line, half the square's side, radius of the disk, 1/e^2 radius of the beam")
+           "Half-length of the line, half-side of the square, radius of the disk, 1/e^2 radius of "
+           "the beam")
       .positive()
       .unit("length")
       .only_of("line, square, disk, beam");
-  keys.add("half_angle", values.half_angle, "Half of the angle of fan or cone")
+  keys.add("half_angle", values.half_angle, "Half-angle of fan or cone")
       .positive_to(std::numbers::pi)
       .unit("rad")
       .only_of("fan, cone");

@@ -9,7 +9,7 @@
 
 namespace flatspeckle::grin {
 
-/// Where rays start, as keys have it.
+/// Scene keys of the start points and directions of rays.
 struct RayStartValues {
   std::string rays{}, light = "line";
   std::int64_t ray_count = 11;
@@ -20,10 +20,11 @@ struct RayStartValues {
 void add_keys(Keys& keys, RayStartValues& values);
 
 struct RayStart {
-  Vec3 x, direction;  ///< direction of length 1
+  Vec3 x, direction;  ///< `direction` is a unit vector
 };
 
-/// Of a light, or from a file. Throws InputError.
+/// Returns the starts of the rays of a light source, or reads starts from a file if the key `rays`
+/// is given. Throws InputError.
 std::vector<RayStart> make_ray_starts(const Keys& keys, const RayStartValues& values);
 
 }  // namespace flatspeckle::grin

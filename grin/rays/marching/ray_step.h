@@ -6,19 +6,21 @@
 
 namespace flatspeckle::grin {
 
-// One step h of a ray in the parameter sigma of C23: dx/dsigma = v, dv/dsigma = n grad n, so that
-// no root and no division is left and H = (v^2 - n^2)/2 separates. A step is |v| h long. Arc
-// length and optical path are integrated with it, to the same order.
+// One step h of a ray in the parameter sigma of C23: dx/dsigma = v, dv/dsigma = n grad n. These
+// equations contain no root and no division, and their Hamiltonian H = (v^2 - n^2)/2 is separable.
+// The length of a step is |v| h. Arc length and optical path are integrated to the same order as
+// the ray.
 //
 //   Leapfrog   order 2, 1 gradient,  symplectic: drift h/2, kick h, drift h/2
-//   Yoshida4   order 4, 3 gradients, symplectic: three leapfrogs (Yoshida 1990)
+//   Yoshida4   order 4, 3 gradients, symplectic: three leapfrogs [yoshida1990]
 //   Sharma     order 4, 3 gradients: the Runge-Kutta-Nystroem scheme of Sharma, Kumar and Ghatak
 //   1982
 //
-// The second overload also carries the exact derivative of the discrete step; `flatten`, as
-// compilers do not inline small matrices by themselves, makes it 1.4 times as fast.
+// The overload with a tangent also computes the exact derivative of the discrete step. The
+// attribute `flatten` makes it 1.4 times as fast, because compilers do not inline operations on
+// small matrices by themselves.
 
-/// A straight ray, exactly.
+/// Makes an exact step of a straight ray.
 inline void straight_step(const Homogeneous& field, RayState& ray, double h) {
   for (int half = 0; half < 2; ++half) ray.accumulate(1 + field.n_excess, h / 2);
   ray.x += h * ray.v;
@@ -28,7 +30,7 @@ inline void straight_step(const Homogeneous& field, RayState& ray, RayTangent& t
   tangent.dx += h * tangent.dv;
 }
 
-/// n grad n and its derivative grad n grad n^T + n Hess n.
+/// Returns n grad n; ray_force_derivative() returns its derivative grad n grad n^T + n Hess n.
 inline Vec3 ray_force(const IndexGradient& at) {
   return (1 + at.excess) * at.gradient;
 }
@@ -39,7 +41,8 @@ inline Mat3 ray_force_derivative(const IndexHessian& at) {
   return at.gradient * at.gradient.transpose() + (1 + at.excess) * at.hessian;
 }
 
-/// The same at x, of a field that tells it directly or by its gradient.
+/// Index excess n - 1 and n grad n at a point. They are computed by field.force() if the field has
+/// this function, otherwise from the gradient.
 struct RayForce {
   double excess;
   Vec3 force;
@@ -154,7 +157,8 @@ struct Sharma {
   }
 
  private:
-  /// Of the excess at the start, in the middle and at the end: Simpson's rule.
+  /// Integrates arc length and optical path by Simpson's rule from the excess at the start, in the
+  /// middle and at the end of a step.
   static void accumulate(RayState& ray, double start, double middle, double end, double h) {
     ray.accumulate(1 + start, h / 6);
     ray.accumulate(1 + middle, 4 * h / 6);

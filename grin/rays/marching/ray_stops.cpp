@@ -31,7 +31,7 @@ std::vector<Surface> surfaces_of(const Keys& keys, const RayStopValues& values) 
   return surfaces;
 }
 
-/// The largest coordinate of a surface.
+/// Returns the largest absolute coordinate of a closed surface or of the given point of a plane.
 double size(const Surface& surface) {
   if (const auto* plane = std::get_if<Plane>(&surface)) return plane->point.cwiseAbs().maxCoeff();
   const Box box = bounds(surface);
@@ -43,26 +43,33 @@ double size(const Surface& surface) {
 void add_keys(Keys& keys, RayStopValues& values) {
   keys.group("Ends of rays");
   keys.add("stop_plane", values.stop_plane,
-           "x y z nx ny nz: rays end on this plane; n points away from them")
+           "x y z nx ny nz: rays end on the plane through x y z; its normal n points away from the "
+           "rays")
       .each_of(6, "a point and the normal outwards");
-  keys.add("stop_sphere", values.stop_sphere, "x y z radius: rays end on it, inside or outside")
+  keys.add("stop_sphere", values.stop_sphere,
+           "x y z radius: rays end on this sphere and may start inside or outside")
       .each_of(4, "centre and radius");
-  keys.add("stop_box", values.stop_box, "x y z x y z of two corners: rays end on it")
+  keys.add("stop_box", values.stop_box,
+           "x y z x y z: rays end on the box with these opposite corners, the low one first")
       .each_of(6, "two opposite corners, the low one first");
   keys.add("max_length", values.max_length,
-           "Rays and curves end at this arc length at the latest; always needed")
+           "Largest arc length of rays and curves; always required")
       .positive()
       .unit("length");
   keys.group("Steps of rays");
-  keys.add("integrator", values.integrator, "Steps of order 4, 4 and 2")
+  keys.add("integrator", values.integrator,
+           "Integrator of the ray equation: sharma and yoshida4 have order 4, leapfrog order 2")
       .one_of(words(Integrators()))
       .only_of("rays");
   keys.add("step", values.step,
-           "Equal steps, length at index 1; with a tolerance, or for curves, the longest step")
+           "Length of a step where the index is 1; with a tolerance, or for curves (connect), of "
+           "the "
+           "longest step")
       .positive()
       .unit("length");
-  keys.add("tolerance", values.tolerance,
-           "Error of a ray per length (default 1e-10, unless a step is given)")
+  keys.add(
+          "tolerance", values.tolerance,
+          "Error of a ray divided by its length (default 1e-10; equal steps if only step is given)")
       .from(1e-14, 0.1)
       .only_of("rays");
 }
@@ -70,7 +77,7 @@ void add_keys(Keys& keys, RayStopValues& values) {
 RayStops make_ray_stops(const Keys& keys, const RayStopValues& values, double scale,
                         double farthest, std::span<const Surface> others) {
   RayStops stops{surfaces_of(keys, values), keys.required(values.max_length)};
-  constexpr std::size_t seams = 2;  // the rim of a ball and the box of a grid
+  constexpr std::size_t seams = 2;  // reserved for the rim of a ball and the box of a grid
   constexpr auto most = Watch::max_surfaces - seams;
   if (stops.surfaces.size() + others.size() > most)
     throw InputError("stop surfaces and bodies", stops.surfaces.size() + others.size(),

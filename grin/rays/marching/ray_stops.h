@@ -11,7 +11,8 @@
 
 namespace flatspeckle::grin {
 
-/// Where rays end and how they are followed, as keys have it.
+/// Scene keys of the surfaces on which rays end, of their largest length and of the integration
+/// steps.
 struct RayStopValues {
   std::vector<double> stop_plane{}, stop_sphere{}, stop_box{};
   std::optional<double> max_length = {}, step = {}, tolerance = {};
@@ -20,21 +21,25 @@ struct RayStopValues {
 
 void add_keys(Keys& keys, RayStopValues& values);
 
-/// Surfaces in the order planes, spheres, boxes.
+/// Conditions that end rays: stop surfaces, in the order planes, spheres, boxes, and the largest
+/// arc length.
 struct RayStops {
   std::vector<Surface> surfaces;
   double max_length = 0;
-  double location = 0;  ///< to which ends are found; length
+  /// Tolerance, as a length, to which the end of a ray is located along the ray.
+  double location = 0;
 };
 
-/// Both throw InputError. scale: over which the index varies, 0: nowhere; farthest: the largest
-/// coordinate of where rays start, which sets their rounding; others: what they pass on their way.
+/// Returns the conditions that end rays. scale: length over which the index varies; 0 for a uniform
+/// index. farthest: largest coordinate of the start points, which determines the rounding. others:
+/// further surfaces that rays cross. Throws InputError.
 RayStops make_ray_stops(const Keys& keys, const RayStopValues& values, double scale,
                         double farthest, std::span<const Surface> others = {});
 RaySteps make_ray_steps(const Keys& keys, const RayStopValues& values, double scale);
-/// In words.
+/// Returns a description of the integration steps for printed output.
 std::string describe(const RaySteps& steps);
-/// Of curves, which have equal steps of Sharma: the longest.
+/// Returns the longest integration step for curves between two points. Curves use equal steps of
+/// the integrator Sharma.
 double curve_step(const Keys& keys, const RayStopValues& values, double scale);
 
 }  // namespace flatspeckle::grin

@@ -4,8 +4,9 @@
 
 namespace flatspeckle::grin {
 
-/// A step of a ray between its ends, theta from 0 to 1: Hermite's cubics, of the order of the
-/// steps, so that places on the way are found without asking the field.
+/// Interpolates a step of a ray between its ends by Hermite cubics, which have the same order as
+/// the integrators. The state within the step, at theta from 0 to 1, then needs no evaluation of
+/// the field.
 class StepCurve {
  public:
   StepCurve(const RayState& start, const RayState& end, double h)
@@ -20,7 +21,7 @@ class StepCurve {
     const auto [a, da, b, db] = weights(theta);
     return a * start_.arc_length + da * n_start_ + b * end_.arc_length + db * n_end_;
   }
-  /// Where the arc length is `s`, which is one on the way.
+  /// Returns theta where the arc length is `s`, which must be within the step.
   double theta_at(double s) const {
     double theta = (s - start_.arc_length) / (end_.arc_length - start_.arc_length);
     for (int i = 0; i < 3; ++i) {

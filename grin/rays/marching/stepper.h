@@ -8,8 +8,9 @@
 
 namespace flatspeckle::grin {
 
-// What trace() goes by: advance(field, ray, tangent...) makes one step and returns its length h in
-// sigma; step(field, h, ray, tangent...) repeats one, or a part of one, from the same start.
+// Step types for trace() have two functions: advance(field, ray, tangent...) makes one step and
+// returns its length h in sigma; step(field, h, ray, tangent...) repeats this step, or makes a part
+// of it, from the same start.
 
 template <class Integrator>
 struct FixedSteps {
@@ -26,9 +27,9 @@ struct FixedSteps {
   }
 };
 
-/// |v| = n(x) again, which steps keep to their order only. Returns by how much they differed. Where
-/// n falls by a factor q on the way, what was lost of v^2 - n^2 before weighs q^-2 times as much.
-/// NaN where the index is not above 0.
+/// Restores |v| = n(x), which steps preserve only to their order, and returns the difference
+/// removed. Without this, an error of v^2 - n^2 would weigh q^-2 times as much after n has fallen
+/// to q times its value along the ray. Sets x to NaN where the index is not above 0.
 template <IndexField F>
 double restore_index(const F& field, RayState& ray) {
   if constexpr (HomogeneousField<F>) return 0;
@@ -37,7 +38,8 @@ double restore_index(const F& field, RayState& ray) {
   ray.v *= n / length;
   return std::abs(length - n);
 }
-/// The same with its exact derivative.
+/// Restores |v| = n(x) and updates the tangent map of the ray by the exact derivative of this
+/// change.
 template <IndexField F>
 double restore_index(const F& field, RayState& ray, RayTangent& tangent) {
   if constexpr (HomogeneousField<F>) return 0;
@@ -51,20 +53,21 @@ double restore_index(const F& field, RayState& ray, RayTangent& tangent) {
   return std::abs(length - n);
 }
 
-/// Two half steps, judged by one whole step: the error of the two, estimated as their difference /
-/// (2^order - 1), is held below `tolerance`, in position relative to the step's length and in
-/// direction as an angle, so that the error at the end of a ray is about tolerance times its
-/// length; what is below the rounding of the coordinates is none. The two half steps are kept, and
-/// |v| = n restored; a tangent is the exact derivative of that, for the step lengths that this ray
-/// took.
+/// Makes two half steps and compares the result with one whole step. The estimated error is the
+/// difference between the two results divided by 2^order - 1. It is kept below `tolerance`, for
+/// positions relative to the length of the step and for directions as an angle. The error at the
+/// end of a ray is then about tolerance times its length. Differences below the rounding of the
+/// coordinates count as 0. The result of the two half steps is kept, and |v| = n is restored. A
+/// tangent is the exact derivative of this result for the step lengths that the ray took.
 template <class Integrator>
 struct ControlledSteps {
   double tolerance;
-  double h;                   ///< of the next step; start anywhere
-  double longest;             ///< arc: steps grow no longer, so that nothing is jumped over
-  double index_mismatch = 0;  ///< the largest ||v| - n| of its steps, before it was restored
+  double h;        ///< length of the next step in sigma; the start value is arbitrary
+  double longest;  ///< largest arc length of a step, so that no feature of the field is skipped
+  /// Largest difference between |v| and n after a step, before |v| = n was restored.
+  double index_mismatch = 0;
 
-  /// Returns ||v| - n| before it is restored.
+  /// Makes two half steps. Returns the difference between |v| and n before |v| = n is restored.
   template <IndexField F, class... Tangent>
   static double step(const F& field, double h, RayState& ray, Tangent&... tangent) {
     Integrator::step(field, ray, tangent..., h / 2);
@@ -72,7 +75,7 @@ struct ControlledSteps {
     return restore_index(field, ray, tangent...);
   }
 
-  /// A ray that no step suits becomes NaN.
+  /// Makes one step. A ray for which no step is short enough becomes NaN.
   template <IndexField F, class... Tangent>
   double advance(const F& field, RayState& ray, Tangent&... tangent) {
     const double longest_h = longest / ray.v.norm();
@@ -100,7 +103,8 @@ struct ControlledSteps {
   }
 
  private:
-  /// NaN for a step so short that coordinates cannot tell it.
+  /// Returns the estimated error of a step; NaN for a step shorter than the rounding of the
+  /// coordinates.
   template <IndexField F>
   static double tried_error(const F& field, double h, const RayState& ray, RayState& halves,
                             double& mismatch) {
@@ -108,12 +112,12 @@ struct ControlledSteps {
     Integrator::step(field, whole, h);
     restore_index(field, whole);
     mismatch = step(field, h, halves);
-    // restored to an index below 0 a ray would turn round
+    // restoring |v| = n at an index below 0 would reverse the ray
     if (!(halves.v.dot(ray.v) > 0)) return std::numeric_limits<double>::quiet_NaN();
     const double rounding = 4 * std::numeric_limits<double>::epsilon() * halves.x.norm();
     const double length = ray.v.norm() * h;
     if (!(length > rounding)) return std::numeric_limits<double>::quiet_NaN();
-    const double apart = std::max((whole.x - halves.x).norm() - rounding, 0.0);  // NaN stays
+    const double apart = std::max((whole.x - halves.x).norm() - rounding, 0.0);  // NaN is kept
     const double angle = (whole.v.normalized() - halves.v.normalized()).norm();
     return (apart / length + angle) / ((1 << Integrator::order) - 1);
   }

@@ -5,33 +5,35 @@
 #include "grin/rays/marching/stepper.h"
 #include "grin/rays/marching/watch.h"
 #include "grin/rays/surfaces/first_crossing.h"
-#include "grin/rays/surfaces/straight_way.h"
+#include "grin/rays/surfaces/straight_crossing.h"
 
 namespace flatspeckle::grin {
 
-/// What trace() does in a homogeneous medium: no steps, but the way to each surface.
+/// Implements trace() for a homogeneous medium. Computes the distance to each surface and makes no
+/// steps.
 inline TraceEnd trace_straight(const Homogeneous& field, std::span<const Surface> surfaces,
                                const TraceLimits& limits, RayState& ray) {
   const Watch watch(surfaces, limits, ray);
   const Vec3 direction = ray.v.normalized();
-  double way = limits.max_arc_length;
+  double ray_length = limits.max_arc_length;
   int surface = -1;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     if (limits.sides.ignores(i)) continue;
-    const double here = watch.is_inside(i) ? way_out(surfaces[i], ray.x, direction)
-                                           : way_in(surfaces[i], ray.x, direction);
-    if (here >= way) continue;
-    way = here;
+    const double here = watch.is_inside(i) ? exit_distance(surfaces[i], ray.x, direction)
+                                           : entry_distance(surfaces[i], ray.x, direction);
+    if (here >= ray_length) continue;
+    ray_length = here;
     surface = static_cast<int>(i);
   }
-  Leapfrog::step(field, ray, way / (1 + field.n_excess));
+  Leapfrog::step(field, ray, ray_length / (1 + field.n_excess));
   return {surface < 0 ? Stop::length : Stop::surface, surface, 0, 1};
 }
 
 namespace trace_parts {
 
-/// The arc of a step, with a margin as an integrator's arc is not exact; of a step that failed,
-/// twice what its start lets expect.
+/// Returns an upper bound of the arc length of a step, with a margin because the arc length of an
+/// integrator is not exact. For a failed step, returns the margin times twice the arc length
+/// expected from its start.
 inline double longest_arc(const RayState& start, const RayState& end, double h) {
   constexpr double margin = 1.1;
   const double arc = end.arc_length - start.arc_length;
@@ -46,10 +48,11 @@ inline TraceEnd end_at(const Watch& watch, const RayState& ray, const TraceLimit
 
 }  // namespace trace_parts
 
-/// Goes on from a ray's state to the first of the surfaces that it meets, or to the full length.
-/// Far from all surfaces nothing is tested: the signed distance, once known, is spent step by step
-/// (sphere tracing). A step that may cross is searched for its first crossing, and the ray ends
-/// with the part of that step that leads there. Steps: grin/rays/marching/stepper.h.
+/// Traces a ray from its state to the first surface that it meets, or to its largest arc length.
+/// Far from all surfaces, crossings are not tested until the steps have covered the distance to the
+/// nearest surface (sphere tracing). A step that may cross a surface is searched for its first
+/// crossing, and the ray ends with the part of the step up to this crossing. Steps are defined in
+/// grin/rays/marching/stepper.h.
 template <class Steps, IndexField F>
 TraceEnd trace(const F& field, std::span<const Surface> surfaces, const TraceLimits& limits,
                Steps& steps, RayState& ray) {
@@ -68,7 +71,7 @@ TraceEnd trace(const F& field, std::span<const Surface> surfaces, const TraceLim
     const auto at = [&](double theta) {
       RayState part = start;
       steps.step(field, theta * h, part);
-      ++end.looks;
+      ++end.distance_evaluations;
       return watch.clearance(part);
     };
     clearance = at(1);
@@ -80,7 +83,7 @@ TraceEnd trace(const F& field, std::span<const Surface> surfaces, const TraceLim
       const TraceEnd found = trace_parts::end_at(watch, ray, limits);
       if (found.surface >= 0)
         settle(surfaces[found.surface], watch.is_inside(found.surface), limits.tolerance, ray);
-      return {found.stop, found.surface, end.steps, end.looks};
+      return {found.stop, found.surface, end.steps, end.distance_evaluations};
     }
     if (is_lost) {
       end.stop = Stop::lost;

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "grin/rays/surfaces/straight_way.h"
+#include "grin/rays/surfaces/straight_crossing.h"
 
 namespace flatspeckle::grin {
 
@@ -12,7 +12,8 @@ Watch::Watch(std::span<const Surface> surfaces, const TraceLimits& limits, const
       tolerance_(limits.tolerance),
       last_arc_length_(start.arc_length + limits.max_arc_length),
       known_(limits.sides) {
-  if (surfaces.size() > max_surfaces) throw InputError("surfaces", surfaces.size(), "at most 64");
+  if (surfaces.size() > max_surfaces)
+    throw InputError("surfaces", surfaces.size(), "must be at most 64");
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     const double d = distance(surfaces[i], start.x);
     const bool on_surface = std::abs(d) <= tolerance_;
@@ -27,17 +28,19 @@ void settle(const Surface& surface, bool inside, double tolerance, RayState& ray
   const double off = distance(surface, ray.x), n = ray.v.norm(), most = 100 * tolerance;
   const bool is_beyond = (off < 0) != inside;
   const Vec3 towards = (is_beyond ? -1 : 1) / n * ray.v;
-  const double way = off < 0 ? way_out(surface, ray.x, towards) : way_in(surface, ray.x, towards);
-  if (way <= most) {
-    ray.x += way * towards;
-    ray.accumulate(n, (is_beyond ? -way : way) / n);
-  } else {  // a ray that grazes
+  const double ray_length =
+      off < 0 ? exit_distance(surface, ray.x, towards) : entry_distance(surface, ray.x, towards);
+  if (ray_length <= most) {
+    ray.x += ray_length * towards;
+    ray.accumulate(n, (is_beyond ? -ray_length : ray_length) / n);
+  } else {  // a grazing ray is moved along the normal
     ray.x -= off * normal(surface, ray.x);
   }
 }
 
-/// A surface that the ray starts on is put back by 3/4 of the tolerance, so that the ray is off it;
-/// as rays end within the last quarter before a surface, they always end within the tolerance.
+/// If the ray starts on a surface, this surface counts as moved back by 3/4 of the tolerance, so
+/// that the start is not on it. Rays end within 1/4 of the tolerance before a surface, so that they
+/// always end within the tolerance of the true surface.
 double Watch::clearance(std::size_t i, const Vec3& x) const {
   const double d = distance(surfaces_[i], x);
   return (is_inside(i) ? -d : d) + (on_surface_ >> i & 1 ? 0.75 * tolerance_ : 0);
@@ -48,13 +51,14 @@ double Watch::clearance(const RayState& ray) const {
   for (std::size_t i = 0; i < surfaces_.size(); ++i) {
     if (known_.ignores(i)) continue;
     const double here = clearance(i, ray.x);
-    if (!(here >= least)) least = here;  // NaN stays
+    if (!(here >= least)) least = here;  // NaN is kept
   }
   return least;
 }
 
-/// Only a surface that the ray leaves counts as put back, so that of two close to each other the
-/// one that is met first is the nearest.
+/// A surface on which the ray starts counts as moved back (see clearance()) only if the ray leaves
+/// it. If two surfaces are close to each other, the nearest is then the one that the ray meets
+/// first.
 int Watch::nearest(const RayState& ray) const {
   double least = last_arc_length_ - ray.arc_length;
   int nearest = -1;

@@ -5,14 +5,17 @@
 
 namespace flatspeckle::grin {
 
-/// An interval of theta at whose start f is positive.
+/// An interval [a, b] of the parameter theta of a step, and the values fa and fb of a function f at
+/// its ends, with fa > 0.
 struct Bracket {
   double a, b, fa, fb;
 };
 
-/// The start of a short piece, to its least value, where that is not positive although both ends
-/// are, as where a line goes through a thin film or grazes a surface. f has one minimum there,
-/// found by golden sections, and is as in first_change().
+/// Searches a short interval, at whose ends f is positive, for a minimum of f that is not positive.
+/// Such a minimum occurs where a line passes through a thin film or grazes a surface. If there is
+/// one, returns the part of the interval up to the minimum. f must have one minimum in the
+/// interval, which is found by golden-section search, and must satisfy the conditions of
+/// first_change().
 template <class Function>
 std::optional<Bracket> dip(const Function& f, const Bracket& in, double arc) {
   constexpr double golden = 0.38196601125010515, beside = 1e-3;
@@ -36,9 +39,10 @@ std::optional<Bracket> dip(const Function& f, const Bracket& in, double arc) {
   return least > 0 ? std::nullopt : std::optional(Bracket{in.a, middle, in.fa, least});
 }
 
-/// The first piece of a bracket, down to 1/64 of [0, 1], at whose end f is not positive. f is
-/// nowhere more than the arc that is left to a zero, and [0, 1] is `arc` long: where two ends are
-/// farther from a zero than from each other, none is between them. NaN counts as beyond the zero.
+/// Returns the first part of an interval at whose end f is not positive. The interval is halved
+/// repeatedly, down to 1/64 of [0, 1]. f must never exceed the arc length that remains to its next
+/// zero; `arc` is the arc length of [0, 1]. A part is therefore free of zeros if the sum of f at
+/// its two ends exceeds its arc length. NaN counts as beyond the zero.
 template <class Function>
 std::optional<Bracket> first_change(const Function& f, const Bracket& in, double arc) {
   const bool changes = !(in.fb > 0);
@@ -50,8 +54,9 @@ std::optional<Bracket> first_change(const Function& f, const Bracket& in, double
   return first_change(f, Bracket{middle, in.b, value, in.fb}, arc);
 }
 
-/// The zero in a bracket, from the positive side, to 0 < f <= tolerance: regula falsi with the
-/// Illinois weights, halving where f is NaN. Where nothing is as close, the last positive point.
+/// Returns a point of an interval just before the zero of f, where 0 < f <= tolerance. Uses regula
+/// falsi with Illinois weights, and bisection where f is NaN. If there is no such point, returns
+/// the last point at which f was found positive.
 template <class Function>
 double zero(const Function& f, Bracket in, double tolerance) {
   const double aim = tolerance / 2;

@@ -8,9 +8,9 @@
 
 namespace flatspeckle::grin {
 
-/// Where light of index n1 = 1 + excess_from meets index n2 = 1 + excess_to: what a jump does to
-/// the ray vector v and to power. `normal` is a unit vector along the jump's axis, either way. An
-/// index step of 1e-6 keeps its digits.
+/// Reflection and refraction of the ray vector v at an interface from index n1 = 1 + excess_from to
+/// n2 = 1 + excess_to, and the fractions of power. `normal` is a unit vector normal to the
+/// interface, of either sign. An index step of 1e-6 keeps its digits.
 class Interface {
  public:
   Interface(const Vec3& v, const Vec3& normal, double excess_from, double excess_to)
@@ -26,14 +26,16 @@ class Interface {
 
   Vec3 reflected() const { return v_ - 2 * q1_ * normal_; }
 
-  /// Of length n2, by Snell: what is tangential stays. Nothing where the reflection is total.
+  /// Returns the refracted vector, of length n2, by Snell's law: the tangential component is kept.
+  /// Returns nullopt for total reflection.
   std::optional<Vec3> refracted() const {
     if (is_total()) return std::nullopt;
     return v_ + change() * normal_;
   }
 
-  /// Fresnel's reflected fraction of power, of light polarised across (s) or in (p) the plane of
-  /// incidence. q = n cos(angle) on each side.
+  /// Returns the reflected fraction of power (Fresnel) for light polarised perpendicular (s) or
+  /// parallel (p) to the plane of incidence. Formulas use q1 and q2, the values of n cos(angle) on
+  /// the two sides.
   double reflectance_s() const {
     if (is_total()) return 1;
     const double r = change() / (q1_ + q2());
@@ -49,11 +51,11 @@ class Interface {
 
  private:
   double q2() const { return std::sqrt(std::max(0.0, q2_squared_)); }
-  /// q2 - q1
+  /// Returns q2 - q1, the change of the normal component of v.
   double change() const { return jump_ / (q1_ + q2()); }
 
   Vec3 v_, normal_;
-  double n1_, n2_, jump_;  ///< n2^2 - n1^2
+  double n1_, n2_, jump_;  ///< jump_: n2^2 - n1^2
   double q1_, q2_squared_;
 };
 

@@ -8,13 +8,13 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// How far a face of this curvature is off its vertex at the edge.
+/// Returns the axial distance from the vertex of a face to its edge.
 double sag(double curvature, double radius) {
   const double ratio = curvature * radius;
   return ratio * radius / (1 + std::sqrt(std::max(0.0, (1 - ratio) * (1 + ratio))));
 }
 
-/// radius_of_curvature: 0 of a plane.
+/// Returns a face of a lens. If radius_of_curvature is 0, the face is a plane.
 LensFace face_of(const Vec3& vertex, double outwards, double radius_of_curvature, double radius) {
   const double curvature = radius_of_curvature == 0 ? 0 : 1 / radius_of_curvature;
   return {vertex, outwards, curvature, vertex[2] + sag(curvature, radius)};
@@ -50,7 +50,8 @@ Mat3 Lens::curvature(const Vec3& x) const {
   return bend * (Mat3::Identity() - n * n.transpose() - flat * flat.transpose());
 }
 
-/// Adds the cylinder between the edges and the caps of height h, pi h (3 radius^2 + h^2) / 6.
+/// Adds the volume of the cylinder between the edges of the faces and the volumes of the two caps.
+/// A cap of height h has the volume pi h (3 radius^2 + h^2) / 6.
 double Lens::volume() const {
   double volume = radius_ * radius_ * (faces_[1].edge - faces_[0].edge);
   for (const LensFace& face : faces_) {

@@ -7,21 +7,22 @@
 
 namespace flatspeckle::grin {
 
-/// One of the two faces of a lens: a part of a sphere, or a plane, about an axis along z. All about
-/// it follows from its curvature, so that a plane is the limit of a sphere without cancellation.
+/// One of the two faces of a lens: a part of a sphere, or a plane, about an axis along z. All
+/// formulas use the curvature, so that a plane is the limit of a sphere without cancellation.
 struct LensFace {
   Vec3 vertex;
-  double outwards;   ///< 1 or -1: along z
-  double curvature;  ///< of its radius of curvature, positive where the centre is at larger z
-  double edge;       ///< z where it ends
+  double outwards;   ///< z component of the outward direction: 1 or -1
+  double curvature;  ///< 1 / radius of curvature, positive if the centre is at larger z; 0: plane
+  double edge;       ///< z coordinate of the edge
 
   bool is_plane() const { return curvature == 0; }
   bool is_concave() const { return curvature * outwards > 0; }
-  /// The plane of a plane one, or through its edge.
+  /// Returns the plane through the edge, which is the face itself if it is plane.
   Plane edge_plane() const { return {{0, 0, edge}, outwards * Vec3::UnitZ()}; }
 
-  /// From the cap that is the face: a convex one ends the lens before its edge only, whatever
-  /// becomes of the far half of its sphere.
+  /// Returns the signed distance from the face, negative on the side of the lens. All points on the
+  /// inner side of the edge plane of a convex face count as inside, so that the far half of its
+  /// sphere has no effect.
   double distance(const Vec3& x) const {
     const double beyond = outwards * (x[2] - edge);
     if (is_plane()) return beyond;
@@ -35,14 +36,14 @@ struct LensFace {
   }
 };
 
-/// A lens of two spherical or plane faces, cut to a cylinder about its axis, which is along z; of
-/// two plane ones a rod or a disk. As of every surface |distance| is nowhere more than the true
-/// distance.
+/// A lens of two spherical or plane faces, cut to a cylinder about its axis, which is along z. Two
+/// plane faces make a rod or a disk. |distance| never exceeds the true distance, as for every
+/// surface.
 class Lens {
  public:
-  /// vertex: of the front face, at the smaller z; front, back: radii of curvature as of LensFace,
-  /// not below the radius; nothing of a lens whose faces meet within its radius or that has no
-  /// thickness on its axis.
+  /// vertex: vertex of the front face, which is at the smaller z. front, back: radii of curvature
+  /// with the sign of LensFace::curvature; 0 for a plane, otherwise at least `radius` in magnitude.
+  /// Returns nullopt if the faces meet within the radius or the lens has no thickness on its axis.
   static std::optional<Lens> make(const Vec3& vertex, double radius, double front, double back,
                                   double thickness);
 
@@ -53,16 +54,16 @@ class Lens {
     const LensFace* const face = face_at(x);
     return face ? face->normal(x) : Vec3(across(x).normalized());
   }
-  /// d normal / d x.
+  /// Returns d normal / d x, for displacements along the surface.
   Mat3 curvature(const Vec3& x) const;
 
   const std::array<LensFace, 2>& faces() const { return faces_; }
   double radius() const { return radius_; }
-  /// From the axis.
+  /// Returns the vector from the axis to x, perpendicular to the axis.
   Vec3 across(const Vec3& x) const {
     return {x[0] - faces_[0].vertex[0], x[1] - faces_[0].vertex[1], 0};
   }
-  /// The square of a point's distance from the axis, less that of the cylinder.
+  /// Returns the squared distance of a point from the axis minus the squared radius.
   double barrel_power(const Vec3& x) const {
     return power_of_point({x[0], x[1], 0}, barrel_centre(), radius_);
   }
@@ -76,7 +77,7 @@ class Lens {
   double barrel_distance(const Vec3& x) const {
     return distance_from_sphere({x[0], x[1], 0}, barrel_centre(), radius_);
   }
-  /// That x is nearest to; nothing: the cylinder.
+  /// Returns the face to which x is nearest; nullptr if x is nearest to the cylinder.
   const LensFace* face_at(const Vec3& x) const;
 
   std::array<LensFace, 2> faces_;

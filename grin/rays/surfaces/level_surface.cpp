@@ -12,38 +12,39 @@
 #include "core/error.h"
 #include "grin/media/fields/spline_field.h"
 #include "grin/rays/surfaces/spline_cell.h"
-#include "grin/rays/surfaces/straight_way.h"
+#include "grin/rays/surfaces/straight_crossing.h"
 
 namespace flatspeckle::grin {
 
-/// A sum of cubic B-splines on a grid of cubes, and in which of its cells it may be 0.
+/// A sum f of cubic B-splines on a grid of cubes, and the cells in which f may be 0.
 class LevelGrid {
  public:
   using Cell = std::array<int, 3>;
 
-  /// As LevelSurface.
+  /// Takes the same arguments as the constructor of LevelSurface.
   LevelGrid(const Vec3& origin, double spacing, const std::array<int, 3>& nodes,
             std::vector<double> coefficients);
 
   const SplineField& f() const { return f_; }
   double spacing() const { return spacing_; }
-  double steepest() const { return steepest_; }  ///< |gradient of f| is nowhere more
-  double rounding() const { return rounding_; }  ///< of f
-  double volume() const { return volume_; }      ///< where f is negative
-  /// Around the cells where f may be 0.
+  double steepest() const { return steepest_; }  ///< upper bound of |gradient of f|
+  double rounding() const { return rounding_; }  ///< rounding error of f
+  double volume() const { return volume_; }      ///< volume where f is negative
+  /// Bounding box of the cells where f may be 0.
   const Box& bounds() const { return bounds_; }
 
-  /// In units of cells, from the low corner of the first one.
+  /// Converts x to a position in units of cells, relative to the low corner of the first cell.
   Vec3 place(const Vec3& x) const { return (x - f_.grid().origin) / spacing_; }
   bool has(const Cell& c) const {
     for (int a = 0; a < 3; ++a)
       if (c[a] < 0 || c[a] >= cells_[a]) return false;
     return true;
   }
-  /// How many cells away, along any axis, is one where f may be 0.
+  /// Returns the distance in cells to the nearest cell where f may be 0. The distance is the
+  /// maximum over the three axes.
   int clearance(const Cell& c) const { return clear_[number(c)]; }
-  /// No more than the distance of a place in the grid from where f is 0.
-  double clear_way(const Vec3& x) const {
+  /// Returns a lower bound of the distance of x, a point in the grid, from the zeros of f.
+  double free_distance(const Vec3& x) const {
     const Vec3 at = place(x).array().floor();
     const Cell c{static_cast<int>(at[0]), static_cast<int>(at[1]), static_cast<int>(at[2])};
     return has(c) ? spacing_ * std::max(clearance(c) - 1, 0) : 0;
@@ -107,7 +108,7 @@ void LevelGrid::find_zeros() {
   clear_.assign(number({cells_[0], 0, 0}), std::numeric_limits<std::uint8_t>::max());
   for_each_cell([&](const Cell& c) {
     const SplineCell spline = cell(c);
-    squared = std::max(squared, spline.most_squared_slope());
+    squared = std::max(squared, spline.largest_squared_gradient());
     if (!spline.touches_zero(slack) || !spline.bezier().touches_zero(slack)) return;
     clear_[number(c)] = 0;
     for (int a = 0; a < 3; ++a) {
@@ -115,7 +116,7 @@ void LevelGrid::find_zeros() {
       high[a] = std::max(high[a], c[a] + 1);
     }
   });
-  if (high[0] == 0) throw InputError("nothing would be inside of the surface");
+  if (high[0] == 0) throw InputError("the surface would enclose no volume");
   steepest_ = std::sqrt(squared) / spacing_;
   const Vec3& origin = f_.grid().origin;
   bounds_ = {origin + spacing_ * Vec3(low[0], low[1], low[2]),
@@ -136,7 +137,9 @@ void LevelGrid::add_up() {
   volume_ = cells * spacing_ * spacing_ * spacing_;
 }
 
-/// Of each cell how far along the axis one is that is no further away along the axes before it.
+/// Extends the clearances of all cells (distances to cells where f may be 0) along an axis. The new
+/// clearance of a cell is the minimum over all cells c in its line along the axis of max(distance
+/// to c, clearance of c along the previous axes).
 void LevelGrid::spread_along(int axis) {
   const std::array<std::size_t, 3> stride{number({1, 0, 0}), number({0, 1, 0}), 1};
   const int count = cells_[axis];
@@ -157,7 +160,8 @@ void LevelGrid::spread_along(int axis) {
 
 namespace {
 
-/// A line through the cells of a grid where f may be 0, and from one of these to the next.
+/// A straight line through a grid, which steps through the cells where f may be 0 and skips the
+/// others.
 class LevelLine {
  public:
   /// side: the sign of f at the start.
@@ -168,44 +172,47 @@ class LevelLine {
         per_cell_(speed_.cwiseInverse()),
         side_(side) {}
 
-  /// From `start` on; nothing where the grid ends before.
+  /// Returns the first change of sign of f after `start`; nullopt if the line leaves the grid
+  /// first.
   std::optional<double> first_change(double start) {
     at_ = start;
     for (int a = 0; a < 3; ++a) cell_[a] = cell_at(a);
     while (grid_.has(cell_)) {
       const int clearance = grid_.clearance(cell_);
-      const Leaving leaving = way_out_of(std::max(clearance - 1, 0));
-      if (clearance == 0 && leaving.way - at_ > shortest * grid_.spacing())
-        if (const auto way = change_before(leaving.way)) return way;
+      const Leaving leaving = exit_distance_of(std::max(clearance - 1, 0));
+      if (clearance == 0 && leaving.ray_length - at_ > shortest * grid_.spacing())
+        if (const auto ray_length = change_before(leaving.ray_length)) return ray_length;
       go_on(leaving);
     }
     return std::nullopt;
   }
 
  private:
-  static constexpr double shortest = 1e-12;  // in cells; less is left to the next one
+  // Shortest piece of the line, in cells, that is searched for a change of sign
+  static constexpr double shortest = 1e-12;
 
   int cell_at(int axis) const {
     return static_cast<int>(std::floor(from_[axis] + at_ * speed_[axis]));
   }
 
-  /// The end of the cells that are no further from this one.
+  /// Exit of the line from the cube that contains all cells within `wide` cells of the current
+  /// cell.
   struct Leaving {
-    double way;
+    double ray_length;
     int axis, wide;
   };
-  Leaving way_out_of(int wide) const {
-    Leaving leaving{no_way, 0, wide};
+  Leaving exit_distance_of(int wide) const {
+    Leaving leaving{no_crossing, 0, wide};
     for (int a = 0; a < 3; ++a) {
       if (speed_[a] == 0) continue;
-      const double way =
+      const double ray_length =
           ((speed_[a] > 0 ? cell_[a] + wide + 1 : cell_[a] - wide) - from_[a]) * per_cell_[a];
-      if (way < leaving.way) leaving = {way, a, wide};
+      if (ray_length < leaving.ray_length) leaving = {ray_length, a, wide};
     }
     return leaving;
   }
   void go_on(const Leaving& leaving) {
-    at_ = std::max(at_, leaving.way);
+    at_ = std::max(at_, leaving.ray_length);
     for (int a = 0; a < 3; ++a) {
       if (a == leaving.axis)
         cell_[a] += speed_[a] > 0 ? leaving.wide + 1 : -leaving.wide - 1;
@@ -214,7 +221,8 @@ class LevelLine {
     }
   }
 
-  /// Within this cell. The zero that a line starts on is divided out.
+  /// Returns where f changes its sign within this cell. If the line starts on a zero of f, this
+  /// zero is divided out.
   std::optional<double> change_before(double end) {
     const Vec3 corner(cell_[0], cell_[1], cell_[2]);
     auto f = grid_.cell(cell_).along(from_ + at_ * speed_ - corner, from_ + end * speed_ - corner);
@@ -229,19 +237,23 @@ class LevelLine {
   }
 
   const LevelGrid& grid_;
-  Vec3 from_, speed_, per_cell_;  ///< in cells, and lengths for one along each axis
+  /// Start and direction of the line in units of cells, and length per cell along each axis.
+  Vec3 from_, speed_, per_cell_;
   double side_, at_ = 0;
   LevelGrid::Cell cell_ = {};
-  std::optional<double> level_ = {};  ///< of side f; 0, or that of a start beyond it
+  /// Level of side * f whose crossing is searched: 0, or the value at the start if that is
+  /// negative.
+  std::optional<double> level_ = {};
 };
 
-/// As LevelSurface::way.
-double way_to_level(const LevelGrid& grid, const Vec3& x, const Vec3& d, double side) {
+/// Implements LevelSurface::crossing_distance().
+double distance_to_level(const LevelGrid& grid, const Vec3& x, const Vec3& d, double side) {
   const Box& bounds = grid.bounds();
-  const double start = bounds.distance(x) > 0 ? way_in(bounds, x, d) : 0;
-  const auto way = start < no_way ? LevelLine(grid, x, d, side).first_change(start) : std::nullopt;
-  if (way) return *way;
-  return side > 0 || start > 0 ? no_way : way_out(bounds, x, d);
+  const double start = bounds.distance(x) > 0 ? entry_distance(bounds, x, d) : 0;
+  const auto ray_length =
+      start < no_crossing ? LevelLine(grid, x, d, side).first_change(start) : std::nullopt;
+  if (ray_length) return *ray_length;
+  return side > 0 || start > 0 ? no_crossing : exit_distance(bounds, x, d);
 }
 
 std::vector<Vec3> places_inside(const LevelGrid& grid) {
@@ -271,12 +283,12 @@ LevelSurface::LevelSurface(const Vec3& origin, double spacing, const std::array<
                            std::vector<double> coefficients, double meant_volume)
     : grid_(std::make_shared<const LevelGrid>(origin, spacing, nodes, std::move(coefficients))),
       meant_volume_(meant_volume),
-      looks_convex_(seems_convex(*grid_)) {}
+      is_probably_convex_(seems_convex(*grid_)) {}
 
 double LevelSurface::distance(const Vec3& x) const {
   const double beyond = bounds().distance(x);
   if (beyond >= spacing()) return beyond;
-  const double f = grid_->f().excess(x), least = std::max(beyond, grid_->clear_way(x));
+  const double f = grid_->f().excess(x), least = std::max(beyond, grid_->free_distance(x));
   return std::copysign(std::max(std::abs(f) / grid_->steepest(), least), f);
 }
 
@@ -286,13 +298,13 @@ Vec3 LevelSurface::normal(const Vec3& x) const {
 
 Mat3 LevelSurface::curvature(const Vec3& x) const {
   const IndexHessian jet = grid_->f().hessian(x);
-  const double slope = jet.gradient.norm();
-  const Vec3 n = jet.gradient / slope;
-  return (jet.hessian - n * (n.transpose() * jet.hessian)) / slope;
+  const double gradient_norm = jet.gradient.norm();
+  const Vec3 n = jet.gradient / gradient_norm;
+  return (jet.hessian - n * (n.transpose() * jet.hessian)) / gradient_norm;
 }
 
-double LevelSurface::way(const Vec3& x, const Vec3& d, double sign) const {
-  return way_to_level(*grid_, x, d, sign);
+double LevelSurface::crossing_distance(const Vec3& x, const Vec3& d, double sign) const {
+  return distance_to_level(*grid_, x, d, sign);
 }
 
 const Box& LevelSurface::bounds() const {

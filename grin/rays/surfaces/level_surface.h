@@ -10,39 +10,42 @@ namespace flatspeckle::grin {
 
 class LevelGrid;
 
-/// Where f(x), a sum of cubic B-splines on a grid of cubes, is 0; inside it is negative. Normals
-/// are those of f itself and turn without jumps, so that light is refracted at the very surface
-/// that it crosses. As of every surface |distance| is nowhere more than the true distance.
+/// The zero level of f(x), a sum of cubic B-splines on a grid of cubes; f is negative inside.
+/// Normals are computed from the gradient of f and are continuous, so that light is refracted at
+/// exactly the surface that it crosses. |distance| never exceeds the true distance, as for every
+/// surface.
 class LevelSurface {
  public:
-  /// Coefficients of the splines about the nodes origin + spacing (i, j, k), k fastest; those of
-  /// the three outermost nodes must be positive. meant_volume: of what the surface stands for.
-  /// Throws InputError where f is nowhere 0.
+  /// coefficients: coefficients of the splines about the nodes origin + spacing (i, j, k), where k
+  /// varies fastest. In the three outermost layers of nodes they must be positive. meant_volume:
+  /// volume of the body that the surface approximates. Throws InputError if f is nowhere 0.
   LevelSurface(const Vec3& origin, double spacing, const std::array<int, 3>& nodes,
                std::vector<double> coefficients, double meant_volume);
 
   double distance(const Vec3& x) const;
   Vec3 normal(const Vec3& x) const;
-  /// d normal / d x, for displacements along the surface.
+  /// Returns d normal / d x, for displacements along the surface.
   Mat3 curvature(const Vec3& x) const;
 
-  /// From x along the unit vector d to where f changes its sign, which is 1 or -1 at x; infinity
-  /// where it does not. What is on the surface to rounding, or beyond it, is on the side that the
-  /// sign says, and goes on to the same value of f.
-  double way(const Vec3& x, const Vec3& d, double sign) const;
+  /// Returns the distance from x along the unit vector d to the point where f changes its sign;
+  /// infinity if f keeps its sign. sign: sign of f at x, 1 or -1. A point that is on the surface
+  /// within rounding, or slightly beyond it, counts as on the side of `sign`. The crossing is then
+  /// where f returns to its value at x.
+  double crossing_distance(const Vec3& x, const Vec3& d, double sign) const;
 
-  /// Around the surface, up to two cells wider than that.
+  /// Returns a box around the surface, which is up to two cells larger than the surface.
   const Box& bounds() const;
   double spacing() const;
   double volume() const;
   double meant_volume() const { return meant_volume_; }
-  /// Of some places inside, no two have one outside halfway between them.
-  bool looks_convex() const { return looks_convex_; }
+  /// Whether the surface seems convex: of some sampled points inside, the midpoint of each pair is
+  /// inside too.
+  bool is_probably_convex() const { return is_probably_convex_; }
 
  private:
   std::shared_ptr<const LevelGrid> grid_;
   double meant_volume_;
-  bool looks_convex_;
+  bool is_probably_convex_;
 };
 
 }  // namespace flatspeckle::grin

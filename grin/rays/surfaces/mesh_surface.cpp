@@ -43,8 +43,8 @@ TriangleMesh with_shared_corners(const std::vector<Vec3>& corners) {
   return mesh;
 }
 
-/// Makes corners one that are within `tolerance` of an earlier one. The cells of a hash grid are
-/// two tolerances wide, so that what is near lies in eight of them.
+/// Merges each corner with an earlier one within `tolerance`. The cells of the hash grid are two
+/// tolerances wide, so that all close corners lie in eight cells.
 TriangleMesh welded(const TriangleMesh& mesh, double tolerance) {
   using Cell = std::array<std::int64_t, 3>;
   const Vec3 low = bounds(mesh).low;
@@ -77,7 +77,7 @@ TriangleMesh welded(const TriangleMesh& mesh, double tolerance) {
   return found;
 }
 
-/// Leaves out triangles that lie back to back, and copies of one.
+/// Removes duplicate triangles and pairs of triangles that lie back to back.
 void cancel_triangles(TriangleMesh& mesh) {
   const auto key = [](std::array<int, 3> corners) {
     std::ranges::rotate(corners, std::ranges::min_element(corners));
@@ -85,29 +85,30 @@ void cancel_triangles(TriangleMesh& mesh) {
     if (turned) std::swap(corners[1], corners[2]);
     return std::pair(corners, turned ? -1 : 1);
   };
-  std::map<std::array<int, 3>, int> more_that_way;
+  std::map<std::array<int, 3>, int> orientation_excess;
   for (const auto& triangle : mesh.triangles) {
-    const auto [corners, way] = key(triangle);
-    more_that_way[corners] += way;
+    const auto [corners, orientation] = key(triangle);
+    orientation_excess[corners] += orientation;
   }
   std::erase_if(mesh.triangles, [&](const std::array<int, 3>& triangle) {
-    const auto [corners, way] = key(triangle);
-    int& more = more_that_way[corners];
-    const bool stays = more * way > 0;
+    const auto [corners, orientation] = key(triangle);
+    int& more = orientation_excess[corners];
+    const bool stays = more * orientation > 0;
     if (stays) more = 0;
     return !stays;
   });
 }
 
-/// How often more each edge is passed from its first corner to its second than back.
+/// Returns for each edge how many more triangles contain it in the direction from its first to its
+/// second corner than in the opposite direction.
 std::map<std::pair<int, int>, int> passed_edges(const TriangleMesh& mesh) {
-  std::map<std::pair<int, int>, int> more_that_way;
+  std::map<std::pair<int, int>, int> orientation_excess;
   for (const auto& triangle : mesh.triangles)
     for (int i = 0; i < 3; ++i) {
       const int from = triangle[i], to = triangle[(i + 1) % 3];
-      more_that_way[std::minmax(from, to)] += from < to ? 1 : -1;
+      orientation_excess[std::minmax(from, to)] += from < to ? 1 : -1;
     }
-  return more_that_way;
+  return orientation_excess;
 }
 bool is_closed(const TriangleMesh& mesh) {
   return std::ranges::all_of(passed_edges(mesh), [](const auto& edge) { return edge.second == 0; });
@@ -123,14 +124,14 @@ bool is_closed(const TriangleMesh& mesh) {
       places << (open == 1 ? "" : ", ") << "from " << listed(mesh.corners[edge.first]) << " to "
              << listed(mesh.corners[edge.second]);
   std::ostringstream text;
-  text << "is not a closed surface whose triangles are turned alike: " << open << " of "
-       << edges.size() << " edges belong to one side alone: " << places.str()
+  text << "is not a closed surface with consistently oriented triangles: " << open << " of "
+       << edges.size() << " edges are not shared by opposite triangles: " << places.str()
        << (open > most ? ", ..." : "");
   throw InputError(text.str());
 }
 
-/// Welds corners where the surface closes only so: those that are equal within rounding of double
-/// precision, then of single precision, then within what does not show on a body of this size.
+/// Merges corners until the surface is closed: first corners that are equal within the rounding of
+/// double precision, then of single precision, then within 1e-5 of the size of the body.
 TriangleMesh closed(TriangleMesh mesh) {
   const Box box = bounds(mesh);
   const double size = (box.high - box.low).norm();
@@ -149,7 +150,7 @@ void check_encloses(const TriangleMesh& mesh) {
   const Box box = bounds(mesh);
   if (std::abs(volume(mesh)) > least * area(mesh) * (box.high - box.low).maxCoeff()) return;
   throw InputError(
-      "encloses no volume: it is flat, or the triangles of its parts are turned opposite ways");
+      "encloses no volume: it is flat, or the triangles of its parts have opposite orientations");
 }
 
 Vec3 doubled_area(const TriangleMesh& mesh, const std::array<int, 3>& triangle) {
@@ -166,7 +167,8 @@ double squared_to_segment(const Vec3& x, const Vec3& a, const Vec3& b) {
   return (a + t * along - x).squaredNorm();
 }
 
-/// To the plane where x lies over the triangle, else to its edges.
+/// Returns the squared distance to the plane of the triangle if x lies above or below the triangle,
+/// otherwise to its edges.
 double squared_to_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = (b - a).cross(c - a);
   const auto left_of = [&](const Vec3& from, const Vec3& to) {
@@ -184,7 +186,8 @@ double squared_to_box(const Vec3& x, const Vec3& low, const Vec3& high) {
   return (low - x).cwiseMax(x - high).cwiseMax(0).squaredNorm();
 }
 
-/// Nodes beyond the box of a mesh, and spacings that distances are known to.
+/// Number of grid nodes beyond the box of a mesh, on each side. Distances are computed up to this
+/// number of spacings from the mesh.
 constexpr int padding = 4;
 
 struct NodeGrid {
@@ -206,8 +209,8 @@ NodeGrid grid_around(const Box& box, double spacing, const std::string& key) {
   const double nodes = (cells + Vec3::Constant(2 * padding + 1)).prod();
   if (!(nodes <= most)) {
     std::ostringstream text;
-    text << "is too fine: distances from the mesh would be asked for at " << nodes << " nodes, and "
-         << most << " are the most";
+    text << "is too fine: the grid would have " << nodes << " nodes, at most " << most
+         << " are allowed";
     throw InputError(key, spacing, text.str());
   }
   NodeGrid grid{box.low - Vec3::Constant(padding * spacing), spacing, {}};
@@ -215,20 +218,22 @@ NodeGrid grid_around(const Box& box, double spacing, const std::string& key) {
   return grid;
 }
 
-/// Whether a winding number is that of the inside. Throws OverlapError where it is neither 0 nor 1,
-/// but for places on the surface itself.
+/// Whether a point is inside a mesh, given the winding number of the mesh about it. Throws
+/// OverlapError if the winding number is neither 0 nor 1, unless the point is close to the surface.
 bool is_inside(double winding, double away, const NodeGrid& grid, const Vec3& x) {
   const bool is_clear = away > 1e-3 * grid.spacing;
   if (is_clear && winding > 1.5)
-    throw OverlapError("parts of the surface lie in or over one another, as at " + listed(x) +
-                       ": join them to one surface (triangles around a hollow face into it)");
+    throw OverlapError("parts of the surface overlap or lie inside one another, as at " +
+                       listed(x) +
+                       ": merge them into one surface (triangles around a cavity face into it)");
   if (is_clear && winding < -0.5)
     throw OverlapError("a part of the surface is turned inside out, as at " + listed(x));
   return winding > 0.5;
 }
 
-/// Signs by the winding number, where the node before in a row does not tell: a row begins outside,
-/// and what is farther than a spacing from the surface is on the same side as the next node.
+/// Returns the signed distances at the nodes. A node farther than a spacing from the surface is on
+/// the same side as the next node of its row, and a row begins outside; elsewhere the sign follows
+/// from the winding number.
 std::vector<double> signed_distances(const NodeGrid& grid, const TriangleMesh& mesh) {
   const MeshDistance exact(mesh);
   const double near = 1.001 * grid.spacing;
@@ -248,7 +253,8 @@ std::vector<double> signed_distances(const NodeGrid& grid, const TriangleMesh& m
   return distances;
 }
 
-/// Of splines that are the distances at the nodes but for fourth derivatives.
+/// Returns the coefficients of splines that reproduce the distances at the nodes, with errors of
+/// the order of fourth derivatives.
 std::vector<double> spline_coefficients(const NodeGrid& grid,
                                         const std::vector<double>& distances) {
   std::vector<double> coefficients = distances;
@@ -259,9 +265,9 @@ std::vector<double> spline_coefficients(const NodeGrid& grid,
         const auto d = [&](int di, int dj, int dk) {
           return distances[grid.number(i + di, j + dj, k + dk)];
         };
-        const double bend = d(-1, 0, 0) + d(1, 0, 0) + d(0, -1, 0) + d(0, 1, 0) + d(0, 0, -1) +
-                            d(0, 0, 1) - 6 * d(0, 0, 0);
-        coefficients[grid.number(i, j, k)] -= bend / 6;
+        const double laplacian = d(-1, 0, 0) + d(1, 0, 0) + d(0, -1, 0) + d(0, 1, 0) + d(0, 0, -1) +
+                                 d(0, 0, 1) - 6 * d(0, 0, 0);
+        coefficients[grid.number(i, j, k)] -= laplacian / 6;
       }
   return coefficients;
 }
@@ -275,7 +281,7 @@ void check_volume(const LevelSurface& surface) {
   const double change = volume_change(surface);
   if (std::abs(change) <= most) return;
   std::ostringstream text;
-  text << "the smooth surface would hold " << 100 * std::abs(change) << " % "
+  text << "the smooth surface would enclose " << 100 * std::abs(change) << " % "
        << (change < 0 ? "less" : "more") << " than the mesh";
   throw InputError(text.str());
 }
@@ -320,7 +326,8 @@ MeshDistance::MeshDistance(const TriangleMesh& mesh) {
   build(0, static_cast<int>(triangles_.size()));
 }
 
-/// Halves along the longest side; returns the number of the node.
+/// Builds a node of the tree from triangles begin to end - 1 and returns its number. Divides the
+/// triangles into two halves along the longest side of their box.
 int MeshDistance::build(int begin, int end) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   Vec3 low = Vec3::Constant(infinity), high = -low;
@@ -386,11 +393,12 @@ double MeshDistance::winding_number(const Vec3& x) const {
 }
 
 double MeshDistance::solid_angle(int number, const Vec3& x) const {
-  constexpr double far = 3;  // radii
+  // Distance, in radii of a tree node, beyond which the node counts as one facet
+  constexpr double far = 3;
   const Node& node = nodes_[number];
-  const Vec3 way = node.middle - x;
-  if (const double distance = way.norm(); distance > far * node.radius)
-    return node.area.dot(way) / (distance * distance * distance);
+  const Vec3 to_middle = node.middle - x;
+  if (const double distance = to_middle.norm(); distance > far * node.radius)
+    return node.area.dot(to_middle) / (distance * distance * distance);
   if (node.left >= 0) return solid_angle(node.left, x) + solid_angle(node.right, x);
   double sum = 0;
   for (int i = node.begin; i < node.end; ++i) {
@@ -425,7 +433,7 @@ LevelSurface mesh_surface(const TriangleMesh& mesh, const std::string& key) {
       if (std::abs(volume_change(surface)) < right) return surface;
     } catch (const OverlapError&) {
       throw;
-    } catch (const InputError&) {  // too coarse
+    } catch (const InputError&) {  // this spacing is too coarse
     }
   }
   return mesh_surface(mesh, longest / most_cells, key);

@@ -9,9 +9,9 @@
 
 namespace flatspeckle::grin {
 
-/// A surface is where distance(x) is 0; it is negative inside. |distance| is nowhere more than the
-/// true distance, so that a ray may go that far without looking. normal(x) is a unit vector
-/// outwards, meant for points on the surface.
+/// A surface. distance(x) is 0 on the surface and negative inside. |distance| never exceeds the
+/// true distance, so that a ray may go as far as |distance| without a test for a crossing.
+/// normal(x) is the outward unit vector at a point on the surface.
 using Surface = std::variant<Sphere, Plane, Box, Lens, LevelSurface>;
 
 inline double distance(const Surface& surface, const Vec3& x) {
@@ -20,12 +20,12 @@ inline double distance(const Surface& surface, const Vec3& x) {
 inline Vec3 normal(const Surface& surface, const Vec3& x) {
   return std::visit([&](const auto& s) { return s.normal(x); }, surface);
 }
-/// The box around a closed surface. Throws InputError for a plane.
+/// Returns the box around a closed surface. Throws InputError for a plane.
 inline Box bounds(const Surface& surface) {
   return std::visit(
       [](const auto& s) -> Box {
         if constexpr (requires { s.bounds(); }) return s.bounds();
-        throw InputError("a plane is no boundary of a stage or body: it is not closed");
+        throw InputError("a plane cannot be the boundary of a stage or body: it is not closed");
       },
       surface);
 }

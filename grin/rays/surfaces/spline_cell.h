@@ -12,8 +12,8 @@
 
 namespace flatspeckle::grin {
 
-/// A polynomial on [0, 1] by its Bernstein coefficients: nowhere outside of their range, and with
-/// no more zeros than they change sign.
+/// A polynomial on [0, 1], given by its Bernstein coefficients. Its values stay within the range of
+/// the coefficients, and it has no more zeros than the coefficients have changes of sign.
 template <std::size_t size>
 struct Bernstein {
   std::array<double, size> c;
@@ -21,7 +21,7 @@ struct Bernstein {
   struct Halves {
     Bernstein left, right;
   };
-  /// At t, by de Casteljau; the value there is right.c[0].
+  /// Splits the polynomial at t by de Casteljau's algorithm; its value at t is right.c[0].
   Halves split(double t) const {
     Halves halves{{}, *this};
     for (std::size_t last = size; last-- > 0;) {
@@ -32,7 +32,7 @@ struct Bernstein {
     return halves;
   }
 
-  /// Of [0, 1] where it is negative.
+  /// Returns the fraction of [0, 1] where the polynomial is negative.
   double negative_share(int halvings = 5) const {
     const bool first = c[0] < 0;
     if (std::ranges::all_of(c, [&](double at) { return (at < 0) == first; })) return first;
@@ -45,7 +45,7 @@ struct Bernstein {
            2;
   }
 
-  /// (p(t) - p(0)) / t.
+  /// Returns the polynomial (p(t) - p(0)) / t, where p is this polynomial.
   Bernstein<size - 1> without_zero_at_start() const {
     constexpr double degree = size - 1;
     Bernstein<size - 1> rest;
@@ -54,8 +54,8 @@ struct Bernstein {
     return rest;
   }
 
-  /// Where a polynomial that is positive at 0 first changes its sign; what is above -tolerance
-  /// counts as positive. Two zeros nearer to each other than 2^-24 may be missed.
+  /// Returns the first point where a polynomial that is positive at 0 changes its sign; values
+  /// above -tolerance count as positive. Two zeros closer to each other than 2^-24 may be missed.
   std::optional<double> first_zero(double tolerance, int halvings = 24) const {
     std::size_t changes = 0;
     for (std::size_t i = 1; i < size; ++i)
@@ -70,13 +70,14 @@ struct Bernstein {
   }
 
  private:
-  /// Between a positive start and an end that is not: Newton's steps, or halves of the bracket.
+  /// Returns the zero of a polynomial that is positive at 0 and not positive at 1. Uses Newton's
+  /// method with bisection.
   double only_zero() const {
     constexpr double rounding = 1e-15;
     double low = 0, high = 1, t = std::max(0.0, c[0] / (c[0] - c[size - 1]));
     for (int i = 0; i < 100; ++i) {
-      const auto [value, slope] = value_and_slope(t);
-      const double step = -value / slope;
+      const auto [value, derivative] = value_and_derivative(t);
+      const double step = -value / derivative;
       if (std::abs(step) <= rounding) break;
       (value > 0 ? low : high) = t;
       t += step;
@@ -85,24 +86,27 @@ struct Bernstein {
     return t;
   }
   struct At {
-    double value, slope;
+    double value, derivative;
   };
-  At value_and_slope(double t) const {
+  At value_and_derivative(double t) const {
     std::array<double, size> of = c;
     for (std::size_t last = size - 1; last > 1; --last)
       for (std::size_t i = 0; i < last; ++i) of[i] += t * (of[i + 1] - of[i]);
-    const double slope = of[1] - of[0];
-    return {of[0] + t * slope, (size - 1) * slope};
+    const double derivative = of[1] - of[0];
+    return {of[0] + t * derivative, (size - 1) * derivative};
   }
 };
 
-/// The 64 coefficients of the cubic B-splines that are there in a cell of a grid, whose places are
-/// in units of the cell, from its low corner.
+/// The 64 coefficients of the cubic B-splines that are nonzero in a cell of a grid. Positions are
+/// in units of the cell, relative to its low corner.
 struct SplineCell {
   using Four = Eigen::Array4d;
-  std::array<Four, 16> rows;  ///< along z; y fastest
+  /// Coefficients of the splines: row 4 i + j contains the four coefficients along z with number i
+  /// along x and number j along y.
+  std::array<Four, 16> rows;
 
-  /// As Bernstein polynomials, within whose coefficients values are.
+  /// Returns the Bernstein coefficients of the spline in this cell. All values in the cell are
+  /// within their range.
   SplineCell bezier() const {
     SplineCell to = *this;
     for (int along = 0; along < 2; ++along) {
@@ -119,8 +123,8 @@ struct SplineCell {
     const auto [low, high] = range();
     return low <= slack && high >= -slack;
   }
-  /// |gradient| squared is nowhere more than this.
-  double most_squared_slope() const {
+  /// Returns an upper bound of |gradient|^2 of the spline in the cell.
+  double largest_squared_gradient() const {
     Vec3 most = Vec3::Zero();
     for (int row = 0; row < 16; ++row) {
       if (row < 12) most[0] = std::max(most[0], (rows[row + 4] - rows[row]).abs().maxCoeff());
@@ -130,15 +134,16 @@ struct SplineCell {
     return most.squaredNorm();
   }
 
-  /// Of the cell, along lines in the direction in which the sum changes most.
+  /// Returns the fraction of the cell where the spline is negative, computed along lines in the
+  /// direction of its largest change.
   double negative_share() const {
     constexpr int lines = 4;
-    const std::array<double, 3> slopes{
+    const std::array<double, 3> variations{
         std::abs((rows[9] + rows[10] - rows[5] - rows[6]).segment<2>(1).sum()),
         std::abs((rows[6] + rows[10] - rows[5] - rows[9]).segment<2>(1).sum()),
         std::abs((rows[5] + rows[6] + rows[9] + rows[10])[2] -
                  (rows[5] + rows[6] + rows[9] + rows[10])[1])};
-    const auto axis = std::max_element(slopes.begin(), slopes.end()) - slopes.begin();
+    const auto axis = std::max_element(variations.begin(), variations.end()) - variations.begin();
     double sum = 0;
     for (int line = 0; line < lines * lines; ++line) {
       Vec3 from = Vec3::Zero();
@@ -149,11 +154,12 @@ struct SplineCell {
     return sum / (lines * lines);
   }
 
-  /// From one place in it to another.
+  /// Returns the spline along the line from one point of the cell to another, as a polynomial.
   Bernstein<10> along(const Vec3& from, const Vec3& to) const {
     const Splines x = splines(from[0], to[0]), y = splines(from[1], to[1]),
                   z = splines(from[2], to[2]);
-    std::array<Four, 7> sums;  // by the degrees in x and y together, along those in z
+    // Element s has degree s in x and y together; its entries have degrees 0 to 3 in z
+    std::array<Four, 7> sums;
     sums.fill(Four::Zero());
     for (int i = 0; i < 4; ++i) {
       std::array<Four, 4> plane;
@@ -196,8 +202,8 @@ struct SplineCell {
     c = third;
     d = last;
   }
-  /// The four that are there, between two places of an axis: Bernstein coefficients times
-  /// binomials, from polar forms.
+  /// Returns the four splines that are nonzero between two positions along an axis, as Bernstein
+  /// coefficients times binomial coefficients. They are computed from polar forms.
   using Splines = std::array<Four, 4>;
   static Splines splines(double a, double b) {
     const double p = 1 - a, q = 1 - b;

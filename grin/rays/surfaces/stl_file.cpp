@@ -33,7 +33,7 @@ Number number_at(const std::string& bytes, std::size_t at) {
 
 constexpr std::size_t first_triangle = stl_header + sizeof(std::uint32_t);
 
-/// Triangles that a binary file's header counts.
+/// Returns the number of triangles that the header of a binary file contains.
 std::size_t counted_triangles(const std::string& bytes) {
   return bytes.size() < first_triangle ? 0 : number_at<std::uint32_t>(bytes, stl_header);
 }
@@ -47,24 +47,26 @@ std::string lower_case(std::string word) {
   return word;
 }
 
-/// Binary files may begin with "solid" too, but their size follows from the count in their header.
+/// Whether a file is text. Binary files may also begin with "solid", but their size follows from
+/// the count in their header.
 bool is_text(const std::string& bytes) {
   if (bytes.size() >= first_triangle && bytes.size() == bytes_of(counted_triangles(bytes)))
     return false;
   return bytes.find('\0') == std::string::npos;
 }
 
-/// Bytes after the last triangle that the header counts are left out.
+/// Throws InputError if the file is too short. Bytes after the last counted triangle are ignored.
 void check_size(const std::string& bytes) {
   const std::size_t triangles = counted_triangles(bytes), size = bytes_of(triangles);
   if (bytes.size() >= size) return;
   std::ostringstream text;
-  text << "is cut short, or its header is wrong: the header counts " << triangles
-       << " triangles, which take " << size << " bytes, and the file has " << bytes.size();
+  text << "is truncated, or its header is wrong: the header counts " << triangles
+       << " triangles, which require " << size << " bytes, but the file has " << bytes.size();
   throw InputError(text.str());
 }
 
-/// Each triangle has a normal, its corners, and two bytes of anything.
+/// Returns the corners of all triangles of a binary file. Each triangle consists of a normal, three
+/// corners, and two bytes of arbitrary content.
 std::vector<Vec3> corners_of_binary(const std::string& bytes) {
   check_size(bytes);
   std::vector<Vec3> corners;
@@ -78,8 +80,8 @@ std::vector<Vec3> corners_of_binary(const std::string& bytes) {
   return corners;
 }
 
-/// Reads numbers by strtod, which accepts nan and inf. Words may be in capitals, and a byte order
-/// mark may come before them.
+/// Returns the corners of all triangles of a text file. Numbers are read by strtod, which accepts
+/// nan and inf. Words may be in capitals, and a byte order mark may precede the text.
 std::vector<Vec3> corners_of_text(const std::string& bytes) {
   const std::string mark = "\xEF\xBB\xBF";
   std::istringstream words(bytes.starts_with(mark) ? bytes.substr(mark.size()) : bytes);
@@ -103,13 +105,14 @@ std::vector<Vec3> corners_of_text(const std::string& bytes) {
   return corners;
 }
 
-/// Where a file goes on after the triangles that its header counts.
+/// Returns a note for error messages if a file continues after the triangles that its header
+/// counts.
 std::string left_out(const std::string& bytes) {
   const std::size_t size = bytes_of(counted_triangles(bytes));
   if (is_text(bytes) || bytes.size() <= size) return {};
   return " (" + std::to_string(bytes.size() - size) + " bytes after the " +
          std::to_string(counted_triangles(bytes)) +
-         " triangles that the header counts are left out)";
+         " triangles that the header counts are ignored)";
 }
 
 }  // namespace

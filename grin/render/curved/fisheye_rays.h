@@ -12,13 +12,15 @@
 
 namespace flatspeckle::grin {
 
-/// A ray of Maxwell's fisheye in closed form (conventions, C27), lengths in units of its radius
-/// from its centre: n = n0 / (1 + r^2), and rays are circles, x(s) = x + S w + C b, with the
-/// curvature b = -2 (x - (x.w) w) / (1 + r^2), S = sin(ks)/k, C = (1 - cos(ks))/k^2, k = |b|. All
-/// of it stays exact as k goes to 0, where the ray is straight.
+/// A ray of Maxwell's fisheye in closed form (conventions, C27). Lengths are in units of the
+/// fisheye's radius, and positions are relative to its centre, so that n = n0 / (1 + r^2). A ray
+/// from x along w is a circle,
+///   x(s) = x + S w + C b,  S = sin(ks)/k,  C = (1 - cos(ks))/k^2,
+/// with the curvature b = -2 (x - (x.w) w) / (1 + r^2), k = |b|. The formulas remain accurate as k
+/// goes to 0, where the ray is straight.
 class FisheyeOrbit {
  public:
-  /// w: unit, along the ray.
+  /// w: unit direction of the ray.
   FisheyeOrbit(const Vec3& x, const Vec3& w)
       : x_(x),
         w_(w),
@@ -30,14 +32,14 @@ class FisheyeOrbit {
   double curvature() const { return curvature_; }
   double outwards() const { return outwards_; }
   const Vec3& start() const { return w_; }
-  /// All around; infinite of a straight ray.
+  /// Circumference of the circle; infinite for a straight ray.
   double circumference() const { return 2 * std::numbers::pi / curvature_; }
 
-  /// Where it is after an arc of s.
+  /// State of the ray after an arc of length s.
   struct Place {
     Vec3 x, w;
-    double angle;  ///< optical path over n0/2
-    double sigma;  ///< times n0
+    double angle;  ///< optical path, divided by n0/2
+    double sigma;  ///< ray parameter sigma, multiplied by n0
   };
   Place at(double s) const {
     const double half = curvature_ * s / 2;
@@ -47,10 +49,11 @@ class FisheyeOrbit {
             over_ * s + 2 * bulge * outwards_ + 2 * lag(s, half) * (1 + x_.dot(bend_))};
   }
 
-  /// The arc to where the ray leaves a sphere about the centre, in which it is; infinite where it
-  /// never does. 0 of a ray on its way out from the sphere or beyond.
-  double way_out(double radius) const {
-    // r^2(s) - radius^2 is a quadratic in q = 2/k tan(ks/2), over 1 + (kq/2)^2
+  /// Returns the arc length at which the ray leaves the sphere of this radius about the centre;
+  /// infinite if the ray never leaves it, 0 for an outgoing ray that starts on or beyond the
+  /// sphere.
+  double exit_distance(double radius) const {
+    // r^2(s) - radius^2 is a quadratic in q = 2/k tan(ks/2), divided by 1 + (kq/2)^2
     const double inside = x_.squaredNorm() - radius * radius;
     if (inside >= 0 && outwards_ >= 0) return 0;
     const double square = inside * curvature_ * curvature_ / 4 + 1 + x_.dot(bend_);
@@ -65,13 +68,15 @@ class FisheyeOrbit {
 
  private:
   static double sinc(double x) { return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x; }
-  /// (s - S) / k^2.
+  /// Returns (s - S) / k^2, where S = sin(ks)/k.
   double lag(double s, double half) const {
     const double y = 4 * half * half;  // (ks)^2
     if (y < 0.01) return s * s * s / 6 * (1 - y / 20 * (1 - y / 42 * (1 - y / 72)));
     return (s - s * sinc(2 * half)) / (curvature_ * curvature_);
   }
-  /// Between the two points on the sphere of which space is the image (stereographic).
+  /// Returns the angle, on the unit sphere of four dimensions, between the stereographic
+  /// projections of the start and the end of an arc of length s. half: k s / 2, with k the
+  /// curvature of the arc.
   double angle(double s, double half) const {
     const double rounds = std::floor(half / std::numbers::pi);
     const double rest = half - rounds * std::numbers::pi;
@@ -81,20 +86,23 @@ class FisheyeOrbit {
   }
 
   Vec3 x_, w_;
-  double over_, outwards_;  ///< 1 + r^2, x.w
+  double over_, outwards_;  ///< 1 + r^2 and x.w at the start of the ray
   Vec3 bend_;
   double curvature_;
 };
 
-/// The two ways between two points (apart, and not images of each other): the two arcs of one
-/// circle, the first of which is less than half of all ways around by optical path.
-struct FisheyeWays {
+/// The two rays that connect two distinct points. They are the two arcs of one circle; the first
+/// has less than half of the optical path of the circle. If one point is the optical image of the
+/// other, all rays from it arrive there, and the two arcs are not defined.
+struct FisheyeArcs {
   Vec3 from;
-  Vec3 start, end;        ///< unit, of the first; those of the second are opposite
-  double arc, angle;      ///< of the first
-  double root_spreading;  ///< sqrt |J| of both; 0 where the points are images
+  /// Unit tangents at the two ends of the first arc; those of the second arc are opposite.
+  Vec3 start, end;
+  /// Length of the first arc, and its optical path divided by n0/2.
+  double arc, angle;
+  double root_spreading;  ///< sqrt |J| of both arcs; 0 if one point is the image of the other
 
-  FisheyeWays(const Vec3& x0, const Vec3& x1) : from(x0) {
+  FisheyeArcs(const Vec3& x0, const Vec3& x1) : from(x0) {
     const double over = 1 + x0.squaredNorm(), apart = (x1 - x0).squaredNorm();
     const Vec3 along = x1 - x0 + apart / over * x0;
     start = along.normalized();
@@ -109,12 +117,13 @@ struct FisheyeWays {
   }
 };
 
-/// A place and a direction in the fisheye, in units of its radius, as stereographic projection has
-/// them on the unit sphere of four dimensions, and what is beside them.
+/// Stereographic projection of a position and a direction in the fisheye to the unit sphere of four
+/// dimensions. lifted() projects displacements of the two to the sphere, lowered() projects such
+/// displacements back. Lengths are in units of the fisheye's radius.
 struct OnSphere {
   using Vec4 = Eigen::Vector4d;
   Vec3 x, w;
-  double over, outwards;  ///< 1 + r^2; fourth component of the direction
+  double over, outwards;  ///< 1 + r^2; fourth component of the projected direction
 
   OnSphere(const Vec3& at, const Vec3& direction)
       : x(at), w(direction), over(1 + at.squaredNorm()), outwards(2 * at.dot(direction) / over) {}
@@ -142,11 +151,11 @@ struct OnSphere {
   }
 };
 
-/// Rays of Maxwell's fisheye that end on a sphere about its centre: closed forms instead of steps,
-/// and all curves between two points.
+/// Rays of Maxwell's fisheye inside a sphere about its centre, computed in closed form instead of
+/// by numerical steps. connect() selects one of all curves between two points at random.
 class FisheyeRays final : public RayFieldOf<Fisheye> {
  public:
-  /// radius: of the sphere.
+  /// radius: radius of the sphere on which rays end.
   FisheyeRays(const Fisheye& field, double radius)
       : RayFieldOf(field),
         centre_(field.centre()),
@@ -155,70 +164,71 @@ class FisheyeRays final : public RayFieldOf<Fisheye> {
         radius_(radius / unit_) {}
 
   bool has_lanes() const override { return false; }
-  LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
-              RayState& ray, RayTangent* tangent) const override {
-    if (room.medium.grid()) return RayFieldOf::fly(room, longest, weight, random, ray, tangent);
+  SegmentStop fly(const SegmentDomain& domain, double longest, double& weight, RandomStream& random,
+                  RayState& ray, RayTangent* tangent) const override {
+    if (domain.medium.grid()) return RayFieldOf::fly(domain, longest, weight, random, ray, tangent);
     const FisheyeOrbit orbit(in_units(ray.x), ray.v.normalized());
-    const double out = unit_ * orbit.way_out(radius_ - 1e-9 / 8 * room.step / unit_);
-    const double collision = room.medium.scatters()
-                                 ? sample_free_flight(room.medium.majorant(), random.uniform())
+    const double out = unit_ * orbit.exit_distance(radius_ - 1e-9 / 8 * domain.step / unit_);
+    const double collision = domain.medium.scatters()
+                                 ? sample_free_flight(domain.medium.majorant(), random.uniform())
                                  : std::numeric_limits<double>::infinity();
     const double arc = std::min(out, collision);
-    if (!(arc <= longest)) return LegStop::lost;
+    if (!(arc <= longest)) return SegmentStop::lost;
     move(orbit, arc, ray, tangent);
-    return collision < out ? LegStop::collision : LegStop::surface;
+    return collision < out ? SegmentStop::collision : SegmentStop::surface;
   }
 
   double cost_of_curve() const override { return 0.5; }
   double cost_of_closed_curve() const override { return 2.5; }
-  ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
+  ConnectionEstimate connect(const CurveEndpoints& ends, const ConnectionOptions& options,
                              RandomStream& random,
                              ConnectionStatistics& statistics) const override {
-    const ConnectionEstimate found = one_of_ways(ends, options, random);
+    const ConnectionEstimate found = one_of_curves(ends, options, random);
     statistics.add_pair(found.outcome);
     return found;
   }
 
  private:
   static constexpr double full = 2 * std::numbers::pi;
-  /// Of the ways around a circle that is all inside, each is this much less likely than the one
-  /// before.
+  /// Probability with which a random connection goes around its circle once more, if the circle is
+  /// entirely inside the sphere.
   static constexpr double once_more = 0.25;
 
   Vec3 in_units(const Vec3& x) const { return (x - centre_) / unit_; }
 
-  ConnectionEstimate one_of_ways(const CurveEnds& ends, const ConnectionOptions& options,
-                                 RandomStream& random) const {
+  ConnectionEstimate one_of_curves(const CurveEndpoints& ends, const ConnectionOptions& options,
+                                   RandomStream& random) const {
     const Vec3 from = in_units(ends.from), to = in_units(ends.to);
-    const FisheyeWays ways(from, to);
-    if (!(ways.root_spreading > 0)) return {TrialOutcome::degenerate, std::nullopt, 0};
+    const FisheyeArcs arcs(from, to);
+    if (!(arcs.root_spreading > 0)) return {TrialOutcome::degenerate, std::nullopt, 0};
     const double end = radius_ + ends.region.tolerance / unit_;
-    const FisheyeOrbit first(from, ways.start);
-    const double out = first.way_out(end), around = first.circumference();
-    if (out >= ways.arc && std::isfinite(out))
-      return way(ways, ways.arc, ways.angle, 1, 1, options);
+    const FisheyeOrbit first(from, arcs.start);
+    const double out = first.exit_distance(end), around = first.circumference();
+    if (out >= arcs.arc && std::isfinite(out))
+      return along_arc(arcs, arcs.arc, arcs.angle, 1, 1, options);
     if (std::isfinite(out)) {
-      const double other = around - ways.arc;
-      if (!(FisheyeOrbit(from, -ways.start).way_out(end) >= other))
+      const double other = around - arcs.arc;
+      if (!(FisheyeOrbit(from, -arcs.start).exit_distance(end) >= other))
         return {TrialOutcome::left_region, std::nullopt, 0};
-      return way(ways, other, full - ways.angle, -1, 1, options);
+      return along_arc(arcs, other, full - arcs.angle, -1, 1, options);
     }
-    const double chance = 1 - ways.arc / around;  // of the first: longer ways bring less
-    const bool is_first = random.uniform() < chance;
-    double rounds = 0, likely = (is_first ? chance : 1 - chance) * (1 - once_more);
+    // probability of selecting the first arc; the shorter an arc is, the more it contributes
+    const double probability = 1 - arcs.arc / around;
+    const bool is_first = random.uniform() < probability;
+    double rounds = 0, likely = (is_first ? probability : 1 - probability) * (1 - once_more);
     for (; random.uniform() < once_more; ++rounds) likely *= once_more;
-    return way(ways, (is_first ? ways.arc : around - ways.arc) + rounds * around,
-               (is_first ? ways.angle : full - ways.angle) + rounds * full, is_first ? 1 : -1,
-               1 / likely, options);
+    return along_arc(arcs, (is_first ? arcs.arc : around - arcs.arc) + rounds * around,
+                     (is_first ? arcs.angle : full - arcs.angle) + rounds * full, is_first ? 1 : -1,
+                     1 / likely, options);
   }
 
-  ConnectionEstimate way(const FisheyeWays& ways, double arc, double angle, int sense,
-                         double multiplicity, const ConnectionOptions& options) const {
+  ConnectionEstimate along_arc(const FisheyeArcs& arcs, double arc, double angle, int sense,
+                               double multiplicity, const ConnectionOptions& options) const {
     if (!(unit_ * arc <= options.max_length)) return {TrialOutcome::too_long, std::nullopt, 0};
-    const FisheyeOrbit::Place place = FisheyeOrbit(ways.from, sense * ways.start).at(arc);
-    const double across = unit_ * ways.root_spreading, sigma = unit_ / index_ * place.sigma;
+    const FisheyeOrbit::Place place = FisheyeOrbit(arcs.from, sense * arcs.start).at(arc);
+    const double across = unit_ * arcs.root_spreading, sigma = unit_ / index_ * place.sigma;
     return {TrialOutcome::converged,
-            Connection{sense * ways.start, sense * ways.end, sigma, unit_ * arc,
+            Connection{sense * arcs.start, sense * arcs.end, sigma, unit_ * arc,
                        unit_ * index_ / 2 * angle, across * across, sense,
                        static_cast<int>(std::ceil(sigma / options.step))},
             multiplicity};
@@ -234,8 +244,9 @@ class FisheyeRays final : public RayFieldOf<Fisheye> {
     ray.v = n * place.w;
   }
 
-  /// Rays beside one turn with it on the sphere of which space is the image; all by the same angle,
-  /// which differs from the same sigma by a shift along the ray alone.
+  /// Advances the derivatives of neighbouring rays. On the unit sphere of four dimensions all rays
+  /// turn by the same angle; neighbouring rays at the same sigma differ from this only by a shift
+  /// along the ray.
   void turn(const OnSphere& from, double n_from, const FisheyeOrbit::Place& place, double n,
             RayTangent& tangent) const {
     const OnSphere to(place.x, place.w);
@@ -254,7 +265,8 @@ class FisheyeRays final : public RayFieldOf<Fisheye> {
   double unit_, index_, radius_;
 };
 
-/// Nothing where there is no closed form.
+/// Returns closed-form rays that end on the sphere `end`; null if it is not about the fisheye's
+/// centre.
 inline std::unique_ptr<const RayField> closed_form_within(const Fisheye& field, const Sphere& end) {
   const bool fits = (end.centre - field.centre()).norm() <= 1e-12 * field.profile().radius;
   return fits ? std::make_unique<FisheyeRays>(field, end.radius) : nullptr;

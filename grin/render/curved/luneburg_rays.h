@@ -10,30 +10,33 @@
 
 namespace flatspeckle::grin {
 
-/// A ray of Luneburg's ball in closed form (conventions, C27), lengths in radii from its centre: an
-/// ellipse about that, x = x0 cos t + v0 sin t, t = sigma. On it r^2 = 1 - p cos u and n^2 = 1 + p
-/// cos u, where u = u0 + 2 t; inside the ball |u| <= pi/2, so that no way there is longer than t =
-/// pi/2.
+/// A ray of Luneburg's ball in closed form (conventions, C27). Lengths are in units of the ball's
+/// radius, and positions are relative to its centre. The ray is an ellipse about the centre,
+///   x = x0 cos t + v0 sin t,  t = sigma.
+/// Along it r^2 = 1 - p cos u and n^2 = 1 + p cos u, where u = u0 + 2 t, and p and u0 are constants
+/// of the ray. Inside the ball |u| <= pi/2, so that t <= pi/2 for any ray inside.
 class LuneburgOrbit {
  public:
-  /// |v|^2 = 2 - r^2 here.
+  /// Requires |v|^2 = 2 - r^2.
   LuneburgOrbit(const Vec3& x, const Vec3& v) : inside_(1 - x.squaredNorm()), outwards_(x.dot(v)) {}
 
-  /// Where the ray leaves a sphere about the centre: t, below 0 for a ray on its way out beyond it.
-  double way_out(double radius) const {
+  /// Returns t at which the ray leaves the sphere of this radius about the centre; negative for an
+  /// outgoing ray that starts beyond the sphere.
+  double exit_distance(double radius) const {
     const double cosine = (1 - radius * radius) / swing();
     return (std::acos(std::min(cosine, 1.0)) - std::atan2(outwards_, inside_)) / 2;
   }
 
-  /// On the way ahead, where it is `now` here.
+  /// Largest index on the ray ahead; `now` is the index at its start.
   double largest_index(double now) const { return outwards_ > 0 ? now : std::sqrt(1 + swing()); }
 
-  /// Between t = 0 and pi/2, of which sine and cosine are.
+  /// Returns n^2 at t in (0, pi/2), given cosine and sine of t.
   double squared_index(double cosine, double sine) const {
     return 1 + inside_ * (cosine * cosine - sine * sine) - outwards_ * 2 * sine * cosine;
   }
 
-  /// Of the first t, as above: integrals of n dt, by Gauss's eight points (to 1e-9), and n^2 dt.
+  /// arc_length() returns the integral of n dt from 0 to t, by Gauss quadrature with eight points,
+  /// accurate to 1e-9; optical_path() returns that of n^2 dt. cosine, sine: of t.
   double arc_length(double t, double cosine, double sine) const {
     const double in = inside_ * cosine - outwards_ * sine,
                  out = outwards_ * cosine + inside_ * sine;
@@ -43,7 +46,8 @@ class LuneburgOrbit {
     return t + sine * (inside_ * cosine - outwards_ * sine);
   }
 
-  /// Of so long a way, p cos u and p sin u at its middle.
+  /// Returns the arc length of a curve over an interval t of sigma. in, out: p cos u and p sin u at
+  /// the middle of the curve.
   static double arc_about(double t, double in, double out) {
     double sum = 0;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -63,7 +67,8 @@ class LuneburgOrbit {
   struct CosSin {
     double cosine, sine;
   };
-  /// To rounding up to pi/2: series, as loops of calls do not become vectors.
+  /// Returns cosine and sine of x up to pi/2, accurate to rounding, by power series. Unlike library
+  /// calls, these can be vectorised.
   static CosSin cos_sin(double x) {
     const double y = x * x;
     double cosine = 1, sine = 1;
@@ -74,19 +79,21 @@ class LuneburgOrbit {
     return {cosine, x * sine};
   }
 
-  double swing() const { return std::sqrt(inside_ * inside_ + outwards_ * outwards_); }  ///< p
+  /// Returns p, the constant of the ray in r^2 = 1 - p cos u.
+  double swing() const { return std::sqrt(inside_ * inside_ + outwards_ * outwards_); }
 
-  double inside_, outwards_;  ///< p cos u, p sin u at t = 0
+  double inside_, outwards_;  ///< p cos u0 and p sin u0 (class comment)
 };
 
-/// The one way between two points of the ball, from x0 to x1 (apart) and as long as t, seen from
-/// its middle: with t' = t/2, m = (x0 + x1)/2 = x cos t' and e = (x1 - x0)/2 = v sin t', r^2 + v^2
-/// = 2 there is an equation for sin^2 t', whose smaller root is the way inside.
-struct LuneburgWay {
+/// The unique curve between two distinct points x0 and x1 of the ball, over an interval t of sigma.
+/// It is parametrised by its state x, v at the middle: with t' = t/2, m = (x0 + x1)/2 = x cos t'
+/// and e = (x1 - x0)/2 = v sin t'. The condition |x|^2 + |v|^2 = 2 gives a quadratic equation for
+/// sin^2 t', whose smaller root is the curve inside the ball.
+struct LuneburgCurve {
   double half_cosine, half_sine;
-  Vec3 x, v;  ///< at the middle
+  Vec3 x, v;  ///< position and momentum (n times direction) at the middle of the curve
 
-  LuneburgWay(const Vec3& x0, const Vec3& x1) {
+  LuneburgCurve(const Vec3& x0, const Vec3& x1) {
     const Vec3 m = (x0 + x1) / 2, e = (x1 - x0) / 2;
     const double ee = e.squaredNorm(), b = 2 + ee - m.squaredNorm();
     const double square = 2 * ee / (b + std::sqrt(std::max(b * b - 8 * ee, 0.0)));
@@ -104,11 +111,11 @@ struct LuneburgWay {
   double optical_path() const { return t() + sine() * (1 - x.squaredNorm()); }
 };
 
-/// Rays of a Luneburg ball that end on a sphere about its centre, within its rim: closed forms
-/// instead of steps, and one curve between any two points.
+/// Rays of a Luneburg ball inside a sphere about its centre that does not extend beyond the ball,
+/// computed in closed form instead of by numerical steps. Exactly one curve connects two points.
 class LuneburgRays final : public RayFieldOf<Luneburg> {
  public:
-  /// radius: of the sphere.
+  /// radius: radius of the sphere on which rays end.
   LuneburgRays(const Luneburg& field, double radius)
       : RayFieldOf(field),
         centre_(field.centre()),
@@ -116,51 +123,52 @@ class LuneburgRays final : public RayFieldOf<Luneburg> {
         radius_(radius / unit_) {}
 
   bool has_lanes() const override { return false; }
-  LegStop fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
-              RayState& ray, RayTangent* tangent) const override {
-    if (room.medium.grid()) return RayFieldOf::fly(room, longest, weight, random, ray, tangent);
-    const double end = radius_ - 1e-9 / 8 * room.step / unit_;
+  SegmentStop fly(const SegmentDomain& domain, double longest, double& weight, RandomStream& random,
+                  RayState& ray, RayTangent* tangent) const override {
+    if (domain.medium.grid()) return RayFieldOf::fly(domain, longest, weight, random, ray, tangent);
+    const double end = radius_ - 1e-9 / 8 * domain.step / unit_;
     const LuneburgOrbit orbit(in_units(ray.x), ray.v);
     const auto collision =
-        room.medium.scatters() ? collide(orbit, ray, end, room.medium, random) : std::nullopt;
-    move(orbit, collision ? *collision : Turn(std::max(orbit.way_out(end), 0.0)), ray, tangent);
-    if (!(ray.arc_length <= longest)) return LegStop::lost;
-    return collision ? LegStop::collision : LegStop::surface;
+        domain.medium.scatters() ? collide(orbit, ray, end, domain.medium, random) : std::nullopt;
+    move(orbit, collision ? *collision : Turn(std::max(orbit.exit_distance(end), 0.0)), ray,
+         tangent);
+    if (!(ray.arc_length <= longest)) return SegmentStop::lost;
+    return collision ? SegmentStop::collision : SegmentStop::surface;
   }
 
   void advance(double sigma, int /*steps*/, RayState& ray, RayTangent* tangent) const override {
     const double t = sigma / unit_;
-    const int parts = static_cast<int>(std::ceil(std::abs(t) / longest_way));
+    const int parts = static_cast<int>(std::ceil(std::abs(t) / longest_distance));
     for (int i = 0; i < parts; ++i)
       move(LuneburgOrbit(in_units(ray.x), ray.v), Turn(t / parts), ray, tangent);
   }
 
   double cost_of_curve() const override { return 0.5; }
   double cost_of_closed_curve() const override { return 2.5; }
-  ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
+  ConnectionEstimate connect(const CurveEndpoints& ends, const ConnectionOptions& options,
                              RandomStream& /*random*/,
                              ConnectionStatistics& statistics) const override {
     const Vec3 from = in_units(ends.from), to = in_units(ends.to);
-    const LuneburgWay way(from, to);
-    const Vec3 start = way.start(), last = way.end();
+    const LuneburgCurve curve(from, to);
+    const Vec3 start = curve.start(), last = curve.end();
     const double n = start.norm(), n_last = last.norm(), aligned = start.dot(last);
-    const double arc = unit_ * way.arc_length(), across = unit_ * way.sine();
+    const double arc = unit_ * curve.arc_length(), across = unit_ * curve.sine();
     const double spreading = across * across * aligned * n / n_last;
     const TrialOutcome outcome = !(std::abs(spreading) > 0) ? TrialOutcome::degenerate
                                  : arc > options.max_length ? TrialOutcome::too_long
                                                             : TrialOutcome::converged;
     statistics.add_pair(outcome);
     if (outcome != TrialOutcome::converged) return {outcome, std::nullopt, 0};
-    const double sigma = unit_ * way.t();
+    const double sigma = unit_ * curve.t();
     return {outcome,
-            Connection{start / n, last / n_last, sigma, arc, unit_ * way.optical_path(),
+            Connection{start / n, last / n_last, sigma, arc, unit_ * curve.optical_path(),
                        std::abs(spreading), spreading < 0 ? -1 : 1,
                        static_cast<int>(std::ceil(sigma / options.step))},
             1};
   }
 
  private:
-  static constexpr double longest_way = std::numbers::pi / 2;
+  static constexpr double longest_distance = std::numbers::pi / 2;
 
   Vec3 in_units(const Vec3& x) const { return (x - centre_) / unit_; }
 
@@ -169,14 +177,15 @@ class LuneburgRays final : public RayFieldOf<Luneburg> {
     explicit Turn(double by) : t(by), cosine(std::cos(by)), sine(std::sin(by)) {}
   };
 
-  /// The first collision inside: tentative ones where the index is largest, of which as
-  /// many as it is lower are none.
+  /// Samples t of the first collision; nullopt if the ray leaves the sphere before. Tentative
+  /// collisions occur at the rate for the largest index on the ray, and are accepted with
+  /// probability local index / largest index.
   std::optional<Turn> collide(const LuneburgOrbit& orbit, const RayState& ray, double end,
                               const PartMedium& medium, RandomStream& random) const {
     const double largest = orbit.largest_index(ray.v.norm()), lowest = 2 - end * end;
     for (double t = 0;;) {
       t += sample_free_flight(medium.majorant() * unit_ * largest, random.uniform());
-      if (!(t < longest_way)) return std::nullopt;
+      if (!(t < longest_distance)) return std::nullopt;
       const Turn turn(t);
       const double square = orbit.squared_index(turn.cosine, turn.sine);
       if (!(square > lowest)) return std::nullopt;
@@ -202,7 +211,8 @@ class LuneburgRays final : public RayFieldOf<Luneburg> {
   double unit_, radius_;
 };
 
-/// Nothing where there is no closed form.
+/// Returns closed-form rays that end on the sphere `end`; null if it is not about the ball's centre
+/// or extends beyond the ball.
 inline std::unique_ptr<const RayField> closed_form_within(const Luneburg& field,
                                                           const Sphere& end) {
   const double radius = field.profile().radius, rounding = 1e-12 * radius;

@@ -9,19 +9,20 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// Rays of the same index everywhere, without steps.
+/// Straight rays in a homogeneous field, without steps.
 class StraightRays final : public RayFieldOf<Homogeneous> {
  public:
   explicit StraightRays(const Homogeneous& field) : RayFieldOf(field), field_(field) {}
 
-  ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
+  ConnectionEstimate connect(const CurveEndpoints& ends, const ConnectionOptions& options,
                              RandomStream& random,
                              ConnectionStatistics& statistics) const override {
     return grin::connect(Trial(field_, ends.region, ends.from, ends.to, options), random,
                          statistics);
   }
-  std::vector<FoundConnection> connections(const CurveEnds& ends, const ConnectionOptions& options,
-                                           std::uint64_t trials, RandomStream& random,
+  std::vector<FoundConnection> connections(const CurveEndpoints& ends,
+                                           const ConnectionOptions& options, std::uint64_t trials,
+                                           RandomStream& random,
                                            ConnectionStatistics& statistics) const override {
     const Trial trial(field_, ends.region, ends.from, ends.to, options);
     return all_connections(trial, trials, random, statistics);
@@ -33,20 +34,21 @@ class StraightRays final : public RayFieldOf<Homogeneous> {
   Homogeneous field_;
 };
 
-/// A field as it is for rays in a room: steps that reach past its outer surface stay smooth.
+/// Makes the rays of a field in the region that the surfaces bound. The field is continued smoothly
+/// beyond the outer surface, since numerical steps may extend past it.
 template <IndexField F>
-std::unique_ptr<const RayField> ray_field_within(const F& field, std::span<const Surface> room,
+std::unique_ptr<const RayField> ray_field_within(const F& field, std::span<const Surface> surfaces,
                                                  bool leapfrogs) {
   if constexpr (HomogeneousField<F>) return std::make_unique<StraightRays>(field);
   if constexpr (goes_by_leapfrog<F>)
     if (leapfrogs) return std::make_unique<RayFieldOf<F, Leapfrog>>(field);
   if constexpr (std::same_as<F, ParabolicGuide>)
-    if (!room.empty() && bends_within(field, room[0]))
-      return std::make_unique<ParabolicRays>(field, room[0]);
+    if (!surfaces.empty() && bends_within(field, surfaces[0]))
+      return std::make_unique<ParabolicRays>(field, surfaces[0]);
   if constexpr (requires { smooth_within(field, Sphere()); })
-    if (const Sphere* sphere = room.empty() ? nullptr : std::get_if<Sphere>(&room[0])) {
+    if (const Sphere* sphere = surfaces.empty() ? nullptr : std::get_if<Sphere>(&surfaces[0])) {
       const F smooth = smooth_within(field, *sphere);
-      if (room.size() == 1)
+      if (surfaces.size() == 1)
         if (auto closed = closed_form_within(smooth, *sphere)) return closed;
       return std::make_unique<RayFieldOf<F>>(smooth);
     }
@@ -56,8 +58,8 @@ std::unique_ptr<const RayField> ray_field_within(const F& field, std::span<const
 }  // namespace
 
 std::unique_ptr<const RayField> make_ray_field(const AnyIndexField& field,
-                                               std::span<const Surface> room, bool leapfrogs) {
-  const auto within = [&](const auto& of) { return ray_field_within(of, room, leapfrogs); };
+                                               std::span<const Surface> surfaces, bool leapfrogs) {
+  const auto within = [&](const auto& of) { return ray_field_within(of, surfaces, leapfrogs); };
   return std::visit(within, field);
 }
 

@@ -13,11 +13,11 @@
 namespace flatspeckle::grin {
 
 /// A ray of the parabolic guide in closed form (conventions, C27): x = x0 cos t + q sin t across
-/// the axis, where t = alpha sigma and q = v / alpha, and even along it. Places count from the
-/// axis.
+/// the axis, where t = alpha sigma and q = v / alpha. Along the axis the motion is uniform.
+/// Positions are relative to the axis.
 class ParabolicOrbit {
  public:
-  /// n0: on the axis.
+  /// n0: index on the axis.
   ParabolicOrbit(double n0, double alpha, const Vec3& x, const Vec3& v)
       : n0_(n0), alpha_(alpha), x_(x), v_(v) {
     const Vec2 x0 = x.head<2>(), q = v.head<2>() / alpha;
@@ -33,14 +33,14 @@ class ParabolicOrbit {
     ray.v[2] = v_[2];
     return ray;
   }
-  /// With arc length and optical path since t = 0.
+  /// Returns the state at t; arc length and optical path are counted from t = 0.
   RayState at(double t) const {
     RayState ray = place_at(t);
     ray.arc_length = arc_length(t);
     ray.optical_path = optical_path(t);
     return ray;
   }
-  /// Its derivative by v.
+  /// Returns the derivative of the state at t with respect to v at t = 0.
   RayTangent tangent_at(double t) const {
     RayTangent tangent;
     tangent.dx.diagonal() = Vec3(std::sin(t), std::sin(t), t) / alpha_;
@@ -55,7 +55,8 @@ class ParabolicOrbit {
     const double swings = even_ * std::sin(2 * t) / 2 + odd_ * std::sin(t) * std::sin(t);
     return (n0_ * n0_ * t - alpha_ * alpha_ * (squares_ * t + swings)) / alpha_;
   }
-  /// n^2 = mean + swing cos(2 t + phase): an elliptic integral.
+  /// Returns the arc length from 0 to t as an elliptic integral, since n^2 = mean + swing cos(2 t +
+  /// phase) along the ray.
   double arc_length(double t) const {
     const double mean = n0_ * n0_ - alpha_ * alpha_ * squares_;
     const double swing = alpha_ * alpha_ * std::hypot(even_, odd_);
@@ -67,17 +68,21 @@ class ParabolicOrbit {
 
   double n0_, alpha_;
   Vec3 x_, v_;
-  double squares_, even_, odd_;  ///< of the squared distance from the axis: its mean and swings
+  /// The squared distance from the axis is squares + even cos 2t + odd sin 2t.
+  double squares_, even_, odd_;
 };
 
-/// All rays of the parabolic guide between two places. With t = alpha sigma of the whole way, the
-/// rays' momentum across follows from the ends, that along from the distance, and |v| = n is
+/// All rays of the parabolic guide between two points. With t = alpha sigma of the whole ray, the
+/// transverse momentum follows from the end points, and the longitudinal one from their distance
+/// along the axis. The condition that |v| = n then becomes
 ///   P / (1 - cos t) + M / (1 + cos t) + (z / t)^2 = (n0 / alpha)^2,
-/// P and M half the squared distances, across, of one end from the other and from its image. The
-/// left side is convex between multiples of pi and infinite there: two roots or none.
-class ParabolicWays {
+/// where z is the distance along the axis, and P and M are half the squared transverse distances of
+/// one end from the other and from its mirror image in the axis. As a function of t the left-hand
+/// side is infinite at multiples of pi and convex between them, so that each interval has two roots
+/// or none.
+class ParabolicCurves {
  public:
-  ParabolicWays(double n0, double alpha, const Vec3& x0, const Vec3& x1)
+  ParabolicCurves(double n0, double alpha, const Vec3& x0, const Vec3& x1)
       : alpha_(alpha),
         x0_(x0),
         x1_(x1),
@@ -86,7 +91,8 @@ class ParabolicWays {
         along_(x1[2] - x0[2]),
         whole_(n0 / alpha * n0 / alpha) {}
 
-  /// use(t, start): t and the momentum v at x0 of each ray with t up to `longest`, shorter first.
+  /// Calls use(t, start) for each ray with t up to `longest`, in increasing order of t. start:
+  /// momentum v of the ray at x0.
   template <class Use>
   void each(double longest, const Use& use) const {
     using std::numbers::pi;
@@ -102,16 +108,18 @@ class ParabolicWays {
   }
 
  private:
-  /// Roots are told by how far from a multiple of pi they are, in which direction.
+  /// A multiple of pi, number pi, and the side of it (sense = 1 or -1) on which a root t lies. The
+  /// root is represented by its distance u from the multiple: t = number pi + sense u.
   struct Edge {
     int number, sense;
     bool is_even() const { return number % 2 == 0; }
   };
   struct Value {
-    double f, slope;
+    double f, derivative;
   };
 
-  /// Left side less right side, and its derivative by u.
+  /// Returns the left-hand side minus the right-hand side of the equation for t at t = number pi +
+  /// sense u, and the derivative of the difference by u.
   Value at(const Edge& edge, double u) const {
     const double near = edge.is_even() ? apart_ : from_image_;
     const double far = edge.is_even() ? from_image_ : apart_;
@@ -119,13 +127,15 @@ class ParabolicWays {
     const double t = edge.number * std::numbers::pi + edge.sense * u, z = along_ / t;
     Value value{-whole_, 0};
     if (near > 0) value = {near / (2 * s * s) - whole_, -near * c / (2 * s * s * s)};
-    if (far > 0) value = {value.f + far / (2 * c * c), value.slope + far * s / (2 * c * c * c)};
-    if (along_ != 0) value = {value.f + z * z, value.slope - edge.sense * 2 * z * z / t};
+    if (far > 0)
+      value = {value.f + far / (2 * c * c), value.derivative + far * s / (2 * c * c * c)};
+    if (along_ != 0) value = {value.f + z * z, value.derivative - edge.sense * 2 * z * z / t};
     return value;
   }
 
-  /// Whether the least value between k pi and the next multiple is below 0: bisection of its slope,
-  /// which is seldom followed to the end.
+  /// Whether the equation for t has two roots between k pi and (k + 1) pi, that is, whether its
+  /// left-hand side minus its right-hand side has a negative minimum there. The minimum is located
+  /// by bisection of the derivative until its sign is certain.
   bool has_roots(int k) const {
     const double across = std::sqrt(apart_) + std::sqrt(from_image_);
     const double least_along = along_ / ((k + 1) * std::numbers::pi);
@@ -135,24 +145,26 @@ class ParabolicWays {
       const double middle = (low + high) / 2;
       const Value here = at({k, 1}, middle);
       if (here.f < 0) return true;
-      const double other = here.slope < 0 ? high : low;
-      if (here.f + here.slope * (other - middle) > 0) return false;  // convex
-      (here.slope < 0 ? low : high) = middle;
+      const double other = here.derivative < 0 ? high : low;
+      if (here.f + here.derivative * (other - middle) > 0)
+        return false;  // a convex function is above its tangent
+      (here.derivative < 0 ? low : high) = middle;
     }
     return false;
   }
 
-  /// The root next to an edge by Newton's steps from the edge's side, which do not pass it, as the
-  /// function is convex. 0 where there is none.
+  /// Returns the distance u of the root next to the multiple of pi given by `edge`; 0 if there is
+  /// no root. Newton steps begin close to the multiple and do not pass the root, since the function
+  /// is convex.
   double root(const Edge& edge) const {
     const double near = edge.is_even() ? apart_ : from_image_;
     const double least = (2 * near + (edge.number == 0 ? along_ * along_ : 0)) / whole_;
-    double u = std::sqrt(least);  // the function is not below 0 there: 1 - cos u <= u^2 / 2
+    double u = std::sqrt(least);  // u before the root, since 1 - cos u <= u^2 / 2
     if (!(u < std::numbers::pi)) return 0;
     for (int i = 0; i < 60; ++i) {
       const Value here = at(edge, u);
-      if (!(here.slope < 0)) return 0;
-      const double step = -here.f / here.slope;
+      if (!(here.derivative < 0)) return 0;
+      const double step = -here.f / here.derivative;
       if (i == 0 && step < -1e-12 * u) return 0;
       u += step;
       if (!(u < std::numbers::pi)) return 0;
@@ -174,36 +186,37 @@ class ParabolicWays {
   double apart_, from_image_, along_, whole_;
 };
 
-/// Whether closed forms keep their digits: in a weaker guide two places have one curve, nearly
-/// straight, which any trial finds.
-inline bool bends_within(const ParabolicGuide& field, const Surface& room) {
+/// Whether rays in the region bend enough for the closed forms to be accurate. In a weaker guide
+/// two points are connected by one nearly straight curve, which any trial of the iterative search
+/// finds.
+inline bool bends_within(const ParabolicGuide& field, const Surface& region) {
   constexpr double least_turn = 1e-2;
-  const Box box = bounds(room);
+  const Box box = bounds(region);
   return field.profile().alpha * (box.high - box.low).norm() > least_turn;
 }
 
-/// Rays of the parabolic guide in a room, by steps, but for the curves between two points: closed
-/// forms, one at random of all that there are.
+/// Rays of the parabolic guide in a region. Flights are traced by numerical steps. Connections use
+/// the closed form of all curves between two points, and select one of them at random.
 class ParabolicRays final : public RayFieldOf<ParabolicGuide> {
  public:
-  ParabolicRays(const ParabolicGuide& field, const Surface& room)
+  ParabolicRays(const ParabolicGuide& field, const Surface& region)
       : RayFieldOf(field),
         centre_(field.centre()),
         n0_(1 + field.profile().axis_excess),
         alpha_(field.profile().alpha) {
-    const Box box = bounds(room);
+    const Box box = bounds(region);
     const Vec3 far = (box.low - centre_).cwiseAbs().cwiseMax((box.high - centre_).cwiseAbs());
     reach_squared_ = far.head<2>().squaredNorm();
   }
 
   double cost_of_curve() const override { return 1; }
   double cost_of_closed_curve() const override { return 2; }
-  ConnectionEstimate connect(const CurveEnds& ends, const ConnectionOptions& options,
+  ConnectionEstimate connect(const CurveEndpoints& ends, const ConnectionOptions& options,
                              RandomStream& random,
                              ConnectionStatistics& statistics) const override {
     ConnectionEstimate found{TrialOutcome::no_approach, std::nullopt, 0};
     const Vec3 from = ends.from - centre_, to = ends.to - centre_;
-    ParabolicWays(n0_, alpha_, from, to)
+    ParabolicCurves(n0_, alpha_, from, to)
         .each(longest(to[2] - from[2], options), [&](double t, const Vec3& v) {
           Connection curve;
           const TrialOutcome outcome = judge({n0_, alpha_, from, v}, t, ends, options, curve);
@@ -216,8 +229,9 @@ class ParabolicRays final : public RayFieldOf<ParabolicGuide> {
   }
 
  private:
-  /// t of a way along the axis: what is longer swings out of the room or is too long. The mean of
-  /// n^2 on a way is at least half of what it is on the axis.
+  /// Returns the largest t of a curve whose ends are `along` apart along the axis; a curve of
+  /// larger t leaves the region or exceeds max_length. The bound uses that the mean of n^2 along a
+  /// ray is at least half of n^2 on the axis.
   double longest(double along, const ConnectionOptions& options) const {
     const double by_length = alpha_ * 2 * options.max_length / n0_ + 1;
     const double on_axis = n0_ / alpha_ * n0_ / alpha_ - reach_squared_;
@@ -225,7 +239,7 @@ class ParabolicRays final : public RayFieldOf<ParabolicGuide> {
     return std::min(by_length, std::max(std::numbers::pi, std::abs(along) / std::sqrt(on_axis)));
   }
 
-  TrialOutcome judge(const ParabolicOrbit& orbit, double t, const CurveEnds& ends,
+  TrialOutcome judge(const ParabolicOrbit& orbit, double t, const CurveEndpoints& ends,
                      const ConnectionOptions& options, Connection& curve) const {
     const RayState start = orbit.at(0), end = orbit.at(t);
     if (!(end.arc_length <= options.max_length)) return TrialOutcome::too_long;
@@ -255,7 +269,7 @@ class ParabolicRays final : public RayFieldOf<ParabolicGuide> {
     }
     return true;
   }
-  /// Arc lengths are no less than on the ray.
+  /// Returns the state at sigma; its arc length is only an upper bound.
   RayState placed(const ParabolicOrbit& orbit, double sigma) const {
     RayState ray = orbit.place_at(alpha_ * sigma);
     ray.x += centre_;
@@ -265,7 +279,7 @@ class ParabolicRays final : public RayFieldOf<ParabolicGuide> {
 
   Vec3 centre_;
   double n0_, alpha_;
-  double reach_squared_;  ///< of the room, from the axis
+  double reach_squared_;  ///< largest squared distance of the region from the axis
 };
 
 }  // namespace flatspeckle::grin

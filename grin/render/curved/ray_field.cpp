@@ -11,56 +11,60 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// The part of a flight that lies in an index field, in a room: equal steps, and a shorter
-/// one at the end. As trace() it does not ask for the distance from the surface where that
-/// is far away; places within a step are found on its StepCurve.
-class CurvedLeg {
+/// Traces one segment of a flight through an index field up to the surface of a region, by equal
+/// steps and a shorter last one. Like trace(), it does not compute the distance to the surface as
+/// long as the surface is certainly far away. Positions within a step are interpolated by
+/// StepCurve.
+class CurvedSegment {
  public:
-  CurvedLeg(const RayField& field, const LegRoom& room)
+  CurvedSegment(const RayField& field, const SegmentDomain& domain)
       : field_(field),
-        room_(room.room),
-        medium_(room.medium),
-        step_(room.step),
+        region_(domain.region),
+        medium_(domain.medium),
+        step_(domain.step),
         tolerance_(1e-9 * step_) {}
 
-  /// Goes on from a state in the room, or on its surface and on the way in, at arc length 0.
-  /// weight: of light that is absorbed and not scattered, is multiplied by an estimate of what is
-  /// left. Tangent: nothing or a RayTangent, which becomes that of a fixed last step.
+  /// Traces the segment from a state of arc length 0, which is in the region, or on its surface
+  /// with the direction inwards. weight: is multiplied by an estimate of the transmittance if the
+  /// medium absorbs without scattering. tangent: none, or a RayTangent; its derivatives are those
+  /// at a fixed length of the last step, although neighbouring rays meet the surface after
+  /// different lengths.
   template <class... Tangent>
-  LegStop go(double longest, double& weight, RandomStream& random, RayState& ray,
-             Tangent&... tangent) const {
+  SegmentStop go(double longest, double& weight, RandomStream& random, RayState& ray,
+                 Tangent&... tangent) const {
     constexpr int most_steps = 1 << 20;
-    LegProgress progress{next_collision(0, random), weight};
-    const LegStop stop = go_on(longest, most_steps, progress, random, ray, tangent...);
+    SegmentProgress progress{next_collision(0, random), weight};
+    const SegmentStop stop = go_on(longest, most_steps, progress, random, ray, tangent...);
     weight = progress.weight;
-    return stop == LegStop::steps ? LegStop::lost : stop;
+    return stop == SegmentStop::steps ? SegmentStop::lost : stop;
   }
 
-  /// The same from any state of a leg, no more than so many steps.
+  /// Continues the segment from any state on it, for at most most_steps steps.
   template <class... Tangent>
-  LegStop go_on(double longest, int most_steps, LegProgress& progress, RandomStream& random,
-                RayState& ray, Tangent&... tangent) const {
-    const double outside = room_.distance(ray.x);
+  SegmentStop go_on(double longest, int most_steps, SegmentProgress& progress, RandomStream& random,
+                    RayState& ray, Tangent&... tangent) const {
+    const double outside = region_.distance(ray.x);
     const double put_back = outside >= -tolerance_ ? std::max(0.0, outside) + 0.75 * tolerance_ : 0;
     double clearance = put_back - outside;
     auto& [collision, weight] = progress;
     for (int steps = 0; ray.arc_length <= longest; ++steps) {
-      if (steps == most_steps) return LegStop::steps;
+      if (steps == most_steps) return SegmentStop::steps;
       const std::tuple<RayState, Tangent...> before(ray, tangent...);
       const RayState& start = std::get<0>(before);
       field_.step(ray, tangent..., step_);
       const bool is_lost = !(ray.arc_length > start.arc_length);
-      const double arc = is_lost ? 3 * start.v.norm() * step_  // more than it might have been
-                                 : 1.1 * (ray.arc_length - start.arc_length);
+      const double arc =
+          is_lost ? 3 * start.v.norm() * step_  // upper bound of the arc length of the step
+                  : 1.1 * (ray.arc_length - start.arc_length);
       clearance -= arc;
       std::optional<double> exit;
       PartOfStep tried;
       if (is_lost || !(clearance > 0)) {
-        clearance = put_back - room_.distance(ray.x);
-        const double before_step = put_back - room_.distance(start.x);
+        clearance = put_back - region_.distance(ray.x);
+        const double before_step = put_back - region_.distance(start.x);
         if (is_lost || !(clearance > 0 && clearance + before_step > arc))
-          exit = way_out(start, ray, put_back, arc, is_lost, tried);
-        if (!exit && is_lost) return LegStop::lost;
+          exit = exit_distance(start, ray, put_back, arc, is_lost, tried);
+        if (!exit && is_lost) return SegmentStop::lost;
       }
       const auto go_only = [&](double part) {
         if (sizeof...(tangent) == 0 && part == tried.theta) {
@@ -75,16 +79,18 @@ class CurvedLeg {
       if (collision <= ray.arc_length) {
         if (const auto at = collide({start, ray, part * step_}, collision, weight, random)) {
           go_only(*at * part);
-          return LegStop::collision;
+          return SegmentStop::collision;
         }
       }
       if (exit)
-        return put_back - room_.distance(ray.x) <= tolerance_ ? LegStop::surface : LegStop::lost;
+        return put_back - region_.distance(ray.x) <= tolerance_ ? SegmentStop::surface
+                                                                : SegmentStop::lost;
     }
-    return LegStop::lost;
+    return SegmentStop::lost;
   }
 
-  /// Estimates the transmittance of a curve of so many equal steps by ratio tracking.
+  /// Estimates, by ratio tracking, the transmittance along the curve of length sigma that starts at
+  /// `ray` and is traced in equal steps.
   double ratio_tracked(RayState ray, double sigma, int steps, RandomStream& random) const {
     double left = 1, collision = next_collision(0, random);
     for (int i = 0; i < steps && left > 0; ++i) {
@@ -97,7 +103,8 @@ class CurvedLeg {
     return left;
   }
 
-  /// The same of so long an arc.
+  /// Estimates, by ratio tracking, the transmittance along the arc of this length that starts at
+  /// `ray`.
   double ratio_tracked(RayState ray, double arc_length, RandomStream& random) const {
     const double end = ray.arc_length + arc_length;
     double left = 1, collision = next_collision(ray.arc_length, random);
@@ -117,7 +124,9 @@ class CurvedLeg {
   double next_collision(double after, RandomStream& random) const {
     return grin::next_collision(medium_, after, random);
   }
-  /// Where in a step light collides, theta; goes on to the first tentative collision beyond it.
+  /// Returns the fraction theta of a step at which a real collision occurs. If there is none,
+  /// returns nullopt and advances `collision`, the arc length of the next tentative collision,
+  /// beyond the step.
   std::optional<double> collide(const StepCurve& curve, double& collision, double& weight,
                                 RandomStream& random) const {
     for (; collision <= curve.end_arc_length(); collision = next_collision(collision, random)) {
@@ -131,18 +140,19 @@ class CurvedLeg {
     double theta = -1;
     RayState end = {};
   };
-  /// The part of a step that ends on the surface, within the last quarter of the tolerance before
-  /// it; nothing where the step does not reach it. tried: the last that was looked at.
-  std::optional<double> way_out(const RayState& start, const RayState& end, double put_back,
-                                double arc, bool is_lost, PartOfStep& tried) const {
+  /// Returns the fraction of the step after which the ray reaches the surface: it is then before
+  /// the surface by less than a quarter of the tolerance. Returns nullopt if the step does not
+  /// reach the surface. tried: receives the last fraction for which the state was computed.
+  std::optional<double> exit_distance(const RayState& start, const RayState& end, double put_back,
+                                      double arc, bool is_lost, PartOfStep& tried) const {
     const auto exact = [&](double theta) {
       tried = {theta, start};
       field_.step(tried.end, theta * step_);
-      return put_back - room_.distance(tried.end.x);
+      return put_back - region_.distance(tried.end.x);
     };
     if (is_lost) return search(exact, arc);
     const StepCurve curve(start, end, step_);
-    const auto close = [&](double theta) { return put_back - room_.distance(curve.x(theta)); };
+    const auto close = [&](double theta) { return put_back - region_.distance(curve.x(theta)); };
     const auto guess = is_like_chord(start, end) ? once(close) : search(close, arc);
     if (!guess) return std::nullopt;
     const auto mended = mend(exact, *guess, close);
@@ -156,10 +166,10 @@ class CurvedLeg {
     return zero(clearance, *bracket, tolerance_ / 4);
   }
 
-  /// In a convex room such a step leaves once, if its end is outside.
+  /// Whether a step leaves the region at most once: a nearly straight step in a convex region.
   bool is_like_chord(const RayState& start, const RayState& end) const {
     constexpr double turned = 0.1;  // rad
-    return room_.is_convex() && (end.v - start.v).squaredNorm() < turned * turned;
+    return region_.is_convex() && (end.v - start.v).squaredNorm() < turned * turned;
   }
   template <class Function>
   std::optional<double> once(const Function& clearance) const {
@@ -168,27 +178,30 @@ class CurvedLeg {
     return zero(clearance, step, tolerance_ / 4);
   }
 
-  /// Newton steps with the slope of the close curve.
+  /// Improves theta, the fraction of a step at which the ray reaches the surface, by Newton steps
+  /// with positions of the exact ray and the derivative of the interpolated curve. Returns nullopt
+  /// if they do not converge.
   template <class Exact, class Close>
   std::optional<double> mend(const Exact& exact, double theta, const Close& close) const {
     const double aim = tolerance_ / 8, apart = 1e-3;
-    const double slope = (close(theta + apart) - close(theta - apart)) / (2 * apart);
+    const double derivative = (close(theta + apart) - close(theta - apart)) / (2 * apart);
     for (int i = 0; i < 4; ++i) {
       const double off = exact(theta) - aim;
       if (std::abs(off) < aim) return theta;
-      theta -= off / slope;
+      theta -= off / derivative;
       if (!(theta > 0 && theta <= 1.01)) return std::nullopt;
     }
     return std::nullopt;
   }
 
   const RayField& field_;
-  const Room room_;
+  const SurfaceRegion region_;
   const PartMedium& medium_;
   double step_, tolerance_;
 };
 
-/// Integrators of a RayField for ConnectionTrial.
+/// Integrators with which ConnectionTrial traces rays of a RayField: Leap is Leapfrog, OwnStep is
+/// the integrator that suits the field.
 struct Leap {
   static void step(const RayField& field, RayState& ray, double h) { field.leap(ray, h); }
   static void step(const RayField& field, RayState& ray, RayTangent& tangent, double h) {
@@ -208,31 +221,31 @@ using Trial = ConnectionTrial<RayField, Sides, OwnStep>;
 
 }  // namespace
 
-LegStop RayField::fly(const LegRoom& room, double longest, double& weight, RandomStream& random,
-                      RayState& ray, RayTangent* tangent) const {
-  const CurvedLeg leg(*this, room);
-  return tangent ? leg.go(longest, weight, random, ray, *tangent)
-                 : leg.go(longest, weight, random, ray);
+SegmentStop RayField::fly(const SegmentDomain& domain, double longest, double& weight,
+                          RandomStream& random, RayState& ray, RayTangent* tangent) const {
+  const CurvedSegment segment(*this, domain);
+  return tangent ? segment.go(longest, weight, random, ray, *tangent)
+                 : segment.go(longest, weight, random, ray);
 }
-LegStop RayField::go_on(const LegRoom& room, double longest, int most_steps, LegProgress& progress,
-                        RandomStream& random, RayState& ray) const {
-  return CurvedLeg(*this, room).go_on(longest, most_steps, progress, random, ray);
+SegmentStop RayField::go_on(const SegmentDomain& domain, double longest, int most_steps,
+                            SegmentProgress& progress, RandomStream& random, RayState& ray) const {
+  return CurvedSegment(*this, domain).go_on(longest, most_steps, progress, random, ray);
 }
-double RayField::ratio_tracked(const LegRoom& room, const RayState& ray, double sigma, int steps,
+double RayField::ratio_tracked(const SegmentDomain& domain, const RayState& ray, double sigma,
+                               int steps, RandomStream& random) const {
+  return CurvedSegment(*this, domain).ratio_tracked(ray, sigma, steps, random);
+}
+double RayField::ratio_tracked(const SegmentDomain& domain, const RayState& ray, double arc_length,
                                RandomStream& random) const {
-  return CurvedLeg(*this, room).ratio_tracked(ray, sigma, steps, random);
-}
-double RayField::ratio_tracked(const LegRoom& room, const RayState& ray, double arc_length,
-                               RandomStream& random) const {
-  return CurvedLeg(*this, room).ratio_tracked(ray, arc_length, random);
+  return CurvedSegment(*this, domain).ratio_tracked(ray, arc_length, random);
 }
 
-ConnectionEstimate RayField::connect(const CurveEnds& ends, const ConnectionOptions& options,
+ConnectionEstimate RayField::connect(const CurveEndpoints& ends, const ConnectionOptions& options,
                                      RandomStream& random, ConnectionStatistics& statistics) const {
   const Trial trial(*this, ends.region, ends.from, ends.to, options);
   return connect_chord_first(trial, random, statistics);
 }
-std::vector<FoundConnection> RayField::connections(const CurveEnds& ends,
+std::vector<FoundConnection> RayField::connections(const CurveEndpoints& ends,
                                                    const ConnectionOptions& options,
                                                    std::uint64_t trials, RandomStream& random,
                                                    ConnectionStatistics& statistics) const {

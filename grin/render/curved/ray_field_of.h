@@ -6,7 +6,7 @@
 
 namespace flatspeckle::grin {
 
-/// Step: the integrator that suits the field.
+/// RayField of a given type of field. Step: the integrator that suits the field.
 template <IndexField F, class Step = Sharma>
 class RayFieldOf : public RayField {
  public:
@@ -50,7 +50,7 @@ class RayFieldOf : public RayField {
                     [[maybe_unused]] RayLanes& rays) const override {
     if constexpr (LaneField<F>) {
       std::visit([&](const auto& by) { make_steps(by, field_, rays, steps); }, integrator);
-      look_for_mismatch(field_, rays);
+      check_for_mismatch(field_, rays);
     }
   }
   void advance_lanes([[maybe_unused]] int steps, [[maybe_unused]] RayLanes& rays) const override {
@@ -62,7 +62,7 @@ class RayFieldOf : public RayField {
       return std::make_unique<RayFieldOf>(at_phase(field_, phase));
     else
       throw InputError(
-          "random_phase: needs the field ultrasound, focused_sound or transducers, and it alone");
+          "random_phase: requires field = ultrasound, focused_sound or transducers alone");
   }
 
  private:

@@ -13,10 +13,11 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double nearness = 1e-6;  ///< of a centre to the surface, relative to the surface's size
+/// Largest distance of a given centre from the surface, in units of the size of the sphere or box.
+constexpr double nearness = 1e-6;
 
 [[noreturn]] void refuse_boundary(const char* key) {
-  throw InputError(std::string(key) + ": a part of the stage's boundary needs a sphere or a box");
+  throw InputError(std::string(key) + ": requires a sphere or a box as boundary of the stage");
 }
 
 BoundaryPoint on_sphere(const Sphere& sphere, const Vec3& x) {
@@ -33,12 +34,12 @@ BoundaryPoint on_box(const Box& box, const Vec3& x) {
   return point;
 }
 
-/// Across the face that `inward` belongs to, from a point to the face's nearest edge.
-double room_on_face(const Box& box, const BoundaryPoint& at) {
-  double room = INFINITY;
+/// Returns the distance from a point on a face of the box to the nearest edge of that face.
+double distance_to_edge(const Box& box, const BoundaryPoint& at) {
+  double limit = INFINITY;
   for (int a = 0; a < 3; ++a)
-    if (at.inward[a] == 0) room = std::min({room, at.x[a] - box.low[a], box.high[a] - at.x[a]});
-  return room;
+    if (at.inward[a] == 0) limit = std::min({limit, at.x[a] - box.low[a], box.high[a] - at.x[a]});
+  return limit;
 }
 
 }  // namespace
@@ -62,8 +63,8 @@ BoundaryPatch::BoundaryPatch(const Surface& boundary, const char* key) {
     const Vec3 size = box->high - box->low;
     const Vec3 pair(size.y() * size.z(), size.z() * size.x(), size.x() * size.y());
     area_ = 2 * pair.sum();
-    const Vec3 chance = pair / pair.sum();
-    shape_ = Faces{*box, {chance.x(), chance.y(), chance.z()}};
+    const Vec3 share = pair / pair.sum();
+    shape_ = Faces{*box, {share.x(), share.y(), share.z()}};
   } else {
     refuse_boundary(key);
   }
@@ -77,8 +78,8 @@ BoundaryPatch::BoundaryPatch(const Surface& boundary, const Vec3& centre, double
   if (!sphere && !box) refuse_boundary(centre_key);
   const auto at = boundary_point(boundary, centre);
   if (!at) throw InputError(centre_key, listed(centre), "must be on the boundary of the stage");
-  const double room = sphere ? 2 * sphere->radius : room_on_face(*box, *at);
-  if (!(radius > 0 && radius <= room * (1 + nearness)))
+  const double limit = sphere ? 2 * sphere->radius : distance_to_edge(*box, *at);
+  if (!(radius > 0 && radius <= limit * (1 + nearness)))
     throw InputError(radius_key, radius,
                      sphere ? "must be positive and at most the diameter of the boundary"
                             : "must be positive and within one face of the boundary");
@@ -89,7 +90,7 @@ BoundaryPatch::BoundaryPatch(const Surface& boundary, const Vec3& centre, double
 }
 
 BoundaryPoint BoundaryPatch::sample(const Cap& cap, RandomStream& random) {
-  // areas of caps grow as the squares of their chords
+  // the area of a cap is proportional to the square of the chord from its centre to its rim
   const double ratio = cap.chord / cap.sphere.radius;
   const Vec3 outward = random_turn(cap.axis, ratio * ratio * random.uniform() / 2, random);
   return {cap.sphere.centre + cap.sphere.radius * outward, -outward};
@@ -101,8 +102,8 @@ BoundaryPoint BoundaryPatch::sample(const FlatDisk& disk, RandomStream& random) 
 
 BoundaryPoint BoundaryPatch::sample(const Faces& faces, RandomStream& random) {
   const double u = random.uniform();
-  const auto& chance = faces.pair_chance;
-  const int axis = u < chance[0] ? 0 : u < chance[0] + chance[1] ? 1 : 2;
+  const auto& probability = faces.pair_probability;
+  const int axis = u < probability[0] ? 0 : u < probability[0] + probability[1] ? 1 : 2;
   const bool high = random.uniform() < 0.5;
   Vec3 x;
   for (int a = 0; a < 3; ++a)

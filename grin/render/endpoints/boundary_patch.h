@@ -15,7 +15,7 @@ struct BoundaryPoint {
   Vec3 x, inward;
 };
 
-/// A disk in space, and its points, uniformly by area.
+/// A disk in space; its points are sampled uniformly by area.
 class FlatDisk {
  public:
   FlatDisk(const Vec3& centre, const Vec3& normal, double radius)
@@ -44,40 +44,44 @@ class FlatDisk {
   Frame across_;
 };
 
-/// The point of a sphere's or a box's surface next to x, where x is on it to 1e-6 of its size.
+/// Returns the point nearest to x on a sphere or box, if x is within 1e-6 of its size from the
+/// surface; else nullopt.
 std::optional<BoundaryPoint> boundary_point(const Surface& boundary, const Vec3& x);
 
-/// A part of a sphere's or a box's surface, sampled uniformly by its area.
+/// A part of the surface of a sphere or box, sampled uniformly by area.
 class BoundaryPatch {
  public:
-  /// All of it. Throws InputError naming `key` for another boundary.
+  /// Makes a patch that is the whole boundary. Throws InputError, naming `key`, unless the boundary
+  /// is a sphere or a box.
   BoundaryPatch(const Surface& boundary, const char* key);
 
-  /// What is within `radius` of `centre`, a point of the surface: a cap of a sphere, a disk on one
-  /// face of a box; both have area pi radius^2. A sphere's cap may be all of it. Throws InputError
-  /// for another boundary, a centre that is not on it, a radius that is not positive, and a disk
-  /// that is not within one face.
+  /// Makes the patch within `radius` of `centre`, a point of the surface: a cap of a sphere or a
+  /// disk on one face of a box; both have area pi radius^2. A cap may be the whole sphere. Throws
+  /// InputError if the boundary is neither a sphere nor a box, the centre is not on it, the radius
+  /// is not positive, or the disk is not within one face.
   BoundaryPatch(const Surface& boundary, const Vec3& centre, double radius, const char* centre_key,
                 const char* radius_key);
 
   double area() const { return area_; }
   BoundaryPoint sample(RandomStream& random) const;
-  /// At this distance from the centre, of a patch that has one.
+  /// Returns the point of the patch at distance r and this azimuth from its centre. Requires a
+  /// patch that has a centre.
   BoundaryPoint polar(double r, double azimuth) const;
-  /// Of points on the surface.
+  /// Whether a point on the surface is in the patch.
   bool contains(const Vec3& x) const;
   Vec3 inward(const Vec3& x) const;
 
  private:
   struct Cap {
     Sphere sphere;
-    Vec3 centre, axis;  ///< axis: from the sphere's centre, unit
-    double chord;       ///< from the centre to the rim
+    Vec3 centre, axis;  ///< axis: unit, from the centre of the sphere to that of the cap
+    double chord;       ///< distance from the centre of the cap to its rim
   };
 
   struct Faces {
     Box box;
-    std::array<double, 3> pair_chance;  ///< of the two faces across each axis
+    /// Probability of sampling each pair of opposite faces, by the axis normal to them.
+    std::array<double, 3> pair_probability;
   };
   static BoundaryPoint sample(const Cap& cap, RandomStream& random);
   static BoundaryPoint sample(const FlatDisk& disk, RandomStream& random);

@@ -15,26 +15,27 @@
 
 namespace flatspeckle::grin {
 
-/// A stretch of a flight within one part.
-struct FlightLeg {
+/// A segment of a flight within one part.
+struct FlightSegment {
   PathPoint start;
-  Vec3 direction;  ///< there, unit
+  Vec3 direction;  ///< unit tangent at the start of the segment
   double length;
-  double weight;  ///< of the flight, there
+  double weight;  ///< weight of the flight at the start of the segment
 };
-using FlightLog = std::vector<FlightLeg>;
+using FlightLog = std::vector<FlightSegment>;
 
-/// Calls use(x, arc length that x stands for times the light left there) for points of a leg that
-/// are at most `apart` from each other, evenly spaced from a random start: sums over them are
-/// integrals on average. x_at(s) is asked for increasing s.
+/// Calls use(x, length) for equidistant points of a segment, at most `apart` from each other, with
+/// a random offset. length: arc length that x represents, times the remaining weight of the flight
+/// at x. A sum over the points is an unbiased estimate of the integral along the segment. x_at(s):
+/// position at arc length s; it is called with increasing s.
 template <class At, class Use>
-void for_points(const FlightLeg& leg, const PartMedium& medium, double apart, RandomStream& random,
-                At x_at, const Use& use) {
-  const double count = std::max(1.0, std::ceil(leg.length / apart));
-  const double spacing = leg.length / count, offset = random.uniform();
+void for_points(const FlightSegment& segment, const PartMedium& medium, double apart,
+                RandomStream& random, At x_at, const Use& use) {
+  const double count = std::max(1.0, std::ceil(segment.length / apart));
+  const double spacing = segment.length / count, offset = random.uniform();
   const bool absorbs = !medium.scatters() && medium.mu_t() > 0;
   const auto collide = [&] { return sample_free_flight(medium.majorant(), random.uniform()); };
-  double left = leg.weight;
+  double left = segment.weight;
   double tentative = absorbs && medium.grid() ? collide() : std::numeric_limits<double>::infinity();
   for (double i = 0; i < count; ++i) {
     const double s = (i + offset) * spacing;
@@ -44,158 +45,177 @@ void for_points(const FlightLeg& leg, const PartMedium& medium, double apart, Ra
   }
 }
 
-/// Which flights tell |J|, about half of their cost where rays are curved; joins always do.
+/// Selects the flights for which the spreading |J| (C25) is computed: none, those that end on the
+/// boundary, or all. For curved rays it takes about half of the cost of a flight. It is always
+/// computed for connections.
 enum class Spreading { none, to_boundary, all };
 
 struct SpaceOptions {
-  double step = 1;  ///< of curved rays in sigma: length at index 1
-  double max_length = std::numeric_limits<double>::infinity();  ///< arc length of a curved flight
-                                                                ///< or join; longer ones are lost
+  double step = 1;  ///< step of curved rays in sigma, a length where the index is 1
+  /// Largest arc length of a curved flight or connection; longer ones are lost.
+  double max_length = std::numeric_limits<double>::infinity();
   Spreading spreading = Spreading::all;
-  bool leapfrogs = false;  ///< make_ray_field()
+  bool leapfrogs = false;  ///< see make_ray_field()
 };
 
-/// What the estimators ask of space. Rays are straight where the index is the same everywhere in a
-/// part, and those of a RayField, by one virtual call for each leg, in the part that a field of
-/// varying index fills.
+/// Flights and connections for the estimators. Rays are straight in parts of constant index; in the
+/// part filled by a field of varying index they are curved and traced by RayField, with one virtual
+/// call per segment.
 class Space {
  public:
-  /// The stage has passed check(): make_space() checks it.
+  /// Requires a stage that passes check(); make_space() checks it.
   Space(const AnyIndexField& field, const Stage& stage, const SpaceOptions& options = {});
 
   double index(const PathPoint& p) const {
     return 1 + (is_curved(p.part) ? field_->excess(p.x) : setup_->stage.excess(p.part));
   }
-  /// The index varies in some part.
+  /// Whether the index varies within some part.
   bool has_curves() const { return !setup_->is_straight; }
   bool is_curved(Part part) const { return part == setup_->field_part && has_curves(); }
 
-  /// log: its legs are added to that. rise: the first leg, if straight, is stretched along it
-  /// (StraightStage).
+  /// Samples a flight. log: receives the segments of the flight; or null. log_gradient: gradient of
+  /// the logarithm of the importance, which biases the first segment if that is straight
+  /// (StraightStage::fly); or null.
   Flight fly(const PathPoint& from, const Vec3& direction, RandomStream& random,
-             FlightLog* log = nullptr, const Vec3* rise = nullptr) const {
+             FlightLog* log = nullptr, const Vec3* log_gradient = nullptr) const {
     const Spreading spreading = setup_->options.spreading;
     if (spreading == Spreading::to_boundary && !log)
-      return fly_again_to_boundary(from, direction, random, rise);
-    return fly_once(from, direction, spreading != Spreading::none, random, log, rise);
+      return fly_again_to_boundary(from, direction, random, log_gradient);
+    return fly_once(from, direction, spreading != Spreading::none, random, log, log_gradient);
   }
-  /// Whether flights may go side by side, at less cost than one by one: in one part that the field
-  /// fills, without |J|.
+  /// Whether flights can be traced in SIMD lanes at lower cost: in a single part filled by the
+  /// field, without |J|.
   bool has_lanes() const;
-  /// Flights side by side. next(lane, flight) is told what became of the lane's last (null at
-  /// first) and says where its next begins, if there is one; its random numbers are its own.
+  /// Start of a flight in a lane, with the random stream that it uses.
   struct FlightStart {
     PathPoint from;
     Vec3 direction;
     RandomStream* random;
   };
+  /// Receives a lane and its last flight (null at first); returns the start of the next flight of
+  /// the lane, or nullopt to leave the lane empty.
   using NextFlight = std::function<std::optional<FlightStart>(int lane, const Flight*)>;
+  /// Traces flights in SIMD lanes until all lanes are empty.
   void fly_side_by_side(const NextFlight& next) const;
-  /// Of a leg of a flight.
+  /// Calls use() for points of a segment; see for_points() above.
   template <class Use>
-  void for_points(const FlightLeg& leg, double apart, RandomStream& random, const Use& use) const;
+  void for_points(const FlightSegment& segment, double apart, RandomStream& random,
+                  const Use& use) const;
 
-  /// Any, between points of these parts.
-  bool can_join(const PathPoint& p, const PathPoint& q) const {
-    return setup_->stage.are_alike(p.part, q.part) || joins_through();
+  /// Whether connections between points of these parts are possible.
+  bool can_connect(const PathPoint& p, const PathPoint& q) const {
+    return setup_->stage.are_alike(p.part, q.part) || connects_through();
   }
   double least_depth(const PathPoint& p, const PathPoint& q) const {
     return setup_->stage.least_depth(p, q);
   }
-  /// A way that surfaces of bodies leave alone.
-  std::optional<Join> join(const PathPoint& p, const PathPoint& q, RandomStream& random,
-                           ConnectionStatistics& statistics) const;
-  /// In flights, roughly.
-  double cost_of_join() const { return field_->cost_of_curve(); }
-  double cost_of_closed_join() const { return field_->cost_of_closed_curve(); }
-  bool joins_through() const { return setup_->stage.refracts(); }
-  /// One of the ways that are refracted or reflected there.
-  std::optional<Join> join_through(const PathPoint& p, const PathPoint& q, RandomStream& random,
-                                   ConnectionStatistics& statistics) const;
+  /// Connects two points by a curve without interface crossings; nullopt if there is none.
+  std::optional<TestConnection> connect(const PathPoint& p, const PathPoint& q,
+                                        RandomStream& random,
+                                        ConnectionStatistics& statistics) const;
+  /// Approximate cost of connect() in flights; cost_of_closed_connection() is 0 if connections are
+  /// found by iteration.
+  double cost_of_connection() const { return field_->cost_of_curve(); }
+  double cost_of_closed_connection() const { return field_->cost_of_closed_curve(); }
+  bool connects_through() const { return setup_->stage.refracts(); }
+  /// Connects two points by a random specular connection through interfaces.
+  std::optional<TestConnection> connect_through(const PathPoint& p, const PathPoint& q,
+                                                RandomStream& random,
+                                                ConnectionStatistics& statistics) const;
 
-  /// Those of parallel light, backwards.
-  std::vector<BeamWay> ways_to_beam(const PathPoint& p, const ParallelLight& light,
-                                    std::span<const BeamSeed> seeds, RandomStream& random,
-                                    ConnectionStatistics& statistics) const;
-  /// The one that is refracted wherever it can be: always the same, if one is found.
-  std::optional<BeamWay> plainest_way_to_beam(const PathPoint& p, const ParallelLight& light,
-                                              RandomStream& random,
-                                              ConnectionStatistics& statistics) const;
-  /// What one random trial finds of them.
-  std::optional<BeamWay> some_way_to_beam(const PathPoint& p, const ParallelLight& light,
-                                          RandomStream& random,
-                                          ConnectionStatistics& statistics) const;
-  /// The one that starts so.
-  std::optional<BeamWay> beam_way(const PathPoint& p, const ParallelLight& light,
-                                  const Vec3& direction, const Passages& passages,
-                                  RandomStream& random) const;
+  /// Returns connections from p to parallel light, found by tracing rays backwards from p: those to
+  /// which the seeds lead, and sometimes one found at random.
+  std::vector<BeamConnection> connections_to_beam(const PathPoint& p, const ParallelLight& light,
+                                                  std::span<const BeamSeed> seeds,
+                                                  RandomStream& random,
+                                                  ConnectionStatistics& statistics) const;
+  /// Returns the connection to parallel light whose ray is refracted wherever possible, found by a
+  /// deterministic search.
+  std::optional<BeamConnection> simplest_connection_to_beam(const PathPoint& p,
+                                                            const ParallelLight& light,
+                                                            RandomStream& random,
+                                                            ConnectionStatistics& statistics) const;
+  /// Returns the connection to parallel light that one random trial finds.
+  std::optional<BeamConnection> some_connection_to_beam(const PathPoint& p,
+                                                        const ParallelLight& light,
+                                                        RandomStream& random,
+                                                        ConnectionStatistics& statistics) const;
+  /// Returns the connection to parallel light with this start direction and these crossings.
+  std::optional<BeamConnection> beam_connection(const PathPoint& p, const ParallelLight& light,
+                                                const Vec3& direction,
+                                                const InterfaceCrossings& crossings,
+                                                RandomStream& random) const;
 
-  /// The same space as light meets it at this phase of the sound, from 0 to 2 pi: S = cos(phase)
-  /// of a standing wave (conventions, C28). Throws InputError for a field without sound.
+  /// Returns this space at a fixed phase of the sound, from 0 to 2 pi: S = cos(phase) for a
+  /// standing wave (conventions, C28). Throws InputError for a field without sound.
   std::unique_ptr<const Space> frozen(double phase) const;
 
  private:
-  /// What is the same at all phases.
+  /// Data that do not depend on the phase of the sound.
   struct Setup {
     StraightStage stage;
     Part field_part;
     bool is_straight;
-    std::vector<double> sides;  ///< of the surfaces of the field's room
+    /// For each surface of the field's region: 1 if the region is inside it, -1 if outside.
+    std::vector<double> sides;
     SpaceOptions options;
-    double longest;                ///< arc length of a flight
-    ConnectionOptions connection;  ///< by curves of the field
-    ConnectionOptions search;      ///< of ways that are refracted, or to a beam
+    double longest;                ///< largest arc length of a flight
+    ConnectionOptions connection;  ///< options for curves of the field
+    ConnectionOptions search;      ///< options for specular connections and connections to beams
   };
   Space(std::shared_ptr<const Setup> setup, std::shared_ptr<const RayField> field)
       : setup_(std::move(setup)), field_(std::move(field)) {}
 
-  /// As stage has it, but in the field of this phase.
+  /// Returns index and gradient in a part, at a point that may be on its surface. Sound has the
+  /// phase of this space.
   IndexGradient side(Part part, const Vec3& x) const {
     if (is_curved(part)) return field_->gradient(x);
     return {setup_->stage.excess(part), Vec3::Zero()};
   }
-  /// That of the field.
-  Room room() const { return setup_->stage.regions().room(setup_->field_part); }
+  /// Region filled by the field.
+  SurfaceRegion region() const { return setup_->stage.regions().region(setup_->field_part); }
   const PartMedium& medium() const { return setup_->stage.medium(setup_->field_part); }
-  LegRoom leg_room() const { return {room(), medium(), setup_->options.step}; }
-  /// The surface on which it ends, where the ray is then, to rounding.
-  LegEnd end_on_surface(RayState& ray) const;
+  SegmentDomain segment_domain() const { return {region(), medium(), setup_->options.step}; }
+  /// Returns the surface on which a ray ends, and moves the ray exactly onto it (to rounding).
+  SegmentEnd end_on_surface(RayState& ray) const;
 
-  friend class Legs;
+  friend class Segments;
   class Lanes;
   struct Neighbours;
   class Curve;
 
-  bool searches_for_beams() const { return joins_through() || is_curved(around); }
+  bool searches_for_beams() const { return connects_through() || is_curved(around); }
   bool stays_inside(RayState ray, double sigma, int steps) const;
   Flight fly_once(const PathPoint& from, const Vec3& direction, bool spreads, RandomStream& random,
-                  FlightLog* log, const Vec3* rise) const;
+                  FlightLog* log, const Vec3* log_gradient) const;
   Flight fly_again_to_boundary(const PathPoint& from, const Vec3& direction, RandomStream& random,
-                               const Vec3* rise) const;
-  void go_on(Flight& flight, std::optional<LegEnd> end, bool spreads, RandomStream& random,
+                               const Vec3* log_gradient) const;
+  void go_on(Flight& flight, std::optional<SegmentEnd> end, bool spreads, RandomStream& random,
              FlightLog* log) const;
   bool goes_outside(const Vec3& x, const Vec3& direction) const;
-  void end_leg(Flight& flight, const RayState& ray, double weight) const;
-  std::optional<LegEnd> leg(Flight& flight, Neighbours& neighbours, RandomStream& random) const;
-  std::optional<LegEnd> curved_leg(Flight& flight, Neighbours& neighbours,
-                                   RandomStream& random) const;
-  void cross(Flight& flight, LegEnd surface, Neighbours& neighbours, RandomStream& random) const;
+  void end_segment(Flight& flight, const RayState& ray, double weight) const;
+  std::optional<SegmentEnd> next_segment(Flight& flight, Neighbours& neighbours,
+                                         RandomStream& random) const;
+  std::optional<SegmentEnd> curved_segment(Flight& flight, Neighbours& neighbours,
+                                           RandomStream& random) const;
+  void cross(Flight& flight, SegmentEnd surface, Neighbours& neighbours,
+             RandomStream& random) const;
   double transmitted(const PathPoint& p, const Connection& curve, RandomStream& random) const;
 
   std::shared_ptr<const Setup> setup_;
   std::shared_ptr<const RayField> field_;
 };
 
-/// Points of a leg, one after the other.
+/// Computes points of a curved segment at increasing arc lengths.
 class Space::Curve {
  public:
-  Curve(const Space& space, const FlightLeg& leg)
+  Curve(const Space& space, const FlightSegment& segment)
       : field_(*space.field_),
         step_(space.setup_->options.step),
-        now_(start_ray(field_, leg.start.x, leg.direction)),
+        now_(start_ray(field_, segment.start.x, segment.direction)),
         before_(now_) {}
 
-  /// Increasing arc lengths.
+  /// Returns the point at arc length s; s must increase from call to call.
   Vec3 operator()(double s) {
     while (now_.arc_length < s) {
       before_ = now_;
@@ -213,16 +233,16 @@ class Space::Curve {
 };
 
 template <class Use>
-void Space::for_points(const FlightLeg& leg, double apart, RandomStream& random,
+void Space::for_points(const FlightSegment& segment, double apart, RandomStream& random,
                        const Use& use) const {
-  const PartMedium& in = setup_->stage.medium(leg.start.part);
-  if (is_curved(leg.start.part))
-    return grin::for_points(leg, in, apart, random, Curve(*this, leg), use);
-  const auto x_at = [&](double s) -> Vec3 { return leg.start.x + s * leg.direction; };
-  grin::for_points(leg, in, apart, random, x_at, use);
+  const PartMedium& in = setup_->stage.medium(segment.start.part);
+  if (is_curved(segment.start.part))
+    return grin::for_points(segment, in, apart, random, Curve(*this, segment), use);
+  const auto x_at = [&](double s) -> Vec3 { return segment.start.x + s * segment.direction; };
+  grin::for_points(segment, in, apart, random, x_at, use);
 }
 
-/// Throws InputError for a bad stage.
+/// Checks the stage and makes its space. Throws InputError for an invalid stage.
 std::unique_ptr<const Space> make_space(const AnyIndexField& field, const Stage& stage,
                                         const SpaceOptions& options = {});
 

@@ -23,11 +23,11 @@ BeamLightEnd::BeamLightEnd(const BeamLight& light, const Stage& stage, const Ind
 
 void add_keys(Keys& keys, BeamLightValues& values) {
   keys.add("beam_light", values.beam_light,
-           "x y z dx dy dz radius power: parallel rays from an even disk")
+           "x y z dx dy dz radius power: parallel rays from a uniform disk")
       .each_of(8, "x y z dx dy dz radius power");
   keys.add("gaussian_beam", values.gaussian_beam,
            "x y z dx dy dz radius power: parallel rays with a Gaussian profile of this 1/e^2 "
-           "radius, up to 3 of them")
+           "radius, cut off at three times the radius")
       .each_of(8, "x y z dx dy dz radius power");
 }
 

@@ -7,8 +7,8 @@ namespace flatspeckle::grin {
 
 class BeamLightEnd;
 
-/// Parallel rays from a disk inside the stage or on its boundary: an even one, or with a Gaussian
-/// irradiance of this 1/e^2 radius (RadialProfile).
+/// Parallel rays from a disk inside the stage or on its boundary, with uniform irradiance, or
+/// Gaussian irradiance with 1/e^2 radius `radius` (RadialProfile).
 struct BeamLight {
   using End = BeamLightEnd;
   Vec3 centre, direction;
@@ -21,7 +21,7 @@ class BeamLightEnd {
  public:
   static constexpr bool is_point = false, is_beam = true;
 
-  /// Throws InputError for a disk that reaches out of the stage, or light that leaves it at once.
+  /// Throws InputError for a disk that extends beyond the stage or emits out of it.
   BeamLightEnd(const BeamLight& light, const Stage& stage, const IndexAt&);
 
   double power() const { return power_; }
@@ -31,7 +31,7 @@ class BeamLightEnd {
   EndDirection sample_direction(const EndPosition& at, RandomStream&) const {
     return {.direction = at.inward, .density = 1, .strength = power_ * at.position_density};
   }
-  /// Only its own direction, and that by chance never.
+  /// Returns strength 0: a given direction equals the direction of the beam with probability 0.
   EndDirection towards(const EndPosition&, const Vec3& direction) const {
     return {.direction = direction};
   }

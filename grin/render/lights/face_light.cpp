@@ -21,7 +21,7 @@ BoundaryPatch patch_of(const FaceLight& light, const Surface& boundary) {
                        "face_light, radius");
 }
 
-/// Of n^2 over a patch: exact where n is constant.
+/// Returns the mean of n^2 over a patch, by Monte Carlo with 4096 points; exact for constant n.
 double mean_index_squared(const BoundaryPatch& patch, const Regions& regions,
                           const IndexAt& index) {
   constexpr int points = 4096;
@@ -33,7 +33,8 @@ double mean_index_squared(const BoundaryPatch& patch, const Regions& regions,
     mean += (n * n - mean) / (i + 1);
   }
   if (!(mean > 0 && std::isfinite(mean)))
-    throw InputError("face_light: the index of refraction is not positive and finite all over it");
+    throw InputError(
+        "face_light: the index of refraction must be positive and finite everywhere on it");
   return mean;
 }
 
@@ -58,11 +59,11 @@ EndDirection FaceLightEnd::towards(const EndPosition& at, const Vec3& direction)
 
 void add_keys(Keys& keys, FaceLightValues& values) {
   keys.add("face_light", values.face_light,
-           "x y z radius radiance: the stage's boundary within the radius shines inwards, "
-           "Lambertian, with this L/n^2")
+           "x y z radius radiance: the stage's boundary within the radius of this point emits "
+           "inwards with L/n^2 = radiance in all directions (Lambertian)")
       .each_of(5, "x y z radius radiance");
   keys.add("environment", values.environment,
-           "L/n^2 of light that comes in through all of the boundary")
+           "L/n^2 of light that enters through the whole boundary")
       .positive();
 }
 

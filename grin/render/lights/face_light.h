@@ -6,9 +6,10 @@ namespace flatspeckle::grin {
 
 class FaceLightEnd;
 
-/// The part of the boundary within `radius` of `centre`, Lambertian inwards: L/n^2 = radiance. An
-/// infinite radius is the environment. Sphere and box boundaries only, see BoundaryPatch. Its power
-/// is radiance pi times the integral of n^2 over the part.
+/// A light on the part of the boundary within `radius` of `centre`. It is Lambertian: it emits
+/// inwards with the same L/n^2, `radiance`, in all directions. An infinite radius is the whole
+/// boundary (environment). Requires a sphere or a box as boundary (BoundaryPatch). Its power is pi
+/// times `radiance` times the integral of n^2 over the emitting area.
 struct FaceLight {
   using End = FaceLightEnd;
   Vec3 centre = Vec3::Zero();
@@ -43,7 +44,7 @@ struct FaceLightValues {
 };
 
 void add_keys(Keys& keys, FaceLightValues& values);
-/// The environment is the last.
+/// Makes the lights of these keys; the light of `environment` is the last.
 std::vector<FaceLight> make_lights(const Keys& keys, const FaceLightValues& values);
 
 }  // namespace flatspeckle::grin

@@ -33,7 +33,7 @@ FibreLightEnd::FibreLightEnd(const FibreLight& light, const Stage& stage, const 
   const double there = index({light.centre, Regions(stage).at(light.centre)});
   if (!(light.aperture <= there))
     throw InputError(std::string(fibre_key(spread_)) + ", aperture", light.aperture,
-                     "must be at most the index there");
+                     "must be at most the index of refraction at the fibre");
 }
 
 EndDirection FibreLightEnd::sample_direction(const EndPosition& at, RandomStream& random) const {
@@ -50,7 +50,7 @@ EndDirection FibreLightEnd::towards(const EndPosition& at, const Vec3& direction
   return along(at, direction, cosine, profile.density(square));
 }
 
-/// The sine from the axis goes as 1/n.
+/// The sine of the angle of emitted light from the fibre's axis is proportional to 1/n.
 EmissionChange FibreLightEnd::by_index(const EndPosition& at, const Vec3& direction) const {
   return {.direction = at.inward / direction.dot(at.inward) - direction};
 }
@@ -65,12 +65,12 @@ EndDirection FibreLightEnd::along(const EndPosition& at, const Vec3& direction, 
 void add_keys(Keys& keys, FibreLightValues& values) {
   const char* const numbers = "x y z dx dy dz radius aperture power";
   keys.add("fibre_light", values.fibre_light,
-           "x y z dx dy dz radius aperture power: an even disk with the same L/n^2 in all "
-           "directions of the numerical aperture")
+           "x y z dx dy dz radius aperture power: a uniform disk with the same L/n^2 in all "
+           "directions within the numerical aperture")
       .each_of(9, numbers);
   keys.add("gaussian_fibre", values.gaussian_fibre,
-           "x y z dx dy dz radius aperture power: the same with Gaussian profiles of place and "
-           "direction, of these 1/e^2 radius and aperture, up to 3 of each")
+           "x y z dx dy dz radius aperture power: Gaussian profiles of position and direction with "
+           "this 1/e^2 radius and aperture, both cut off at three times these values")
       .each_of(9, numbers);
 }
 

@@ -7,26 +7,28 @@ namespace flatspeckle::grin {
 
 class FibreLightEnd;
 
-/// The end of a fibre inside the stage or on its boundary. Light leaves each point of its disk in
-/// directions d whose sine from the axis, times the index there, has the profile of `aperture` as
-/// places have that of `radius` (RadialProfile, both even or both Gaussian). Even ones have the
-/// same L/n^2 all over the disk and the cone, as a large fibre that is filled evenly; Gaussian ones
-/// are a Gaussian beam at its waist, or a partially coherent one, as rays.
+/// The end of a fibre inside the stage or on its boundary. Positions on its disk follow a
+/// RadialProfile of radius `radius`; the index times the sine of the angle from the axis follows a
+/// RadialProfile of radius `aperture`. Both profiles are uniform or both are Gaussian. Uniform
+/// profiles give the same L/n^2 over disk and cone, as in a large, uniformly filled fibre. Gaussian
+/// profiles represent a Gaussian beam at its waist, or a partially coherent beam.
 struct FibreLight {
   using End = FibreLightEnd;
   Vec3 centre, direction;
   double radius;
-  double aperture;  ///< numerical
+  double aperture;  ///< numerical aperture
   double power = 1;
   Spread spread = Spread::even;
 };
 
-/// power times a chance per area and one per solid angle: cos(t) that of the sine's plane.
+/// Path endpoint of a fibre. Its strength is the power times the density of positions per area
+/// times the density of directions per solid angle. The density of directions is cos(t) times the
+/// density in the plane of the sines of the angles; t is the angle from the axis.
 class FibreLightEnd {
  public:
-  static constexpr bool is_point = true, is_beam = false;  // nothing hits it
+  static constexpr bool is_point = true, is_beam = false;  // no path hits it
 
-  /// Throws InputError as LightDisk does, and for an aperture of more than the index.
+  /// Throws InputError as LightDisk does, and for an aperture above the index of refraction.
   FibreLightEnd(const FibreLight& light, const Stage& stage, const IndexAt& index);
 
   double power() const { return power_; }

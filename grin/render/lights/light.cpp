@@ -43,7 +43,8 @@ StageLights::StageLights(const std::vector<Light>& lights, const Stage& stage, c
     : regions_(stage) {
   if (lights.empty())
     throw InputError(
-        "light is not given: a scene needs one or more of point_light, beam_light, gaussian_beam, "
+        "light is not given: a scene requires one or more of point_light, beam_light, "
+        "gaussian_beam, "
         "fibre_light, gaussian_fibre, face_light, environment");
   for (const Light& light : lights) {
     const auto number = static_cast<int>(source_.size());
@@ -58,23 +59,24 @@ StageLights::StageLights(const std::vector<Light>& lights, const Stage& stage, c
     }
     source_.push_back({std::move(end), power});
   }
-  settle_chances();
+  settle_probabilities();
 }
 
-void StageLights::settle_chances() {
+void StageLights::settle_probabilities() {
   const auto some_density = [](const auto& end) {
     RandomStream random(0, 0, 0);
     return end.density(end.sample(random).x);
   };
   double so_far = 0;
   for (Source& s : source_) {
-    s.chance = s.power / power_;
-    const double density = s.chance * std::visit(some_density, s.end);
+    s.probability = s.power / power_;
+    const double density = s.probability * std::visit(some_density, s.end);
     if (!(density > 0 && std::isfinite(density)))
-      throw InputError("light", &s - source_.data() + 1,
-                       "has a size or a share of the power too small or too large for numbers");
-    so_far += s.chance;
-    s.chance_so_far = so_far;
+      throw InputError(
+          "light", &s - source_.data() + 1,
+          "must have a size and a share of the total power that double precision can represent");
+    so_far += s.probability;
+    s.probability_so_far = so_far;
   }
 }
 
@@ -83,7 +85,7 @@ EndPosition StageLights::position(int light, const BoundaryPoint& at) const {
       [&](const auto& end) -> EndPosition {
         return {.point = {at.x, regions_.at(at.x)},
                 .inward = at.inward,
-                .position_density = source_[light].chance * end.density(at.x),
+                .position_density = source_[light].probability * end.density(at.x),
                 .light = light,
                 .is_point = end.is_point,
                 .is_beam = end.is_beam};
@@ -124,7 +126,8 @@ EndPosition StageLights::position_on(std::size_t beam, double u, double v) const
 EndPosition StageLights::draw_position(RandomStream& random) const {
   const double u = random.uniform();
   int light = 0;
-  while (light + 1 < static_cast<int>(source_.size()) && u >= source_[light].chance_so_far) ++light;
+  while (light + 1 < static_cast<int>(source_.size()) && u >= source_[light].probability_so_far)
+    ++light;
   return position(
       light, std::visit([&](const auto& end) { return end.sample(random); }, source_[light].end));
 }
@@ -133,7 +136,9 @@ EndDirection StageLights::sample_direction(const EndPosition& at, RandomStream& 
   const Source& from = source_[at.light];
   EndDirection to =
       std::visit([&](const auto& end) { return end.sample_direction(at, random); }, from.end);
-  if (at.is_beam) to.strength /= from.chance;  // which is in its density of positions
+  // position_density, by which the strength of a beam was computed, contains the light's
+  // probability
+  if (at.is_beam) to.strength /= from.probability;
   return to;
 }
 

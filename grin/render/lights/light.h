@@ -17,22 +17,22 @@ struct LightKinds : Kind... {
   using End = std::variant<typename Kind::Light::End...>;
 };
 
-/// The lights of a stage as keys have them, of all kinds (light_kind.h); the one list of them.
+/// Values of the keys of all kinds of lights (light_kind.h). Kinds of lights are listed only here.
 using LightValues =
     LightKinds<PointLightValues, BeamLightValues, FibreLightValues, FaceLightValues>;
 using Light = LightValues::Light;
 
 void add_keys(Keys& keys, LightValues& values);
-/// Kind after kind. Throws InputError.
+/// Makes the lights, ordered by kind. Throws InputError.
 std::vector<Light> make_lights(const Keys& keys, const LightValues& values);
 
-/// All lights of a scene; one of them is drawn for each path, by its power. `space` in the calls is
-/// asked for space.index(PathPoint) alone.
+/// All lights of a scene; each path samples one of them in proportion to its power. Arguments
+/// `space` need only a function index(PathPoint), which returns the index of refraction.
 class StageLights {
  public:
-  /// The index is that of the powers. Throws InputError naming the light for no lights, a light
-  /// that is not inside the stage, a beam that leaves it at once, and sizes or powers of which
-  /// nothing can be drawn.
+  /// index: index of refraction, for the powers of lights with a given L/n^2. Throws InputError if
+  /// there are no lights, a light is not inside the stage, a beam points out of it, or a size or
+  /// power cannot be sampled in double precision.
   StageLights(const std::vector<Light>& lights, const Stage& stage, const IndexAt& index);
 
   template <class S>
@@ -42,37 +42,40 @@ class StageLights {
     return at;
   }
   EndDirection sample_direction(const EndPosition& at, RandomStream& random) const;
-  /// Towards a given direction, for joins.
+  /// Returns strength and density of a given direction, for connections.
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
 
-  /// Of light that sample_direction gave.
+  /// Returns the derivatives of light from sample_direction() by ln n, with n the index at its
+  /// start.
   EmissionChange by_index(const EndPosition& at, const Vec3& direction) const;
 
-  /// Power of all beams.
+  /// Total power of all beams.
   double beam_power() const { return beam_power_; }
-  /// A place on one of the beams: which, by their power, says `stratum` in (0, 1); where, (u, v) in
-  /// the unit square. Its direction is `inward`.
+  /// Returns a position on one of the beams: `stratum` in (0, 1) selects the beam by power, and
+  /// (u, v) in the unit square the position on it. The direction of the beam is `inward`.
   EndPosition beam_position(double stratum, double u, double v) const;
-  /// The same where u is the stratum's place among those of its beam.
+  /// Returns a position on one of the beams; u is the position, from 0 to 1, of `stratum` within
+  /// the interval of strata that selects this beam.
   EndPosition beam_position(double stratum, double v) const;
-  /// One of the beams, as a stratum says.
+  /// One of the beams, with its number.
   struct Beam {
     std::size_t number;
     const LightDisk& disk;
-    double power;  ///< of all beams
-    /// At a place of the disk, if all power were in this beam.
+    double power;  ///< total power of all beams, not of this one alone
+    /// Irradiance at a position on the disk if this beam had the power of all beams.
     double irradiance(const Vec3& x) const { return power * disk.density(x); }
     ParallelLight light() const { return {disk.centre(), disk.axis()}; }
   };
   Beam beam(double stratum) const { return beam_at(beam_place(stratum).number); }
   Beam beam_at(std::size_t number) const;
-  /// That of a place which is on a beam.
+  /// Returns the beam on which a position lies.
   Beam beam_of(const EndPosition& at) const;
   std::size_t beams() const { return beams_.size(); }
-  /// And nothing else, so that no path from a sensor is joined to a light or hits one.
+  /// Whether all lights are beams. Sensor paths then cannot hit a light, and connect only to beams.
   bool are_beams() const { return beams_.size() == source_.size(); }
 
-  /// A path arrives on the boundary at x along `direction`: calls use(EndHit) for each light there.
+  /// Calls use(EndHit) for each light hit by a path that arrives on the boundary at x along
+  /// `direction`.
   template <class S, class Use>
   void hit(const S& space, const Vec3& x, const Vec3& direction, const Use& use) const {
     for (const int light : faces_) {
@@ -90,13 +93,14 @@ class StageLights {
   struct Source {
     LightValues::End end;
     double power;
-    double chance = 0;         ///< to be drawn
-    double chance_so_far = 0;  ///< this and all before
+    double probability = 0;         ///< probability of being sampled
+    double probability_so_far = 0;  ///< sum of the probabilities up to and including this one
   };
-  void settle_chances();
+  void settle_probabilities();
   struct PlaceInBeam {
     std::size_t number;
-    double u;  ///< its place among the strata of this beam
+    /// Position, from 0 to 1, of the stratum within the interval of strata that selects this beam.
+    double u;
   };
   PlaceInBeam beam_place(double stratum) const;
   EndPosition position_on(std::size_t beam, double u, double v) const;

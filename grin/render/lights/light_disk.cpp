@@ -23,7 +23,9 @@ LightDisk::LightDisk(const char* light, const Vec3& centre, const Vec3& directio
     if (!(distance(boundary, disk_.polar(profile.rim(), 2 * pi * i / rim_points)) <= tolerance))
       throw InputError(
           key("radius"), profile.radius(),
-          "its disk of radius " + number_text(profile.rim()) + " must be inside the stage");
+          "the light, a disk of radius " + number_text(profile.rim()) +
+              " perpendicular to its direction, must be inside the stage; move it inwards if it "
+              "is tilted against the boundary");
   if (distance(boundary, centre) >= -tolerance && !(axis().dot(normal(boundary, centre)) < 0))
     throw InputError(key("direction"), listed(direction), "must point into the stage");
 }

@@ -9,22 +9,23 @@
 
 namespace flatspeckle::grin {
 
-// A kind of light is a file with: the light; an end of paths made of (light, stage, index), which
-// throws InputError where it does not fit the stage; its values, add_keys(keys, values) and
-// make_lights(keys, values). It is listed in light.h.
+// The file of a kind of light declares: the light; its path endpoint, constructed from (light,
+// stage, index), which throws InputError if the light does not fit the stage; and the values of its
+// keys, with add_keys(keys, values) and make_lights(keys, values). The kind is listed in light.h.
 //
-// The end tells power(), draws sample(random) and tells density(x) of what it draws (per area; 1 of
-// a point), and has sample_direction(at, random) and towards(at, direction) as EndDirections, and
-// by_index(at, direction) of what it samples; what can be hit has contains(x) and inward(x) of
-// points on the boundary.
+// The endpoint has power(); sample(random), which returns a position; density(x), the density of
+// this sample (per area; 1 for a point); sample_direction(at, random) and towards(at, direction),
+// which return EndDirections; and by_index(at, direction), the EmissionChange of sampled light. An
+// endpoint that can be hit also has contains(x) and inward(x) for points x on the boundary.
 
-/// Of refraction, for the power of what shines with a given L/n^2.
+/// Index of refraction at a point, for the power of lights with a given L/n^2.
 using IndexAt = std::function<double(const PathPoint&)>;
 
-/// How light that is emitted by the same random numbers changes with ln n where it begins.
+/// Derivatives of emitted light by ln n, with n the index where it starts, for fixed random
+/// numbers.
 struct EmissionChange {
-  double weight = 0;              ///< its logarithm
-  Vec3 direction = Vec3::Zero();  ///< across the direction
+  double weight = 0;              ///< derivative of the logarithm of the weight
+  Vec3 direction = Vec3::Zero();  ///< derivative of the direction, perpendicular to the direction
 };
 
 }  // namespace flatspeckle::grin

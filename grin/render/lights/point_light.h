@@ -9,7 +9,7 @@ namespace flatspeckle::grin {
 
 class PointLightEnd;
 
-/// Isotropic, at x inside the stage.
+/// Isotropic point light at x inside the stage.
 struct PointLight {
   using End = PointLightEnd;
   Vec3 x;
@@ -47,7 +47,7 @@ struct PointLightValues {
 };
 
 inline void add_keys(Keys& keys, PointLightValues& values) {
-  keys.add("point_light", values.point_light, "x y z power: shines alike into all directions")
+  keys.add("point_light", values.point_light, "x y z power: emits uniformly into all directions")
       .each_of(4, "x y z power");
 }
 

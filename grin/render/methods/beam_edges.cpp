@@ -8,13 +8,14 @@ namespace flatspeckle::grin {
 
 namespace {
 
-constexpr std::size_t places = 64;  // of a line, where edges are sought between them
+// number of intervals of a line, in each of which edges are searched for
+constexpr std::size_t places = 64;
 
 bool is_on(const SensorEdges& edges, const Flight& flight) {
   return flight.end == Flight::End::boundary && edges.is_on_face(flight.point.x);
 }
 
-/// Where a parabola through three places turns, and its value there.
+/// Vertex of the parabola through three points (u, f).
 struct Summit {
   double u, value;
 };
@@ -27,7 +28,7 @@ Summit turn(const std::array<double, 3>& u, const std::array<double, 3>& f) {
 
 }  // namespace
 
-/// Light from these places of a line.
+/// Traces light from the points of the line with these u.
 BeamEdges::Line BeamEdges::landed(std::span<const double> at) const {
   std::vector<MovingField::Ray> starts;
   for (const double u : at) {
@@ -40,7 +41,8 @@ BeamEdges::Line BeamEdges::landed(std::span<const double> at) const {
   return line;
 }
 
-/// Also places between which it turns near an edge, and may pass it twice.
+/// Traces light from points along the line. Points are added where the landing point turns back
+/// near an edge, which it may have crossed twice.
 BeamEdges::Line BeamEdges::line() const {
   std::vector<double> at;
   for (std::size_t i = 0; i <= places; ++i) at.push_back(static_cast<double>(i) / places);
@@ -65,9 +67,9 @@ BeamEdges::Line BeamEdges::line() const {
   return line;
 }
 
-std::vector<BeamEdges::Passage> BeamEdges::passages() const {
+std::vector<BeamEdges::EdgeCrossing> BeamEdges::edge_crossings() const {
   const Line all = line();
-  std::vector<Passage> found;
+  std::vector<EdgeCrossing> found;
   for (std::size_t i = 0; i + 1 < all.size(); ++i)
     for_each_edge([&](const SensorEdges& edges, int edge) {
       const Flight &one = all[i].flight, &other = all[i + 1].flight;
@@ -81,21 +83,22 @@ std::vector<BeamEdges::Passage> BeamEdges::passages() const {
   return found;
 }
 
-/// By the secant between both sides (Illinois), and by halves now and then; all together.
-void BeamEdges::find(std::vector<Passage>& all) const {
+/// Locates all edge crossings at the same time, by the Illinois secant method with a bisection
+/// every fourth step.
+void BeamEdges::find(std::vector<EdgeCrossing>& all) const {
   for (int step = 0; step < 24; ++step) {
     std::vector<double> at;
-    for (const Passage& one : all)
+    for (const EdgeCrossing& one : all)
       at.push_back(step % 4 == 3
                        ? (one.low + one.high) / 2
                        : (one.low * one.above - one.high * one.below) / (one.above - one.below));
     const Line line = landed(at);
     for (std::size_t i = 0; i < all.size(); ++i) all[i].narrow(line[i]);
-    if (std::ranges::all_of(all, &Passage::is_found)) return;
+    if (std::ranges::all_of(all, &EdgeCrossing::is_found)) return;
   }
 }
 
-void BeamEdges::Passage::narrow(const Landed& place) {
+void BeamEdges::EdgeCrossing::narrow(const Landed& place) {
   const double beyond =
       is_on(*edges, place.flight) ? edges->beyond(edge, place.flight.point.x) : above;
   at = place;
@@ -108,12 +111,12 @@ void BeamEdges::Passage::narrow(const Landed& place) {
 }
 
 void BeamEdges::add(double power, Film& film, TransportCounts& counts) const {
-  std::vector<Passage> all = passages();
-  std::erase_if(all, [](const Passage& one) { return !one.is_found; });
-  const std::vector<double> slopes = this->slopes(all);
+  std::vector<EdgeCrossing> all = edge_crossings();
+  std::erase_if(all, [](const EdgeCrossing& one) { return !one.is_found; });
+  const std::vector<double> derivatives = this->derivatives(all);
   std::vector<MovingField::Ray> starts;
   MovingField::Lengths lengths;
-  for (const Passage& one : all) {
+  for (const EdgeCrossing& one : all) {
     starts.push_back(one.at.start);
     lengths.push_back(one.at.flight.arc_length);
   }
@@ -124,8 +127,8 @@ void BeamEdges::add(double power, Film& film, TransportCounts& counts) const {
       const Flight& flight = all[i].at.flight;
       const Vec3 &x = flight.point.x, &motion = motions[i].x;
       const Vec3 landing =
-          motion + field_.way_out(x, flight.direction).dot(motion) * flight.direction;
-      const double over = all[i].edges->speed(all[i].edge, x, landing) / std::abs(slopes[i]);
+          motion + field_.exit_distance(x, flight.direction).dot(motion) * flight.direction;
+      const double over = all[i].edges->speed(all[i].edge, x, landing) / std::abs(derivatives[i]);
       all[i].edges->pass(all[i].edge, x, [&](int pixel, double share) {
         for (int width = 0; width < edge_widths; ++width)
           deposit_by_field(film, counts, pixel, static_cast<int>(parameter) * edge_widths + width,
@@ -135,11 +138,12 @@ void BeamEdges::add(double power, Film& film, TransportCounts& counts) const {
   }
 }
 
-/// Of how far light is beyond the edge, along the line.
-std::vector<double> BeamEdges::slopes(const std::vector<Passage>& all) const {
+/// Returns, for each crossing, the derivative by u of the distance by which light lands beyond the
+/// edge.
+std::vector<double> BeamEdges::derivatives(const std::vector<EdgeCrossing>& all) const {
   constexpr double apart = 1e-4;
   std::vector<double> at;
-  for (const Passage& one : all)
+  for (const EdgeCrossing& one : all)
     for (const double by : {-apart, apart}) at.push_back(std::clamp(one.at.u + by, 0.0, 1.0));
   const Line line = landed(at);
   std::vector<double> found;

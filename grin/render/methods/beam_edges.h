@@ -5,37 +5,41 @@
 
 namespace flatspeckle::grin {
 
-/// What unscattered light of beams moves over edges of pixels, per unit of each parameter of the
-/// field. Such light is a sharp picture of its beam, and edges are taken as they are: light of a
-/// beam starts at points of a square (u, v), by chance du dv (StageLights::beam_position), and
-/// along a line of constant v it lands on an edge at some u, which moves by
+/// Derivatives, by parameters of the field, due to unscattered light of beams that moves across
+/// pixel edges. Such light forms a sharp image of its beam, so that edges must be treated exactly.
+/// Light of a beam starts at points (u, v) of a unit square with density du dv
+/// (StageLights::beam_position). Along a line of constant v, the light from some u lands on an
+/// edge. When a parameter changes, this u moves by
 ///
 ///   du = - d(landing)/d(parameter) / (d(landing)/du),
 ///
-/// both across the edge.
+/// per unit of the parameter, where d(landing) is the displacement of the landing point across the
+/// edge.
 class BeamEdges {
  public:
-  /// The line v of the beam that the stratum says.
+  /// Selects the line of constant v on the beam that belongs to the stratum.
   BeamEdges(const MovingField& field, const StageLights& lights, double stratum, double v)
       : field_(field), lights_(lights), stratum_(stratum), v_(v) {}
 
-  /// Of so much power of all beams.
+  /// Adds the derivatives to the film. power: power of all beams, which the line represents.
   void add(double power, Film& film, TransportCounts& counts) const;
 
  private:
-  /// Light from a place of the line.
+  /// A ray from one point of the line, traced to the boundary.
   struct Landed {
     double u;
     MovingField::Ray start;
     Flight flight;
   };
   using Line = std::vector<Landed>;
-  /// Over an edge, between two places from where light lands on either side of it.
-  struct Passage {
+  /// Place where the landing point of light crosses an edge of the sensor: light from two
+  /// neighbouring points of a line across the beam lands on opposite sides of that edge.
+  struct EdgeCrossing {
     const SensorEdges* edges;
     int edge;
-    double low, high, below, above;  ///< places, and how far beyond the edge light lands
-    Landed at;                       ///< the last between them
+    /// Positions u of the two points; distances by which their rays land beyond the edge.
+    double low, high, below, above;
+    Landed at;  ///< last ray traced from a point between the two
     bool is_found = false, was_low = false;
 
     void narrow(const Landed& place);
@@ -43,9 +47,9 @@ class BeamEdges {
 
   Line landed(std::span<const double> places) const;
   Line line() const;
-  std::vector<Passage> passages() const;
-  void find(std::vector<Passage>& all) const;
-  std::vector<double> slopes(const std::vector<Passage>& all) const;
+  std::vector<EdgeCrossing> edge_crossings() const;
+  void find(std::vector<EdgeCrossing>& all) const;
+  std::vector<double> derivatives(const std::vector<EdgeCrossing>& all) const;
   template <class Use>
   void for_each_edge(const Use& use) const {
     for (const SensorEdges& edges : field_.edges())

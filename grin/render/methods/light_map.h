@@ -9,7 +9,7 @@
 
 namespace flatspeckle::grin {
 
-/// Equal cells of a box; cell number = (x columns_y + y) columns_z + z.
+/// Equal cells of a box. Cell (x, y, z) has the number (x * counts[1] + y) * counts[2] + z.
 class BoxCells {
  public:
   BoxCells(const Box& box, const std::array<int, 3>& counts);
@@ -19,7 +19,7 @@ class BoxCells {
   double volume(int) const { return sides_.prod(); }
   /// The shortest side of a cell.
   double spacing() const { return sides_.minCoeff(); }
-  /// -1 outside.
+  /// Returns the cell that contains x, -1 outside.
   int cell_at(const Vec3& x) const;
   /// Centres along an axis.
   std::vector<double> centres(int axis) const;
@@ -30,20 +30,22 @@ class BoxCells {
   Vec3 sides_;
 };
 
-/// Rings of a cylinder, of equal widths and heights; cell number = ring slices + slice.
+/// Cells of a cylinder: rings of equal width and height. Rings are counted along the radius and
+/// slices along the axis; cell (ring, slice) has the number ring * slices + slice.
 class RingCells {
  public:
-  /// The axis is from the first point to the second.
+  /// The axis extends from `from` to `to`.
   RingCells(const Vec3& from, const Vec3& to, double radius, const std::array<int, 2>& counts);
 
   const std::array<int, 2>& counts() const { return counts_; }
-  /// All of the cylinder, and perhaps a little more.
+  /// A box that contains the cylinder.
   Box bounds() const;
   double volume(int cell) const;
   double spacing() const { return std::min(width_, height_); }
-  /// -1 outside.
+  /// Returns the cell that contains x, -1 outside.
   int cell_at(const Vec3& x) const;
-  /// Middles between the radii of the rings, and along the axis.
+  /// radii() returns the middles of the rings along the radius, depths() those of the slices along
+  /// the axis.
   std::vector<double> radii() const;
   std::vector<double> depths() const;
 
@@ -53,7 +55,7 @@ class RingCells {
   double width_, height_;
 };
 
-/// Where in the stage light is counted: its fluence rate and the power that is absorbed.
+/// Cells in the stage for the fluence rate and the absorbed power.
 using LightMap = std::variant<BoxCells, RingCells>;
 int cells(const LightMap& map);
 

@@ -14,42 +14,49 @@ namespace {
 
 constexpr int groups = 256;
 
-/// Of one sensor's picture, by a group of paths.
+/// Statistics of one sensor's picture over groups of paths.
 struct PictureMoments {
-  double total = 0, variance = 0;  ///< mean of the sum over the pixels; sum of the variances
-  double lit = 0;                  ///< how many groups have the light, at equal shares
-  double doubt = 1;  ///< relative standard error of the variance; too small where it is near 1
+  /// total: mean of the sum over the pixels; variance: sum of the variances of the pixels.
+  double total = 0, variance = 0;
+  double lit = 0;  ///< effective number of groups with light
+  /// Relative standard error of the variance; an estimate near 1 is too low.
+  double variance_error = 1;
 };
 struct MethodTrial {
-  std::vector<PictureMoments> pictures;  ///< by sensor
+  std::vector<PictureMoments> pictures;  ///< statistics of the picture of each sensor
   double work = 0;
 };
 
-/// In flights that tell |J|.
+/// Returns the cost of the flights of a trial, in units of one flight for which |J| is computed.
 double flown(const TransportCounts& counts, const Tracers& tracers, const Tracer& tracer) {
-  constexpr double steps_alone = 20;  // at both ends of a flight in lanes
-  constexpr double alone = 1.5;       // one that sees no others
+  // steps made one ray at a time at both ends of a flight in lanes
+  constexpr double steps_alone = 20;
+  constexpr double alone = 1.5;  // cost of a flight outside of lanes
   const double side_by_side = tracers.scene().leapfrogs ? 0.25 : 0.35;
   const auto all = static_cast<double>(counts.flights);
-  if (tracer.method == RenderMethod::analog)
+  if (tracer.method == RenderMethod::forward)
     return all * std::min(side_by_side + steps_alone / tracers.steps_of_flight(), alone);
   if (tracer.spreading == Spreading::all) return all;
   const double again = all - static_cast<double>(counts.light_collisions);
-  return 0.7 * all + 2 * again;  // to the boundary is further than to collisions
+  return 0.7 * all + 2 * again;  // flights to the boundary are longer than those to collisions
 }
 
-/// What costs time, in flights of cost 1, by clocks of the shipped scenes.
+/// Returns the work of a trial, in units of flights of cost 1 (Tracers::cost_of_flight); the
+/// coefficients are fitted to timings of the shipped scenes.
 double work(const TransportCounts& counts, const Tracers& tracers, const Tracer& tracer) {
-  const double per_promise = 0.3, per_join = 0.7, per_iteration = tracers.plan().curved ? 2 : 4;
-  const auto joins = static_cast<double>(counts.joins);
-  const double steps = flown(counts, tracers, tracer) + tracer.cost_of_closed_join * joins +
+  const double per_expected_contribution = 0.3, per_connection = 0.7,
+               per_iteration = tracers.plan().curved ? 2 : 4;
+  const auto connections_made = static_cast<double>(counts.connections_made);
+  const double steps = flown(counts, tracers, tracer) +
+                       tracer.cost_of_closed_connection * connections_made +
                        per_iteration * static_cast<double>(counts.connections.iterations);
   return tracers.cost_of_flight() * steps +
-         per_promise * static_cast<double>(counts.joins_weighed) + per_join * joins;
+         per_expected_contribution * static_cast<double>(counts.connections_weighed) +
+         per_connection * connections_made;
 }
 
-/// Of the groups of one sensor's picture: the variance is that of the differences between each
-/// group and the next.
+/// Accumulates the groups of one sensor's picture. The variance is estimated from the differences
+/// between successive groups.
 class PictureSums {
  public:
   explicit PictureSums(const SensorEnd& sensor)
@@ -73,7 +80,7 @@ class PictureSums {
     return {.total = light_ / groups,
             .variance = apart_ / (groups - 1),
             .lit = light_ > 0 ? light_ * light_ / light_square_ : 0,
-            .doubt = apart_ > 0 ? std::sqrt(apart_square_) / apart_ : 0};
+            .variance_error = apart_ > 0 ? std::sqrt(apart_square_) / apart_ : 0};
   }
 
  private:
@@ -82,7 +89,7 @@ class PictureSums {
   double light_ = 0, light_square_ = 0, apart_ = 0, apart_square_ = 0;
 };
 
-/// Nothing where the work is beyond all measure.
+/// Runs a trial of a method; returns nullopt if its work exceeds most_work.
 std::optional<MethodTrial> tried(const Tracers& tracers, const Tracer& tracer, int pairs_per_group,
                                  double most_work) {
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max() - 1;
@@ -113,7 +120,8 @@ std::optional<MethodTrial> tried(const Tracers& tracers, const Tracer& tracer, i
   return trial;
 }
 
-/// A few pairs of paths, then as many as the work allows, `effort` times the usual.
+/// Runs a trial with one light path and its sensor paths per group, then a trial with as many such
+/// pairs per group as `effort` times the usual work allows.
 std::optional<MethodTrial> tried(const Tracers& tracers, const Tracer& tracer, double effort) {
   const double usual = tracers.plan().curved ? 1 << 16 : 1 << 18;
   const double most = 2 * usual;
@@ -129,7 +137,8 @@ struct Candidate {
   MethodTrial trial = {};
 };
 
-/// That of each picture, as the trial has it whose paths share it most evenly.
+/// Returns the total light of each sensor's picture, from the trial in which this light is spread
+/// most evenly over the groups.
 std::vector<double> light_of_pictures(const std::vector<Candidate>& candidates) {
   std::vector<PictureMoments> best = candidates.front().trial.pictures;
   for (const Candidate& candidate : candidates)
@@ -140,15 +149,16 @@ std::vector<double> light_of_pictures(const std::vector<Candidate>& candidates) 
   return light;
 }
 
-/// Fewer groups with the light tell nothing of the variance.
+/// Smallest number of groups with light for a useful variance.
 constexpr double fewest_lit = 16;
-/// With more doubt the strongest paths are likely still missing.
-constexpr double most_doubt = 0.25;
+/// If the error of the variance is larger, the trial has likely missed the paths of highest weight.
+constexpr double largest_variance_error = 0.25;
 
-/// Work to a given error, of the sensor for which it is most, and whether the trial knows it well.
+/// Work that a method requires for a given error, for the sensor that requires the most; and
+/// whether the estimate of this work is reliable.
 struct Needed {
   double work = 0;
-  double doubt = 0;  ///< largest of all sensors, relative: a standard error
+  double variance_error = 0;  ///< largest PictureMoments::variance_error of all sensors
   bool is_known = true;
 };
 Needed needed(const MethodTrial& trial, const std::vector<double>& light) {
@@ -156,8 +166,8 @@ Needed needed(const MethodTrial& trial, const std::vector<double>& light) {
   for (std::size_t i = 0; i < light.size(); ++i) {
     const PictureMoments& picture = trial.pictures[i];
     if (!(light[i] > 0)) continue;
-    most.doubt = std::max(most.doubt, picture.doubt);
-    most.is_known &= picture.lit > fewest_lit && picture.doubt < most_doubt;
+    most.variance_error = std::max(most.variance_error, picture.variance_error);
+    most.is_known &= picture.lit > fewest_lit && picture.variance_error < largest_variance_error;
     const bool is_missing = !(picture.total > light[i] / 2 && picture.lit > fewest_lit);
     most.work =
         std::max(most.work, is_missing ? std::numeric_limits<double>::infinity()
@@ -171,7 +181,7 @@ bool is_pinhole(const Sensor& sensor) {
   return camera && camera->lens_radius == 0;
 }
 
-/// Light goes straight on everywhere.
+/// Whether the index is constant over the whole stage.
 bool has_even_index(const RenderScene& scene) {
   const auto* const field = std::get_if<Homogeneous>(&scene.field);
   if (field == nullptr) return false;
@@ -183,7 +193,7 @@ bool has_even_index(const RenderScene& scene) {
   return true;
 }
 
-/// Of sensors' paths: they hit such a light, or are joined to it without 1/r^2.
+/// Whether sensor paths can hit this light, or connect to it without a factor 1/r^2.
 bool is_evenly_met(const RenderScene& scene, const Light& light) {
   return std::holds_alternative<FaceLight>(light) ||
          (std::holds_alternative<BeamLight>(light) && has_even_index(scene));
@@ -202,8 +212,8 @@ bool has_finite_variance(const RenderScene& scene, RenderMethod method) {
 
 namespace {
 
-/// Far from a beam the strongest of a sensor's paths are too rare for a pilot: what it sees of them
-/// is too little, and looks certain.
+/// Whether a pilot run can estimate the work of a method. Far from a beam the sensor paths of
+/// highest weight are too rare for a pilot run, which would underestimate light and error.
 bool can_be_tried(const RenderScene& scene, RenderMethod method) {
   const auto is_beam = [](const Light& light) { return std::holds_alternative<BeamLight>(light); };
   return has_finite_variance(scene, method) &&
@@ -211,18 +221,19 @@ bool can_be_tried(const RenderScene& scene, RenderMethod method) {
           !render_plan(scene).scatters);
 }
 
-/// Bidirectional tracing first, if it can be tried; then so can the others.
+/// Lists the methods to try, bidirectional tracing first.
 std::vector<Candidate> candidates(const Tracers& tracers) {
   std::vector<Candidate> found;
   for (const RenderMethod method :
        {RenderMethod::bidirectional, RenderMethod::path, RenderMethod::light})
     if (can_be_tried(tracers.scene(), method)) found.push_back({tracers.make(method)});
-  if (tracers.plan().curved && can_be_analog(tracers.scene()))
-    found.push_back({tracers.make(RenderMethod::analog)});
+  if (tracers.plan().curved && can_be_forward(tracers.scene()))
+    found.push_back({tracers.make(RenderMethod::forward)});
   return found;
 }
 
-/// Leaves out those that cannot be tried: all where the first cannot.
+/// Runs the trials and removes candidates whose work is excessive; removes all candidates if the
+/// work of the first is excessive.
 void try_all(const Tracers& tracers, double effort, std::vector<Candidate>& all) {
   const auto is_beyond = [&](Candidate& candidate) {
     auto trial = tried(tracers, candidate.tracer, effort);
@@ -233,17 +244,18 @@ void try_all(const Tracers& tracers, double effort, std::vector<Candidate>& all)
   all.erase(std::remove_if(all.begin() + 1, all.end(), is_beyond), all.end());
 }
 
-/// What else speaks for or against a method, as a factor of its work. Bidirectional tracing misses
-/// least where the trial is too short. Of light that is joined to nothing few paths hit a pixel:
-/// it stays marked for long (PictureErrors), with bounds in place of errors.
+/// Returns the preference for a method, a factor by which its work is multiplied. Bidirectional
+/// tracing is preferred, since it misses least light if the trial is too short. Forward tracing of
+/// pictures is avoided: few paths hit each pixel, so that pixels stay undersampled for long and
+/// have bounds instead of errors (bound_errors).
 double preference(const Tracer& tracer) {
   if (tracer.method == RenderMethod::bidirectional) return 0.9;
   const bool are_pixels =
       tracer.transport->pixels() > static_cast<int>(tracer.transport->sensors.size());
-  return tracer.method == RenderMethod::analog && are_pixels ? 2 : 1;
+  return tracer.method == RenderMethod::forward && are_pixels ? 2 : 1;
 }
 
-/// Of each method, with its preference.
+/// Returns the work of each method, multiplied by its preference.
 std::vector<Needed> needs_of(const std::vector<Candidate>& all) {
   const auto light = light_of_pictures(all);
   std::vector<Needed> needs;
@@ -254,7 +266,8 @@ std::vector<Needed> needs_of(const std::vector<Candidate>& all) {
   return needs;
 }
 
-/// Which has the least work, known or not. Nothing where no trial tells.
+/// Returns the method of least work; nullopt if there is none. of_known: consider only methods
+/// whose work is known reliably.
 std::optional<std::size_t> best_of(const std::vector<Needed>& needs, bool of_known) {
   std::optional<std::size_t> best;
   double least = std::numeric_limits<double>::infinity();
@@ -266,12 +279,13 @@ std::optional<std::size_t> best_of(const std::vector<Needed>& needs, bool of_kno
   return best;
 }
 
-/// Known well, and within two standard errors no other that finds the light needs much less.
+/// Whether the estimate for the best method is reliable, and no other method that finds the light
+/// could need much less work, allowing for two standard errors.
 bool is_settled(const std::vector<Needed>& needs, std::size_t best) {
   constexpr double much = 1.5;
-  const double most = needs[best].work * (1 + 2 * needs[best].doubt);
+  const double most = needs[best].work * (1 + 2 * needs[best].variance_error);
   for (std::size_t i = 0; i < needs.size(); ++i) {
-    const double least = needs[i].work * std::max(1 - 2 * needs[i].doubt, 0.0);
+    const double least = needs[i].work * std::max(1 - 2 * needs[i].variance_error, 0.0);
     if (i != best && std::isfinite(needs[i].work) && most > much * least) return false;
   }
   return needs[best].is_known;
@@ -279,8 +293,9 @@ bool is_settled(const std::vector<Needed>& needs, std::size_t best) {
 
 }  // namespace
 
-/// Trials go on, longer and longer, until the best is settled: an estimate that still lacks the
-/// strongest paths is too good. After the last, one that is known goes before others.
+/// Repeats trials of increasing length until the best method is settled: an estimate of the work is
+/// too low if the trial lacks the paths of highest weight. After the last trial, methods with
+/// reliable estimates are preferred.
 Tracer best_tracer(const Tracers& tracers) {
   if (!tracers.walks()) return tracers.make(RenderMethod::light);
   auto all = candidates(tracers);

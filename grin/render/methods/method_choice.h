@@ -4,13 +4,15 @@
 
 namespace flatspeckle::grin {
 
-/// Path tracing joins to points and fibres by 1/r^2 without another strategy beside, and where the
-/// index varies to what beams light first; light tracing joins to pinholes so.
+/// Whether a method has finite variance in this scene. Path tracing connects to point lights and
+/// fibres, and, where the index varies, to beams. These contributions grow as 1/r^2 at short
+/// distance r, and no other strategy competes, so that their variance is infinite. For the same
+/// reason light tracing to a pinhole has infinite variance.
 bool has_finite_variance(const RenderScene& scene, RenderMethod method);
 
-/// Of path, light and bidirectional tracing that which draws the picture with the least work, as a
-/// pilot has it: variance by pixel times flights. Of the scene alone, whatever the seed. Bounded in
-/// work.
+/// Returns the method with the least work (variance per pixel times number of flights) according to
+/// a pilot run. The result depends only on the scene, not on the seed; the work of the pilot is
+/// bounded.
 Tracer best_tracer(const Tracers& tracers);
 
 }  // namespace flatspeckle::grin

@@ -23,13 +23,14 @@ MovingField::MovingField(const Scene& scene)
 
 namespace {
 
-constexpr int corrections = 3;  // of the index's change on the way
+// iterations that correct sigma, needed since the index changes along the ray
+constexpr int corrections = 3;
 
 int steps_of(double sigma, double step) {
   return std::max(1, static_cast<int>(std::ceil(sigma / step)));
 }
 
-/// Some that have about as far to go.
+/// Advances a group of rays whose remaining lengths are similar, in SIMD lanes.
 void go_side_by_side(std::span<const std::size_t> some, std::span<const double> lengths,
                      const RayField& field, double step, std::span<RayState> rays) {
   RayLanes all{};
@@ -62,7 +63,7 @@ void go_side_by_side(std::span<const double> lengths, const RayField& field, dou
         lengths, field, step, rays);
 }
 
-/// To these arc lengths.
+/// Advances each ray to its arc length in `lengths`.
 void go_to(std::span<const double> lengths, const RayField& field, double step,
            std::span<RayState> rays) {
   if (field.has_lanes()) return go_side_by_side(lengths, field, step, rays);

@@ -11,12 +11,12 @@
 
 namespace flatspeckle::grin {
 
-/// The field of a stage, as light paths need it that move with its parameters.
+/// The index field of a stage, and derivatives of rays by parameters of the field.
 class MovingField {
  public:
   struct Scene {
     const AnyIndexField& field;
-    const Stage& stage;  ///< a box, of one uniform medium
+    const Stage& stage;  ///< must be a box with one uniform medium
     SpaceOptions options;
     std::span<const FieldParameter> parameters;
     std::vector<SensorEdges> edges;
@@ -28,40 +28,43 @@ class MovingField {
   const std::vector<SensorEdges>& edges() const { return edges_; }
   const ScatteringMedium& medium() const { return medium_; }
   IndexGradient index(const Vec3& x) const { return field_->gradient(x); }
-  /// d(ln n) for each unit of a parameter.
+  /// Returns the derivative of ln n at x by a parameter.
   double index_change(std::size_t parameter, const Vec3& x) const;
 
   struct Ray {
     Vec3 x = Vec3::Zero(), direction = Vec3::Zero();
   };
-  /// To the boundary, without collisions.
+  /// Traces rays to the boundary without collisions.
   std::vector<Flight> flown(std::span<const Ray> starts) const;
 
-  /// For each unit of a parameter.
+  /// Derivatives of a ray's position and direction by a parameter.
   struct Motion {
     Vec3 x = Vec3::Zero(), direction = Vec3::Zero();
   };
-  /// [stop][ray]: of rays after arc lengths [stop][ray], which increase; their starts move too.
+  /// Arc lengths, by ray.
   using Lengths = std::vector<double>;
+  /// Returns the motions [stop][ray] of rays at the arc lengths stops[stop][ray], which increase
+  /// with `stop`. motions: motions of the starts.
   std::vector<std::vector<Motion>> moved(std::size_t parameter, std::span<const Ray> starts,
                                          std::span<const Motion> motions,
                                          std::span<const Lengths> stops) const;
 
-  /// d(arc length to the boundary) = way . d(x), of light that leaves at x; to there x moves on.
-  Vec3 way_out(const Vec3& x, const Vec3& direction) const {
+  /// Returns the gradient of a ray's arc length to the boundary with respect to a displacement of
+  /// the ray. x, direction: position and direction of the ray at the boundary.
+  Vec3 exit_distance(const Vec3& x, const Vec3& direction) const {
     const Vec3 outwards = stage_.normal(x);
     return -outwards / outwards.dot(direction);
   }
 
  private:
-  /// A parameter's two fields.
+  /// The fields with a parameter decreased and increased by `step`.
   struct Sides {
     std::unique_ptr<const RayField> less, more;
     double scale, step;
   };
 
   std::unique_ptr<const RayField> field_;
-  std::unique_ptr<const Space> clear_;  ///< where flights go to the boundary
+  std::unique_ptr<const Space> clear_;  ///< without scattering: flights end on the boundary
   std::vector<Sides> sides_;
   Box stage_;
   ScatteringMedium medium_;

@@ -10,8 +10,9 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// Of a turn of what arrives, on the logarithm of the phase function, roughly: the root of its mean
-/// square for each radian. Nothing where turns are not told.
+/// Returns, approximately, the square root of the Fisher information of the phase function with
+/// respect to the angle by which the arriving direction turns, per radian; nullopt if the
+/// derivative of the phase function is not known.
 std::optional<double> information(const SpacePhaseFunction& phase) {
   if (std::holds_alternative<IsotropicPhase>(phase.which)) return 0;
   const auto* hg = std::get_if<HgPhase>(&phase.which);
@@ -19,9 +20,10 @@ std::optional<double> information(const SpacePhaseFunction& phase) {
   const double g = std::abs(hg->g);
   return std::sqrt(0.6 * g) / (1 - g);
 }
-/// Derivative of ln p by the cosine between two unit vectors. Their difference, or sum for g < 0,
-/// keeps the digits of 1 + g^2 - 2 g cosine in a narrow peak, where the cosine is 1 to rounding.
-double slope_of_log(const SpacePhaseFunction& phase, const Vec3& from, const Vec3& to) {
+/// Derivative of ln p, where p is the phase function, with respect to the cosine between two unit
+/// vectors. Using their difference, or sum for g < 0, avoids cancellation in 1 + g^2 - 2 g cosine
+/// in a narrow peak, where the cosine is 1 to rounding.
+double derivative_of_log(const SpacePhaseFunction& phase, const Vec3& from, const Vec3& to) {
   const auto* hg = std::get_if<HgPhase>(&phase.which);
   if (!hg) return 0;
   const double size = std::abs(hg->g), beside = 1 - size;
@@ -73,7 +75,7 @@ void MovingPaths::finish() {
     const auto ends = moved(i, flights, std::span(&lengths, 1)).front();
     for (std::size_t k = 0; k < flights.size(); ++k) {
       const Landing& landing = landings_[k];
-      const double further = field_.way_out(landing.x, landing.arrived).dot(ends[k].x);
+      const double further = field_.exit_distance(landing.x, landing.arrived).dot(ends[k].x);
       Motion motion;
       motion.x = ends[k].x + further * landing.arrived;
       motion.score = motions(landing.flight)[i].score - field_.medium().mu_t() * further;
@@ -84,7 +86,7 @@ void MovingPaths::finish() {
   landings_.clear();
 }
 
-/// What first flights that land begin with.
+/// Sets the motions and scores at the starts of paths that land on a sensor or near one.
 void MovingPaths::emit() {
   for (const Landing& landing : landings_) {
     int first = landing.flight;
@@ -100,7 +102,8 @@ void MovingPaths::emit() {
   }
 }
 
-/// The flights after collisions on whose motion landings depend, by how many there were.
+/// Returns the flights after collisions that lead to landings, grouped by the number of collisions
+/// before them.
 std::vector<std::vector<int>> MovingPaths::followed() {
   std::vector<std::vector<int>> by_depth;
   for (const Landing& landing : landings_)
@@ -114,7 +117,8 @@ std::vector<std::vector<int>> MovingPaths::followed() {
   return by_depth;
 }
 
-/// Of those before which it is known. What one flight ends in may begin several.
+/// Computes the motions at the starts of flights from those of the flights before them. Several
+/// flights may follow the same one.
 void MovingPaths::follow(std::span<const int> flights) {
   std::vector<int> before;
   for (const int flight : flights) before.push_back(start(flight).before);
@@ -132,13 +136,15 @@ void MovingPaths::follow(std::span<const int> flights) {
       const Start& next = start(flight);
       const auto k =
           static_cast<std::size_t>(std::ranges::lower_bound(before, next.before) - before.begin());
-      const double s = stops[0][k], stretch = exit[k].way.dot(ends[1][k].x) / stops[1][k];
+      const double s = stops[0][k],
+                   relative_change = exit[k].gradient.dot(ends[1][k].x) / stops[1][k];
       const IndexGradient index = field_.index(next.x);
       const Vec3 across = index.gradient - next.arrived * next.arrived.dot(index.gradient);
       Motion& motion = motions(flight)[i];
-      motion.x = ends[0][k].x + stretch * s * next.arrived;
-      motion.direction = ends[0][k].direction + stretch * s / (1 + index.excess) * across;
-      motion.score = motions(next.before)[i].score + stretch * (1 - field_.medium().mu_t() * s);
+      motion.x = ends[0][k].x + relative_change * s * next.arrived;
+      motion.direction = ends[0][k].direction + relative_change * s / (1 + index.excess) * across;
+      motion.score =
+          motions(next.before)[i].score + relative_change * (1 - field_.medium().mu_t() * s);
       collide(next, field_.scale(i), motion);
     }
   }
@@ -153,8 +159,9 @@ std::vector<MovingPaths::Exit> MovingPaths::exits(std::span<const int> flights) 
   std::vector<Exit> found;
   for (const Flight& flight : field_.flown(rays)) {
     const bool is_out = flight.end == Flight::End::boundary;
-    found.push_back({flight.arc_length,
-                     is_out ? field_.way_out(flight.point.x, flight.direction) : Vec3::Zero()});
+    found.push_back({flight.arc_length, is_out
+                                            ? field_.exit_distance(flight.point.x, flight.direction)
+                                            : Vec3::Zero()});
   }
   return found;
 }
@@ -174,11 +181,11 @@ std::vector<std::vector<MovingField::Motion>> MovingPaths::moved(std::size_t par
 void MovingPaths::collide(const Start& next, double scale, Motion& motion) const {
   const SpacePhaseFunction& phase = field_.medium().phase;
   const Vec3 turn = motion.direction;
-  const auto told = information(phase);
-  const double tell = told ? *told * scale * turn.norm() : 0;
-  const double taken_back = told ? 1 / (1 + tell * tell) : 0;
+  const auto known = information(phase);
+  const double turned = known ? *known * scale * turn.norm() : 0;
+  const double taken_back = known ? 1 / (1 + turned * turned) : 0;
   const double cosine = next.arrived.dot(next.direction), towards = turn.dot(next.direction);
-  motion.score += taken_back * slope_of_log(phase, next.arrived, next.direction) * towards;
+  motion.score += taken_back * derivative_of_log(phase, next.arrived, next.direction) * towards;
   motion.direction = (1 - taken_back) * (cosine * turn - towards * next.arrived);
 }
 

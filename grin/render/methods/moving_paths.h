@@ -9,41 +9,43 @@
 
 namespace flatspeckle::grin {
 
-/// Derivatives of powers by parameters of the field, of paths that are counted where they land. A
-/// path is taken along as a parameter changes, each of its random numbers becoming another or none,
-/// so that what it brings changes by
+/// Derivatives of powers by parameters of the field, for paths that are tallied where they land.
+/// Paths are reparametrised: as a parameter changes, the path moves with it, so that its
+/// contribution changes by
 ///
-///   d(weight) on the sensor + weight kernel(way to an edge along the motion) d(landing),
+///   d(weight) on the sensor + weight kernel(distance to an edge along the motion) d(landing),
 ///
-/// the first as the density of its random numbers changes (score function). How paths are taken
-/// along is free, and chosen such that nothing jumps but at edges, and landings move little:
+/// where the first term is the change of the path density (score function). "Score" below is the
+/// change of the logarithm of this density. Any motion of the paths is valid. The following one is
+/// continuous except at pixel edges, and landing points move little:
 ///
-/// - Light begins at the same place, in the direction and with the weight that the same random
-///   numbers have in the other index (EmissionChange).
-/// - Flights end at the same part of the way to the boundary, at arc length s of S: a path that
-///   collides just before the boundary does so with any parameter. Score: d ln S (1 - mu_t s) of a
-///   collision, -mu_t dS where light leaves.
-/// - Directions after a collision stay as they are, though those before it turn, as far as there is
-///   room for that in the phase function: of a turn w before it, 1/(1 + (I w)^2) is taken back,
-///   where I^2 is the information of the phase function on a turn by a whole of the parameter.
-///   Score: that share of d ln p. Of phase functions whose slope is not known, nothing is taken
-///   back.
+/// - Light starts at the same position, with the direction and weight that the same random numbers
+///   have at the changed index (EmissionChange).
+/// - Flights end at the same fraction s/S of the arc length S to the boundary: a path that collides
+///   just before the boundary does so for any value of the parameter. Score: d ln S (1 - mu_t s)
+///   for a collision, -mu_t dS if light leaves the stage.
+/// - When the direction before a collision turns, the direction after it is kept as far as the
+///   phase function p is smooth enough. A share 1/(1 + (I w)^2) of the turn is compensated, where w
+///   is the turn for a full change of the parameter, and I^2 the Fisher information of p with
+///   respect to a turn. Score: the same share of d ln p. Nothing is compensated if the derivative
+///   of p is not known.
 ///
-/// Motions are central differences of rays in the two fields of each parameter. Paths are recorded
-/// on their way; finish() follows those that land on a sensor or near one, side by side.
+/// Motions are central differences between rays in the two fields of each parameter (MovingField).
+/// Paths are recorded as they are traced; finish() follows those that land on a sensor or near one,
+/// in SIMD lanes.
 class MovingPaths {
  public:
-  /// over_edges: else what moves over them is left to others.
+  /// over_edges: whether motion over edges is included; if not, BeamEdges adds it.
   MovingPaths(const MovingField& field, Film& film, TransportCounts& counts, bool over_edges = true)
       : field_(field), film_(film), counts_(counts), over_edges_(over_edges) {}
 
-  /// A path's first flight, those after collisions, and its landing. A flight has the number that
-  /// is returned.
+  /// Record a path's first flight, the flights after collisions, and its landing. begin() and
+  /// go_on() return the number of the flight.
   int begin(const Vec3& x, const Vec3& direction, const EmissionChange& by_index = {});
   int go_on(int flight, const Vec3& x, const Vec3& arrived, double arc_length,
             const Vec3& direction);
   void land(int flight, const Vec3& x, const Vec3& arrived, double arc_length, double power);
-  /// After all paths.
+  /// Adds the derivatives after all paths.
   void finish();
 
  private:
@@ -51,23 +53,25 @@ class MovingPaths {
   struct Motion : MovingField::Motion {
     double score = 0;
   };
-  /// A flight, after that at whose end its collision was.
+  /// Start of a flight. before: number of the flight that ended in the collision where this flight
+  /// starts; -1 for the first flight of a path.
   struct Start {
     int before, depth;
     Vec3 x, arrived, direction;
-    double arc_length = 0;  ///< of the flight, where it ends in a collision
+    double arc_length = 0;  ///< arc length of the flight, if it ends in a collision
     bool is_followed = false;
-    EmissionChange by_index = {};  ///< of a first flight
+    EmissionChange by_index =
+        {};  ///< change of the emitted light by the index, on a path's first flight
   };
   struct Landing {
     int flight;
     Vec3 x, arrived;
     double arc_length, power;
   };
-  /// Where a flight leaves the stage if nothing stops it.
+  /// Exit of a flight from the stage without collisions.
   struct Exit {
     double arc_length;
-    Vec3 way;  ///< d(arc_length) = way . d(x)
+    Vec3 gradient;  ///< d(arc_length) = gradient . d(x)
   };
 
   Start& start(int flight) { return starts_[static_cast<std::size_t>(flight)]; }

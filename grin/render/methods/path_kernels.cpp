@@ -21,21 +21,21 @@ std::string RenderPlan::describe() const {
 
 namespace {
 
-/// Sensor paths take the pixels in turn.
+/// Samples the stratum of a sensor path, by which the paths of a batch are spread over the pixels.
 double stratum(int path, int paths, RandomStream& random) {
   return (path + random.uniform()) / paths;
 }
 
-template <class Family>
+template <class Tree>
 PathKernel kernel_of(std::shared_ptr<const Transport> transport, std::shared_ptr<const Space> space,
                      bool random_phase) {
   return [=](int paths, RandomStream& random, Film& film, TransportCounts& counts,
-             JoinPromises* promises) {
+             ExpectedConnections* expected_connections) {
     const auto add = [&](const Space& met, int first, int last) {
-      Bidirectional<Family> estimator(*transport, met, random, film, counts);
+      Bidirectional<Tree> estimator(*transport, met, random, film, counts);
       for (int path = first; path < last; ++path) {
         estimator.add(stratum(path, paths, random));
-        if (promises) estimator.append_promises(*promises);
+        if (expected_connections) estimator.append_expected_contributions(*expected_connections);
       }
     };
     if (!random_phase) return add(*space, 0, paths);
@@ -48,8 +48,8 @@ PathKernel kernel_of(std::shared_ptr<const Transport> transport, std::shared_ptr
 
 PathKernel path_kernel(const RenderPlan& plan, std::shared_ptr<const Transport> transport,
                        std::shared_ptr<const Space> space, bool random_phase) {
-  return plan.deep ? kernel_of<LightFamily>(transport, space, random_phase)
-                   : kernel_of<LonePath>(transport, space, random_phase);
+  return plan.deep ? kernel_of<SplitTree>(transport, space, random_phase)
+                   : kernel_of<UnsplitPath>(transport, space, random_phase);
 }
 
 }  // namespace flatspeckle::grin

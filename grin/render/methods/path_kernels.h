@@ -13,30 +13,33 @@
 
 namespace flatspeckle::grin {
 
-/// What light transport in a scene has to do; stored with the result. Leaving out what a scene does
-/// not need never changes a result beyond rounding.
+/// Features that light transport in a scene requires; stored with the result. Leaving out features
+/// that a scene does not need changes a result only by rounding.
 struct RenderPlan {
-  bool curved = true;    ///< the index changes from point to point, not only at surfaces of bodies
-  bool scatters = true;  ///< some medium does
-  bool absorbs = true;   ///< some medium does; all that scatters is lossless without
-  bool gridded = true;   ///< some medium's density is a grid
-  bool body = true;      ///< one or more in the stage
+  bool curved = true;    ///< the index varies continuously, not only at surfaces of bodies
+  bool scatters = true;  ///< some medium scatters
+  bool absorbs = true;   ///< some medium absorbs
+  bool gridded = true;   ///< some medium has a density grid
+  bool body = true;      ///< the stage has one or more bodies
   bool timed = true;     ///< more than one bin of optical path
-  bool deep = true;      ///< light is split on its way to sensors deep behind a medium
+  bool deep = true;      ///< light is split by importance, for sensors deep behind a medium
 
   bool operator==(const RenderPlan&) const = default;
 
-  /// For people, and for the result file.
+  /// Describes the plan, for the output and the result file.
   std::string describe() const;
 };
 
-/// Light paths and as many sensor paths, added to a film; with `promises`, what each pair promised
-/// to add (Bidirectional) is collected too.
-using PathKernel = std::function<void(int paths, RandomStream& random, Film& film,
-                                      TransportCounts& counts, JoinPromises* promises)>;
+/// Adds this number of light paths, and as many paths from each sensor, to a film.
+/// expected_connections, if not null, receives the expected contributions of each pair
+/// (Bidirectional).
+using PathKernel =
+    std::function<void(int paths, RandomStream& random, Film& film, TransportCounts& counts,
+                       ExpectedConnections* expected_connections)>;
 
-/// plan: whether light is split (deep). The transport may still change before the kernel is called.
-/// random_phase: each light path and its sensor path meet their own phase of the sound.
+/// Makes the kernel of a plan. It splits light paths if the plan is deep. The transport may still
+/// be changed before the kernel is called. random_phase: each pair of light path and sensor paths
+/// has its own random phase of the sound.
 PathKernel path_kernel(const RenderPlan& plan, std::shared_ptr<const Transport> transport,
                        std::shared_ptr<const Space> space, bool random_phase = false);
 

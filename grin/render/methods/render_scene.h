@@ -15,35 +15,36 @@
 
 namespace flatspeckle::grin {
 
-/// Everything that light meets.
+/// The scene of a render.
 struct RenderScene {
   AnyIndexField field;
-  double step;        ///< of rays in sigma (length at index 1); no use in a homogeneous field
-  double max_length;  ///< arc length of one flight or join; longer ones are lost
-  bool random_phase = false;  ///< of a StandingWave: each path meets its own (C28)
+  double step;        ///< step of rays in sigma (length at index 1); unused in a homogeneous field
+  double max_length;  ///< largest arc length of a flight or connection; longer ones are lost
+  bool random_phase = false;  ///< each path has a random phase of the sound (StandingWave, C28)
   Stage stage;
   std::vector<Light> lights;
   std::vector<Sensor> sensors;
-  std::vector<std::string> sensor_names = {};  ///< of several
+  std::vector<std::string> sensor_names = {};  ///< names, if there are several sensors
   TimeBins bins = {};
   std::optional<LightMap> map = {};
-  std::optional<double> length_unit = {};       ///< metres in a unit of length, for times
-  bool leapfrogs = false;                       ///< steps are of Leapfrog (make_ray_field)
-  std::optional<IndexRange> index = {};         ///< where it is known
-  std::vector<FieldParameter> parameters = {};  ///< by which powers are differentiated
-  bool is_silent = false;  ///< there is sound, but none that turns a ray: it is left out
+  /// Metres per unit of length, to convert optical paths to times.
+  std::optional<double> length_unit = {};
+  bool leapfrogs = false;                       ///< whether steps are by Leapfrog (make_ray_field)
+  std::optional<IndexRange> index = {};         ///< range of the index, if known
+  std::vector<FieldParameter> parameters = {};  ///< parameters by which powers are differentiated
+  bool is_silent = false;  ///< the sound is too weak to bend rays and is left out
 };
 
-/// Of a scene with several sensors; a number where it has no names.
+/// Returns the name of a sensor; its number, from 1, if sensors have no names.
 std::string sensor_name(const RenderScene& scene, std::size_t sensor);
 
-enum class RenderMethod { path, light, bidirectional, analog };
-/// In their order.
+enum class RenderMethod { path, light, bidirectional, forward };
+/// Key values of the methods, in the order of RenderMethod.
 std::vector<std::string> method_words();
 std::string method_word(RenderMethod method);
 
 struct RenderRequest {
-  std::optional<RenderMethod> method = {};  ///< that which suits the scene if there is none
+  std::optional<RenderMethod> method = {};  ///< nullopt: chosen for the scene
   std::int64_t max_scatterings = 0;         ///< 0: no limit
 };
 

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "grin/render/methods/analog_light.h"
+#include "grin/render/methods/forward_light.h"
 #include "grin/render/methods/path_kernels.h"
 #include "grin/render/transport/subpath.h"
 
@@ -15,7 +15,7 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// Of a light path, whose stretches are added to a map.
+/// Tally of a light path whose segments are added to a map.
 template <class Cells>
 class MapTally : public LightTally {
  public:
@@ -24,14 +24,14 @@ class MapTally : public LightTally {
       : LightTally(energy), cells_(cells), transport_(transport), sums_(sums), counts_(counts) {}
 
   Flight fly(const Space& space, const PathVertex& from, const Vec3& direction,
-             RandomStream& random, const Vec3* rise) {
+             RandomStream& random, const Vec3* log_gradient) {
     log_.clear();
-    const Flight flight = space.fly(from.point, direction, random, &log_, rise);
-    const double weight = from.weight * flight.stretched;
-    for (const FlightLeg& leg : log_) {
-      const ScatteringMedium& medium = transport_.medium(leg.start.part);
-      const double apart = std::max(cells_.spacing(), leg.length / most_points);
-      space.for_points(leg, apart, random,
+    const Flight flight = space.fly(from.point, direction, random, &log_, log_gradient);
+    const double weight = from.weight * flight.bias_weight;
+    for (const FlightSegment& segment : log_) {
+      const ScatteringMedium& medium = transport_.medium(segment.start.part);
+      const double apart = std::max(cells_.spacing(), segment.length / most_points);
+      space.for_points(segment, apart, random,
                        [&](const Vec3& x, double length) { add(x, weight * length, medium); });
     }
     return flight;
@@ -63,7 +63,7 @@ class MapTally : public LightTally {
 template <class Tally>
 void walk_light(const Transport& transport, const Space& space, RandomStream& random, Tally& tally,
                 TransportCounts& counts) {
-  LonePath alone;
+  UnsplitPath alone;
   const EndPosition end = transport.lights.sample_position(space, random);
   const PathVertex start = end_vertex(transport.strategies, end);
   const EndDirection first = transport.lights.sample_direction(end, random);
@@ -75,33 +75,34 @@ void walk_light(const Transport& transport, const Space& space, RandomStream& ra
 
 constexpr int fewest_pairs = 4, most_pairs = 256;
 constexpr std::uint64_t enough_flights = 1 << 16;
-constexpr int pilot_scatterings = 1 << 15;  // of a pilot's path, which need not end
+// largest number of scatterings of a path in a pilot run
+constexpr int pilot_scatterings = 1 << 15;
 
 struct Pilot {
   int pairs = 0;
-  bool is_cut = false;  // some path may have been longer
+  bool is_cut = false;  // whether some path may have been cut off by pilot_scatterings
   TransportCounts counts;
-  JoinPromises promises;  ///< [pair][sensor]
+  ExpectedConnections expected_connections;  ///< [pair][sensor]
 
   double flights_per_pair() const {
     return std::max(static_cast<double>(counts.flights) / pairs, 1.0);
   }
-  /// Sum over the pairs, of one sensor.
-  JoinPromise sum(std::size_t at, std::size_t sensors) const {
-    JoinPromise all;
-    for (std::size_t i = at; i < promises.size(); i += sensors) {
-      all.joins += promises[i].joins;
-      all.made += promises[i].made;
-      all.brought += promises[i].brought;
-      all.hits += promises[i].hits;
-      all.beams += promises[i].beams;
+  /// Returns the sum over the pairs for sensor number `at`.
+  ExpectedConnection sum(std::size_t at, std::size_t sensors) const {
+    ExpectedConnection all;
+    for (std::size_t i = at; i < expected_connections.size(); i += sensors) {
+      all.considered += expected_connections[i].considered;
+      all.made += expected_connections[i].made;
+      all.contributed += expected_connections[i].contributed;
+      all.hits += expected_connections[i].hits;
+      all.beams += expected_connections[i].beams;
     }
     return all;
   }
 };
 
-/// The same pairs each time, with the levels of joins that the transport has: up to so many, so
-/// many at once.
+/// Runs a deterministic pilot of up to `pairs` pairs of light path and sensor paths, at_once in
+/// each call of the kernel, with the current roulette thresholds of the transport.
 Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins,
             int pairs = most_pairs, int at_once = 1) {
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max();
@@ -115,45 +116,48 @@ Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins
   for (; found.pairs < pairs; found.pairs += at_once) {
     if (found.pairs >= fewest_pairs && found.counts.flights >= enough_flights) break;
     const std::uint64_t before = found.counts.flights;
-    kernel(at_once, random, film, found.counts, &found.promises);
+    kernel(at_once, random, film, found.counts, &found.expected_connections);
     found.is_cut |= found.counts.flights - before >= pilot_scatterings;
   }
   transport.max_scatterings = limit;
   return found;
 }
 
-Pilot pilot_without_joins(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
-  for (double& level : transport.join_levels) level = std::numeric_limits<double>::infinity();
-  transport.beam_levels = transport.join_levels;
+Pilot pilot_without_connections(Transport& transport, const PathKernel& kernel,
+                                const TimeBins& bins) {
+  for (double& level : transport.connection_levels) level = std::numeric_limits<double>::infinity();
+  transport.beam_levels = transport.connection_levels;
   return pilot(transport, kernel, bins);
 }
 
-/// Joins to beams that bring next to nothing beside others only cost time.
-bool pay_joins_to_beams(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
+/// Whether connections to beams contribute enough to justify their cost.
+bool pay_connections_to_beams(Transport& transport, const PathKernel& kernel,
+                              const TimeBins& bins) {
   constexpr double next_to_nothing = 0.01;
   const std::size_t sensors = transport.sensors.size();
   for (double& level : transport.beam_levels) level = 0;
   const Pilot with = pilot(transport, kernel, bins, 64 * most_pairs);
   for (std::size_t at = 0; at < sensors; ++at) {
-    const JoinPromise sum = with.sum(at, sensors);
-    if (sum.beams > next_to_nothing * (sum.joins + sum.hits)) return true;
+    const ExpectedConnection sum = with.sum(at, sensors);
+    if (sum.beams > next_to_nothing * (sum.considered + sum.hits)) return true;
   }
   return false;
 }
 
-/// What joins to each sensor bring over what they promise, by some tens of them; never less than 1,
-/// as few joins bring most.
-std::vector<double> returns_of_joins(Transport& transport, const PathKernel& kernel,
-                                     const TimeBins& bins, const Pilot& without) {
-  constexpr double joins = 64, most = 1e6;
+/// Returns the ratio of actual to expected contribution of connections to each sensor, measured
+/// with some tens of connections. The result is at least 1: a smaller ratio is not reliable, since
+/// few connections contribute most.
+std::vector<double> returns_of_connections(Transport& transport, const PathKernel& kernel,
+                                           const TimeBins& bins, const Pilot& without) {
+  constexpr double some = 64, most = 1e6;
   const std::size_t sensors = transport.sensors.size();
   for (std::size_t at = 0; at < sensors; ++at)
-    transport.join_levels[at] = without.sum(at, sensors).joins / joins;
+    transport.connection_levels[at] = without.sum(at, sensors).considered / some;
   const Pilot with = pilot(transport, kernel, bins);
   std::vector<double> returns;
   for (std::size_t at = 0; at < sensors; ++at) {
-    const JoinPromise sum = with.sum(at, sensors);
-    const double brings = sum.brought / sum.made;
+    const ExpectedConnection sum = with.sum(at, sensors);
+    const double brings = sum.contributed / sum.made;
     returns.push_back(brings > 1 ? std::min(brings, most) : 1);
   }
   return returns;
@@ -163,48 +167,54 @@ double known_flights(const Pilot& pilot) {
   return pilot.is_cut ? std::numeric_limits<double>::infinity() : pilot.flights_per_pair();
 }
 
-/// Without the few that promise most: what is near an end is rare, and would decide alone. 0 to
-/// rounding where all are the same: so is the level of joins then.
-double trimmed_variance(std::vector<double> promises) {
-  std::sort(promises.begin(), promises.end());
-  promises.resize(promises.size() - std::max<std::size_t>(1, promises.size() / 64));
-  const double n = static_cast<double>(promises.size());
-  const double mean = std::accumulate(promises.begin(), promises.end(), 0.0) / n;
+/// Variance without the largest 1/64 of the values: contributions near an endpoint are rare and
+/// would dominate. If all values are equal, it is 0 to rounding, and so is the roulette threshold.
+double trimmed_variance(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  values.resize(values.size() - std::max<std::size_t>(1, values.size() / 64));
+  const double n = static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / n;
   const auto add_square = [&](double sum, double x) { return sum + (x - mean) * (x - mean); };
-  return std::accumulate(promises.begin(), promises.end(), 0.0, add_square) / n;
+  return std::accumulate(values.begin(), values.end(), 0.0, add_square) / n;
 }
 
-/// The latter alone, of paths without joins that go side by side, some at once.
+/// Returns the number of flights per path without connections, from batches of paths that can fill
+/// SIMD lanes.
 double flights_per_path(Transport& transport, const PathKernel& kernel, const TimeBins& bins) {
   constexpr int some = 64;
   return known_flights(pilot(transport, kernel, bins, some, some));
 }
 
-/// One vertex of a light path stands for all in a join: their mean number sets the share, and twice
-/// that how many are kept for joins. With more, bidirectional meets rare long paths that change its
-/// picture (white furnace of optical depth 200); with fewer, a pinhole in thick fog under a beam
-/// gains little from joins. A pair costs F flights and varies by V. Joins of the promise S, which
-/// bring r S, at a level L add r^2 L S to V and cost c S/L flights; variance times cost is least at
-/// (r L)^2 = c V / F, both without joins.
-double tune_joins(Transport& transport, const PathKernel& kernel, const TimeBins& bins,
-                  double flights_per_join) {
-  const Pilot first = pilot_without_joins(transport, kernel, bins);
+/// Sets the connection parameters of a transport by pilot runs; returns flights per pair. In a
+/// connection one vertex of a light path represents all its vertices, so that connected_fraction is
+/// 1 / (mean number of collisions). About twice as many vertices as the mean number of collisions
+/// are kept. If more were kept, bidirectional tracing would have rare long paths of high weight
+/// (white furnace of optical depth 200). If fewer were kept, a pinhole in thick fog under a beam
+/// would gain little from connections. The thresholds minimise variance times cost: without
+/// connections a pair costs F flights and has variance V. Connections of expected contribution S
+/// and actual contribution r S, at a threshold L and a cost of c flights each, add r^2 L S to the
+/// variance and c S/L flights to the cost. The product is least at (r L)^2 = c V / F.
+double tune_connections(Transport& transport, const PathKernel& kernel, const TimeBins& bins,
+                        double flights_per_connection) {
+  const Pilot first = pilot_without_connections(transport, kernel, bins);
   const double collisions = static_cast<double>(first.counts.light_collisions) / first.pairs;
-  transport.strategies.joined_share = std::min(1.0, 1 / collisions);
+  transport.strategies.connected_fraction = std::min(1.0, 1 / collisions);
   transport.strategies.kept = 1 - 1 / (2 + 2 * collisions);
-  if (transport.strategies.joins_beams && !transport.strategies.short_light)
-    transport.strategies.joins_beams = pay_joins_to_beams(transport, kernel, bins);
-  const Pilot second = pilot_without_joins(transport, kernel, bins);
-  const auto returns = returns_of_joins(transport, kernel, bins, second);
+  if (transport.strategies.connects_beams && !transport.strategies.short_light)
+    transport.strategies.connects_beams = pay_connections_to_beams(transport, kernel, bins);
+  const Pilot second = pilot_without_connections(transport, kernel, bins);
+  const auto returns = returns_of_connections(transport, kernel, bins, second);
   const std::size_t sensors = transport.sensors.size();
   for (std::size_t at = 0; at < sensors; ++at) {
     std::vector<double> expected;
-    for (std::size_t i = at; i < second.promises.size(); i += sensors)
-      expected.push_back(returns[at] * second.promises[i].joins + second.promises[i].hits);
-    transport.join_levels[at] =
-        std::sqrt(flights_per_join * trimmed_variance(expected) / second.flights_per_pair()) /
+    for (std::size_t i = at; i < second.expected_connections.size(); i += sensors)
+      expected.push_back(returns[at] * second.expected_connections[i].considered +
+                         second.expected_connections[i].hits);
+    transport.connection_levels[at] =
+        std::sqrt(flights_per_connection * trimmed_variance(expected) / second.flights_per_pair()) /
         returns[at];
-    transport.beam_levels[at] = transport.join_levels[at] / 10;  // they bring very unequal amounts
+    // contributions of connections to beams vary strongly
+    transport.beam_levels[at] = transport.connection_levels[at] / 10;
   }
   return known_flights(second);
 }
@@ -218,7 +228,7 @@ Strategies strategies(const RenderScene& scene, RenderMethod method) {
   const bool has_beam = std::any_of(scene.lights.begin(), scene.lights.end(), is_beam);
   return {.short_light = method == RenderMethod::path,
           .short_sensor = is_light,
-          .joins_beams = has_beam && !is_light};
+          .connects_beams = has_beam && !is_light};
 }
 
 int path_limit(const RenderRequest& request) {
@@ -232,7 +242,8 @@ double index_at(const RenderScene& scene, const PathPoint& p) {
   return std::visit([&](const auto& field) { return index(field, p.x); }, scene.field);
 }
 
-/// Of light that stays in a guide between the lowest and the highest index, rad.
+/// Returns the largest angle, in rad, between light guided by the index field and the axis of the
+/// guide; it follows from the range of the index.
 double bending_of(const RenderScene& scene) {
   return scene.index ? std::sqrt(2 * (scene.index->highest / scene.index->lowest - 1)) : 0;
 }
@@ -275,8 +286,8 @@ RenderPlan render_plan(const RenderScene& scene) {
   return plan;
 }
 
-bool can_be_analog(const RenderScene& scene) {
-  const auto ends = sensor_ends(scene.sensors, scene.stage);
+bool can_be_forward(const RenderScene& scene) {
+  const auto ends = sensor_endpoints(scene.sensors, scene.stage);
   return std::all_of(ends.begin(), ends.end(),
                      [](const SensorEnd& end) { return end.can_be_hit(); });
 }
@@ -287,7 +298,7 @@ std::shared_ptr<Transport> transport_of(const RenderScene& scene, const RenderRe
   return std::make_shared<Transport>(Transport{
       .stage = scene.stage,
       .lights = StageLights(scene.lights, scene.stage, index),
-      .sensors = sensor_ends(scene.sensors, scene.stage),
+      .sensors = sensor_endpoints(scene.sensors, scene.stage),
       .strategies = strategies(scene, method),
       .max_scatterings = path_limit(request),
   });
@@ -325,7 +336,8 @@ void Tracers::find_motion() {
       scene_.field, scene_.stage, options(Spreading::none), scene_.parameters, std::move(edges)});
 }
 
-/// The same for all methods: a search for ways to them may take longer than a pilot.
+/// Makes the kernel of unscattered beams once for all methods, since the search for connections to
+/// beams may take longer than a pilot run.
 void Tracers::find_beams() {
   const auto transport = transport_of(scene_, request_, RenderMethod::bidirectional);
   if (!(transport->lights.beam_power() > 0)) return;
@@ -340,7 +352,7 @@ void Tracers::find_beams() {
 Tracer Tracers::make(RenderMethod method) const {
   Tracer tracer = untuned(method);
   tracer.unscattered_beams = unscattered_beams_;
-  if (method == RenderMethod::analog) tracer.rays_per_path = few_rays_per_path_;
+  if (method == RenderMethod::forward) tracer.rays_per_path = few_rays_per_path_;
   if (!walks_) {
     tracer.kernel = nullptr;
     return tracer;
@@ -352,8 +364,8 @@ Tracer Tracers::make(RenderMethod method) const {
 double Tracers::flights(const Tracer& tracer) const {
   const auto& [method, transport, kernel] =
       std::tie(tracer.method, tracer.transport, tracer.kernel);
-  if (method == RenderMethod::analog) return flights_per_path(*transport, kernel, scene_.bins);
-  return tune_joins(*transport, kernel, scene_.bins, tracer.flights_per_join);
+  if (method == RenderMethod::forward) return flights_per_path(*transport, kernel, scene_.bins);
+  return tune_connections(*transport, kernel, scene_.bins, tracer.flights_per_connection);
 }
 
 MapKernel Tracers::map_kernel() const {
@@ -387,10 +399,11 @@ SpaceOptions Tracers::options(Spreading spreading) const {
   return {scene_.step, scene_.max_length, spreading, scene_.leapfrogs};
 }
 
-/// Of its flights: weights of light tracing ask for it at the last one alone. That is flown a
-/// second time, which pays where many come before it.
+/// Returns the flights of a method for which |J| is computed. Light tracing needs |J| only for the
+/// last flight, which is then traced a second time; this pays off if there are many flights before
+/// it.
 Spreading Tracers::spreading_of(RenderMethod method) const {
-  if (method == RenderMethod::analog) return Spreading::none;
+  if (method == RenderMethod::forward) return Spreading::none;
   if (method != RenderMethod::light || !plan_.curved) return Spreading::all;
   constexpr double many = 6;  // scattering depth
   const Part part = scene_.stage.field_part();
@@ -404,14 +417,15 @@ Tracer Tracers::untuned(RenderMethod method) const {
   if (!plan_.curved) transport->depth = depth_;
   const std::shared_ptr<const Space> space =
       make_space(scene_.field, scene_.stage, options(spreading_of(method)));
-  if (method == RenderMethod::analog)
-    return {method, transport,
-            analog_kernel(transport, space, SensorAim::of(*transport, *space, bending_of(scene_)),
-                          scene_.random_phase, moving_)};
+  if (method == RenderMethod::forward)
+    return {
+        method, transport,
+        forward_kernel(transport, space, SensorTarget::of(*transport, *space, bending_of(scene_)),
+                       scene_.random_phase, moving_)};
   Tracer tracer{method, transport, path_kernel(plan_, transport, space, scene_.random_phase)};
   if (!plan_.curved) return tracer;
-  tracer.flights_per_join = space->cost_of_join();
-  tracer.cost_of_closed_join = space->cost_of_closed_join();
+  tracer.flights_per_connection = space->cost_of_connection();
+  tracer.cost_of_closed_connection = space->cost_of_closed_connection();
   tracer.spreading = spreading_of(method);
   return tracer;
 }

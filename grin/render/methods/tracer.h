@@ -14,65 +14,69 @@
 
 namespace flatspeckle::grin {
 
-/// Adds so many light paths to the sums of a map: [cell][fluence rate, absorbed power density], and
-/// what became of their power. Each stretch of a path counts by its length in a cell (track-length
-/// estimator), which points along it find.
+/// Adds light paths to the sums of a map, [cell][fluence rate, absorbed power density], and their
+/// power to an energy balance. Each segment of a path contributes to a cell in proportion to its
+/// length in the cell (track-length estimator). Lengths are sampled by points along the segment.
 using MapKernel = std::function<void(int paths, RandomStream& random, std::span<Complex> sums,
                                      EnergyBalance& energy, TransportCounts& counts)>;
 inline constexpr std::size_t sums_per_cell = 2;
 
-/// random_phase: each light path meets its own phase of the sound.
+/// Makes the kernel of a map. random_phase: each light path has a random phase of the sound.
 MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> transport,
                      std::shared_ptr<const Space> space, bool random_phase);
 
-/// The least plan that a scene allows.
+/// Returns the plan that has only the features that a scene needs.
 RenderPlan render_plan(const RenderScene& scene);
 
-/// Of sensors that light can hit.
-bool can_be_analog(const RenderScene& scene);
+/// Whether forward tracing is possible: light can hit all sensors.
+bool can_be_forward(const RenderScene& scene);
 
-/// Lights and sensors for a method; throws InputError where they do not fit the stage.
+/// Makes lights and sensors for a method; throws InputError if they do not fit the stage.
 std::shared_ptr<Transport> transport_of(const RenderScene& scene, const RenderRequest& request,
                                         RenderMethod method);
 
-/// What draws light by one method.
+/// Renders by one method.
 struct Tracer {
   RenderMethod method;
   std::shared_ptr<Transport> transport;
-  PathKernel kernel;                   ///< empty where paths would bring nothing
-  BeamsKernel unscattered_beams = {};  ///< where the kernel leaves that out and there is some
-  double rays_per_path = 1;            ///< of them
-  /// Of a light path and its sensor paths; infinity where they were too long to be walked.
+  PathKernel kernel;  ///< empty if paths would contribute nothing
+  BeamsKernel unscattered_beams =
+      {};                    ///< unscattered light of beams, if any; the kernel leaves it out
+  double rays_per_path = 1;  ///< rays of unscattered beams per path
+  /// Mean flights of a light path and its sensor paths; infinity if they exceed the pilot's limit.
   double flights_per_pair = 1;
-  /// Less than what one costs, as a level of joins too low only costs time.
-  double flights_per_join = 0.1;
-  double cost_of_closed_join = 0;  ///< in flights; 0 of joins by iterations
+  /// Cost of a connection in flights, used to tune the connections. It is a low estimate, since a
+  /// roulette threshold that is too low only costs time.
+  double flights_per_connection = 0.1;
+  /// Cost of a connection in closed form, in flights; 0 if connections are found by iteration.
+  double cost_of_closed_connection = 0;
   Spreading spreading = Spreading::all;
 
   void add(int paths, RandomStream& random, Film& film, TransportCounts& counts) const;
 };
 
-/// Makes the tracers of a scene. Refers to scene and request.
+/// Makes the tracers of a scene. Holds references to scene and request.
 class Tracers {
  public:
   Tracers(const RenderScene& scene, const RenderRequest& request);
 
-  /// Walks a few paths to tune it.
+  /// Makes the tracer of a method and tunes it by a pilot run.
   Tracer make(RenderMethod method) const;
 
-  /// Nothing where the scene asks for no map.
+  /// Returns an empty kernel if the scene has no map.
   MapKernel map_kernel() const;
 
-  /// At the most, against a flight of twenty steps, or of none in uniform media: long curved ones
-  /// cost more, and those through grids with many tentative collisions.
+  /// Upper estimate of the cost of a flight. The unit is a curved flight of twenty steps, or a
+  /// straight flight in uniform media; long curved flights and tentative collisions in density
+  /// grids cost more.
   double cost_of_flight() const;
-  /// Of curved rays in the stage's medium, roughly.
+  /// Approximate number of steps of a curved flight in the stage's medium.
   double steps_of_flight() const;
 
-  /// Whether light paths book their drift.
-  bool has_drift() const { return depth_ && depth_->drift(); }
+  /// Whether light paths accumulate the control variate.
+  bool has_control_variate() const { return depth_ && depth_->control_variate(); }
 
-  /// Light paths: else beams are all the light, and nothing scatters it.
+  /// Whether paths are traced; if not, all lights are beams and nothing scatters.
   bool walks() const { return walks_; }
 
   const RenderScene& scene() const { return scene_; }
@@ -83,7 +87,7 @@ class Tracers {
   void find_motion();
   void find_beams();
   Tracer untuned(RenderMethod method) const;
-  /// Of a pair, as a pilot has it that tunes joins.
+  /// Tunes the connections by pilot runs; returns the flights per pair.
   double flights(const Tracer& tracer) const;
   SpaceOptions options(Spreading spreading) const;
   Spreading spreading_of(RenderMethod method) const;
@@ -92,10 +96,12 @@ class Tracers {
   const RenderRequest& request_;
   RenderPlan plan_;
   bool walks_ = true;
-  std::shared_ptr<const DepthImportance> depth_;  ///< where the plan is deep
-  std::shared_ptr<const MovingField> moving_;     ///< where the scene has parameters
-  BeamsKernel unscattered_beams_ = {};            ///< where there are beams
-  double few_rays_per_path_ = 1;                  ///< where paths cost no more than they do
+  std::shared_ptr<const DepthImportance> depth_;  ///< set if the plan is deep
+  /// Set if derivatives by parameters of the field are requested (gradient_by).
+  std::shared_ptr<const MovingField> moving_;
+  BeamsKernel unscattered_beams_ = {};  ///< set if there are beams
+  /// Tracer::rays_per_path for forward tracing, whose paths are as cheap as rays
+  double few_rays_per_path_ = 1;
 };
 
 }  // namespace flatspeckle::grin

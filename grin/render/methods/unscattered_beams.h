@@ -8,31 +8,33 @@
 
 namespace flatspeckle::grin {
 
-// The light of beams that reaches the sensor without a collision. Walks leave it out
-// (Bidirectional), and it is summed apart: with its transmittance instead of by chance, by rays
-// from points spread evenly over the beams (in a square a lattice of the golden ratio, on a disk
-// its spiral; shifted at random for each batch), and by ways from the sensors back to the beams
-// (beam_search.cpp), which find a pinhole and the glints in a small lens.
+// Unscattered light of beams that reaches the sensors. Path estimators leave it out
+// (Bidirectional), and it is estimated separately, with its transmittance as weight instead of
+// sampled collisions. Two strategies are combined. Rays start at points spread evenly over the
+// beams: a golden-ratio lattice in the unit square, which becomes a spiral on the disk, shifted at
+// random for each batch. Connections lead from the sensors back to the beams (beam_search.cpp);
+// they also reach pinholes, and find glints in a small lens.
 //
-// The space is that of without_scattering(stage), where each flight goes to the boundary.
+// The functions require the space of without_scattering(stage), in which each flight ends on the
+// boundary.
 
 struct BeamsRequest {
-  bool random_phase = false;  ///< each ray meets its own phase of the sound
-  bool books = false;         ///< where the power of rays goes, as nothing else does
-  std::shared_ptr<const MovingField> moving =
-      nullptr;  ///< where there are derivatives by its parameters
+  bool random_phase = false;   ///< each ray has a random phase of the sound
+  bool tallies_power = false;  ///< whether rays tally the power of beams, since no paths do
+  /// Set if derivatives by parameters of the field are requested (gradient_by).
+  std::shared_ptr<const MovingField> moving = nullptr;
 };
 
-/// So many rays, each of which stands for `worth` light paths.
-using BeamsKernel = std::function<void(int rays, double worth, RandomStream& random, Film& film,
-                                       TransportCounts& counts)>;
+/// Adds rays, each of which represents paths_per_ray light paths.
+using BeamsKernel = std::function<void(int rays, double paths_per_ray, RandomStream& random,
+                                       Film& film, TransportCounts& counts)>;
 
 BeamsKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
                          std::shared_ptr<const Space> space);
 
-/// Rays that a light path that is only counted where it hits (analog_light.h) needs beside it. The
-/// less light is left to them, the fewer; as they are spread evenly, their error falls faster than
-/// that of paths.
+/// Returns the number of rays per path of forward tracing (forward_light.h). It decreases with the
+/// unscattered fraction of the light. At most one ray per path is needed: rays are stratified, so
+/// that their error decreases faster with their number than that of paths.
 double rays_beside_path(const StageLights& lights, const Space& space);
 
 /// Whether there are beams, and a sensor that their rays can hit.

@@ -15,7 +15,7 @@ namespace {
 
 std::vector<DatasetRow> rows_of_values(const std::string& axes) {
   return {{"map/fluence", Data::estimate, axes, "1/length^2",
-           "fluence rate: radiance over all directions, for powers as the lights have them"},
+           "fluence rate: radiance integrated over all directions, for the powers of the lights"},
           {"map/absorbed", Data::estimate, axes, "1/length^3", "absorbed power density"}};
 }
 
@@ -25,7 +25,7 @@ std::vector<DatasetRow> operator+(std::vector<DatasetRow> rows,
   return rows;
 }
 
-/// As the rows of a picture: cells next to each other along the last axis.
+/// Returns the cells as rows and columns of a picture, with the last axis as columns.
 PixelGrid rows_of(const LightMap& map) {
   const int columns = std::visit([](const auto& of) { return of.counts().back(); }, map);
   return {columns, cells(map) / columns};
@@ -62,7 +62,7 @@ const DatasetTable box_map_table{
 const DatasetTable ring_map_table{
     "map of rings",
     std::vector<DatasetRow>{
-        {"map/radius", Data::scale, "", "length", "middle between the radii of the ring"},
+        {"map/radius", Data::scale, "", "length", "mean of the inner and outer radius of the ring"},
         {"map/depth", Data::scale, "", "length", "middle of the ring along the axis"}} +
         rows_of_values("map/radius map/depth")};
 

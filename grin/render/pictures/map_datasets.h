@@ -8,15 +8,16 @@ namespace flatspeckle::grin {
 
 extern const DatasetTable box_map_table, ring_map_table;
 
-/// Means of the first value of each cell.
+/// Returns the means of the first sum of each cell.
 std::vector<Complex> map_means(double samples, std::span<const Complex> sums, std::size_t cells);
 
-/// [cell], of sums of which those of a map begin at `first`.
+/// Return the fluence rate and the absorbed power density in each cell. first: index of the map's
+/// first sum among the sums of a batch.
 Estimate fluence(const GroupedSums& sums, std::size_t first, const LightMap& map);
 Estimate absorbed(const GroupedSums& sums, std::size_t first, const LightMap& map);
 
-/// Writes the map of a scene that has one: fluence, and absorbed power, which is 0 without
-/// absorption.
+/// Writes the fluence rate and the absorbed power density of a scene's map; the scene must have
+/// one. The absorbed power is 0 without absorption.
 void write_map(ResultFile& file, const RenderScene& scene, const RenderJob& job,
                const GroupedSums& sums);
 

@@ -8,7 +8,7 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// theta(samples, sums): powers within each ring's outer edge.
+/// Returns the estimator of the powers within the outer edge of each ring.
 Estimator nested_powers(std::vector<double> areas, std::size_t first_pixel, const TimeBins& bins) {
   const auto stride = static_cast<std::size_t>(bins.sums());
   const auto parts = static_cast<std::size_t>(bins.parts());
@@ -24,7 +24,8 @@ Estimator nested_powers(std::vector<double> areas, std::size_t first_pixel, cons
   };
 }
 
-/// Of the means of groups (GroupedSums), where theta is linear in the sums.
+/// Returns the covariance of the means of theta, from its values for the single groups
+/// (GroupedSums). The estimator theta must be linear in the sums.
 std::vector<double> covariance_of_means(const GroupedSums& sums, const Estimator& theta,
                                         const std::vector<Complex>& mean) {
   const std::size_t count = mean.size();
@@ -42,7 +43,8 @@ std::vector<double> covariance_of_means(const GroupedSums& sums, const Estimator
   return covariance;
 }
 
-/// So that its diagonal is that of the errors, which may be better than those of means.
+/// Scales a covariance so that its diagonal agrees with the squares of the errors. These errors may
+/// be smaller than those of plain means, for which the covariance was computed.
 void scale_to(const std::vector<double>& errors, std::vector<double>& covariance) {
   const std::size_t count = errors.size();
   std::vector<double> factor;
@@ -77,7 +79,8 @@ std::optional<PowersWithin> powers_within(
 
 double largest_error(const PowersWithin& powers, double power_of_light) {
   const double value = powers.power.value.back().real(), error = powers.power.error.back();
-  const double least = powers.power.rare.back() == 0 ? 2 : 10;  // errors
+  // required power in units of its error
+  const double least = powers.power.rare.back() == 0 ? 2 : 10;
   if (!(value > 0 && least * error < value)) return std::numeric_limits<double>::infinity();
   double largest = 0;
   for (std::size_t i = 0; i < powers.radii.size(); ++i) {

@@ -10,23 +10,25 @@
 
 namespace flatspeckle::grin {
 
-/// Powers on disks within each other, from the same light paths.
+/// Powers on nested disks, from the same light paths.
 struct PowersWithin {
   std::vector<double> radii;
   Estimate power;
-  std::vector<double> covariance;  ///< [disk][disk], of the errors
+  std::vector<double> covariance;  ///< covariance [disk][disk] of the errors
 };
 
-/// Of a sensor that lists radii (RadialDetector), whose first pixel is that of a batch's sums;
-/// nothing of others. estimate: jackknife(), or what is better.
+/// Returns the powers of a sensor that lists radii (RadialDetector), nullopt for others.
+/// first_pixel: first pixel of the sensor in the sums of a batch. estimate: jackknife(), or a
+/// better estimator.
 std::optional<PowersWithin> powers_within(
     const Sensor& sensor, std::size_t first_pixel, const TimeBins& bins, const GroupedSums& sums,
     const std::function<Estimate(const GroupedSums&, const Estimator&)>& estimate);
 
-/// The largest of the errors, each relative to its power or, if that is less, to a hundredth of the
-/// light's: a disk on which hardly any light falls need not be known as well as the others.
-/// Infinite where the power on the largest disk is not twice its error, or ten times that where a
-/// few paths bring it: darkness is not known by not having found light.
+/// Returns the largest relative error of the powers. Each error is divided by the power on the
+/// disk, or by a hundredth of the power of the lights if that is larger: dark disks need less
+/// accuracy. Returns infinity if the power on the largest disk is less than twice its error, or
+/// less than ten times its error if it is undersampled, since few paths that found little light do
+/// not prove that the disk is dark.
 double largest_error(const PowersWithin& powers, double power_of_light);
 
 }  // namespace flatspeckle::grin

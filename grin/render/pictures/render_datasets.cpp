@@ -16,12 +16,12 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// The pixels of a sensor among the sums of all.
+/// Locates the sums of one sensor's pixels among the sums of all sensors.
 struct PixelSums {
   const TimeBins& bins;
   std::size_t first_pixel, pixels;
 
-  /// The sum of this number of each.
+  /// Returns the mean of sum `number` of each pixel.
   std::vector<Complex> means(double samples, std::span<const Complex> all, int number) const {
     const auto stride = static_cast<std::size_t>(bins.sums());
     std::vector<Complex> own;
@@ -31,7 +31,8 @@ struct PixelSums {
   }
 };
 
-/// Of [parameter of the medium]: what `of` makes of the derivatives of all pixels.
+/// Estimates, for each parameter of the medium, the values that `of` computes from the derivatives
+/// of all pixels.
 template <class Of>
 Estimate by_medium(const PixelSums& pixels, const GroupedSums& sums, const Of& of) {
   return jackknife(sums, [&](double samples, std::span<const Complex> all) {
@@ -45,12 +46,12 @@ Estimate by_medium(const PixelSums& pixels, const GroupedSums& sums, const Of& o
   });
 }
 
-/// What each width of edges makes of a derivative, and its differences from the next narrower ones,
-/// [width or pair][entry].
+/// Derivatives for each smoothing width of pixel edges, then the differences between pairs of
+/// widths (for_pairs): [width or pair][entry].
 using PowersByWidth = std::vector<std::vector<Complex>>;
 constexpr std::size_t width_count = edge_widths;
 
-/// use(width, a narrower one).
+/// Calls use(width, narrower width) for all compared pairs.
 template <class Use>
 void for_pairs(const Use& use) {
   constexpr std::size_t compared = 2;
@@ -66,14 +67,15 @@ void append_differences(PowersByWidth& widths) {
   });
 }
 
-/// How far a difference of two widths is from 0 beyond what chance makes of it, squared.
+/// Returns the part of the squared difference between two widths that exceeds its squared
+/// statistical error.
 double excess(double difference, double error) {
   return std::max(0.0, difference * difference - error * error);
 }
 
-/// The squared error of each width that has a narrower one. It has what the width does, as far as
-/// narrower ones tell: the largest difference from one of them beyond chance, and as much as chance
-/// leaves open of that from the next.
+/// Returns the squared error of each width except the narrowest. It is the sum of three squares:
+/// the statistical error of the value, that of its difference from the next narrower width, and the
+/// bias, which is the largest difference from narrower widths in excess of its statistical error.
 std::array<double, width_count - 1> squared_errors(
     const std::function<double(std::size_t)>& value,
     const std::function<double(std::size_t)>& error) {
@@ -88,8 +90,8 @@ std::array<double, width_count - 1> squared_errors(
   return squares;
 }
 
-/// Of the estimates of PowersByWidth, entry after entry `count` apart: the width with the smallest
-/// error.
+/// Appends to `best`, for one entry, the estimate at the smoothing width with the smallest error.
+/// In `widths` the estimates of this entry at successive widths are `count` apart (PowersByWidth).
 void append_best(const Estimate& widths, std::size_t first, std::size_t count, Estimate& best) {
   const auto at = [&](std::size_t column) { return first + column * count; };
   const auto squares =
@@ -102,7 +104,8 @@ void append_best(const Estimate& widths, std::size_t first, std::size_t count, E
   best.rare.push_back(widths.rare.empty() ? 0 : widths.rare[chosen]);
 }
 
-/// Of [parameter of the field].
+/// Estimates, for each parameter of the field, the values that `of` computes from the derivatives
+/// of all pixels.
 template <class Of>
 Estimate by_field(const PixelSums& pixels, const GroupedSums& sums, const Of& of) {
   std::size_t columns = width_count;
@@ -130,13 +133,15 @@ Estimate by_field(const PixelSums& pixels, const GroupedSums& sums, const Of& of
   return best;
 }
 
-/// Fates in the order of their rows.
-bool can_be(Fate fate, const RenderScene& scene, const RenderRequest& request) {
-  if (fate == Fate::absorbed_body || fate == Fate::specular) return !scene.stage.bodies.empty();
-  return fate != Fate::cut || request.max_scatterings > 0;
+/// Whether a termination is possible in a scene.
+bool can_be(Termination termination, const RenderScene& scene, const RenderRequest& request) {
+  if (termination == Termination::absorbed_body || termination == Termination::specular)
+    return !scene.stage.bodies.empty();
+  return termination != Termination::cut || request.max_scatterings > 0;
 }
 
-/// The pixels of one sensor among all, and what is kept of each.
+/// The pixels of one sensor, the number of the first among the pixels of all sensors, and the
+/// layout of their sums.
 struct Pixels {
   SensorPixels of;
   std::size_t first;
@@ -151,7 +156,8 @@ Complex sum(std::span<const Complex> values) {
   return std::accumulate(values.begin(), values.end(), Complex());
 }
 
-/// Of as many entries per pixel.
+/// Returns the entries of one sensor from an estimate for all sensors. per_pixel: number of entries
+/// per pixel.
 Estimate own_part(const Estimate& all, const Pixels& pixels, std::size_t per_pixel) {
   if (all.value.empty()) return {};
   Estimate own = part(all, pixels.first * per_pixel, pixels.count() * per_pixel);
@@ -159,7 +165,7 @@ Estimate own_part(const Estimate& all, const Pixels& pixels, std::size_t per_pix
   return own;
 }
 
-/// theta(samples, sums of all pixels, each by its share of the area).
+/// Applies theta to the sums over all pixels of a sensor, weighted by their shares of the area.
 Estimator of_all_pixels(const Pixels& pixels, const Estimator& theta) {
   return [=](double samples, std::span<const Complex> all) {
     std::vector<Complex> means(pixels.sums());
@@ -195,7 +201,7 @@ void add_pulses(SensorResult& result, const RenderJob& job, const GroupedSums& s
   result.pulse_after = bounded(part(parts, 1 + bins, 1));
 }
 
-/// Of sums that end in the moments; 0 without light.
+/// Returns mean and mean squared optical path from sums that contain moments; 0 without light.
 std::array<Complex, 2> path_means(const Pixels& pixels, std::span<const Complex> sums) {
   const Complex light = sum(sums.first(pixels.parts()));
   if (light == 0.0) return {};
@@ -242,7 +248,7 @@ void write_bins(const ResultGroup& root, const TimeBins& bins,
     root.put("time", column(paths, [&](double path) { return path * *length_unit / light_speed; }));
 }
 
-/// Of pairs: every first, and every second.
+/// Writes `pairs` of mean and mean squared optical path as two datasets, one for each.
 void put_paths(const ResultGroup& group, const std::string& name, const Estimate& pairs) {
   for (const bool square : {false, true}) {
     Estimate one;
@@ -291,8 +297,9 @@ void write_sensor(const ResultGroup& group, const SensorPixels& pixels,
   put_paths(group, "mean", result.paths);
 }
 
-/// What fails its invariant is off by as much as that is.
-void doubt(const LightCheck& check, double area, SensorResult& result) {
+/// If the LightCheck of a sensor fails, raises the errors of the sensor to the deviation that the
+/// check has found.
+void widen_errors(const LightCheck& check, double area, SensorResult& result) {
   if (check.holds()) return;
   const auto widen = [](Estimate& one, double off) {
     one.error[0] = std::max(one.error[0], off);
@@ -311,7 +318,7 @@ void write_counts(ResultFile& file, const TransportCounts& counts) {
   const ResultGroup root(file, render_table);
   root.put("transport/flights", counts.flights);
   root.put("transport/lost_flights", counts.lost_flights);
-  root.put("transport/joins", counts.joins);
+  root.put("transport/joins", counts.connections_made);
   root.put("transport/lost_values", counts.lost_values);
   if (!counts.connections.pairs) return;
   write_trials(file, counts.connections);
@@ -353,17 +360,17 @@ std::vector<std::string> gradient_names(const RenderScene& scene) {
 
 const DatasetTable energy_table{
     "energy",
-    {{"energy/emitted", Data::estimate, "", "1", "power of the lights, as light paths drew it"},
-     {"energy/absorbed_stage", Data::estimate, "", "1", "absorbed in the stage, but for bodies"},
+    {{"energy/emitted", Data::estimate, "", "1", "power of the lights, as sampled by light paths"},
+     {"energy/absorbed_stage", Data::estimate, "", "1", "absorbed in the stage outside of bodies"},
      {"energy/absorbed_body", Data::estimate, "", "1", "absorbed in bodies"},
      {"energy/unscattered", Data::estimate, "", "1", "left the stage without a scattering"},
      {"energy/specular", Data::estimate, "", "1",
-      "the same, reflected at the surface of a body without having entered"},
-     {"energy/scattered", Data::estimate, "", "1", "left the stage after a scattering or more"},
+      "left the stage unscattered, reflected at the surface of a body without entering it"},
+     {"energy/scattered", Data::estimate, "", "1", "left the stage after one or more scatterings"},
      {"energy/lost", Data::estimate, "", "1", "in flights that were lost (transport/lost_flights)"},
-     {"energy/cut", Data::estimate, "", "1", "of paths that were cut by max_scatterings"},
+     {"energy/cut", Data::estimate, "", "1", "in paths that were cut by max_scatterings"},
      {"invariants/power", Data::invariant, "", "1",
-      "difference between the power that ended in any way and the emitted one, relative"}}};
+      "relative difference between the sum of all terminations and the emitted power"}}};
 
 std::optional<Estimate> energy_result(const RenderJob& job, const GroupedSums& sums) {
   if (!job.has_energy) return std::nullopt;
@@ -377,8 +384,8 @@ Invariant power_balance(const RenderJob& job, const GroupedSums& sums) {
   const Estimate ended =
       jackknife(sums, [first = job.pictures](double, std::span<const Complex> all) {
         const auto energy = all.subspan(first, EnergyBalance::size);
-        const Complex all_fates = std::reduce(energy.begin() + 1, energy.end());
-        return std::vector<Complex>{energy[0] == 0.0 ? 0.0 : all_fates / energy[0] - 1.0};
+        const Complex all_terminations = std::reduce(energy.begin() + 1, energy.end());
+        return std::vector<Complex>{energy[0] == 0.0 ? 0.0 : all_terminations / energy[0] - 1.0};
       });
   return {std::abs(ended.value[0]), outlier_errors(sums.groups()) * ended.error[0] + rounding};
 }
@@ -386,35 +393,36 @@ Invariant power_balance(const RenderJob& job, const GroupedSums& sums) {
 void write_energy(ResultFile& file, const RenderScene& scene, const RenderRequest& request,
                   const Estimate& energy) {
   const ResultGroup root(file, energy_table);
-  for (std::size_t fate = 0; fate < EnergyBalance::size; ++fate)
-    if (can_be(static_cast<Fate>(fate), scene, request))
-      root.put(energy_table.rows[fate].path, part(energy, fate, 1));
+  for (std::size_t termination = 0; termination < EnergyBalance::size; ++termination)
+    if (can_be(static_cast<Termination>(termination), scene, request))
+      root.put(energy_table.rows[termination].path, part(energy, termination, 1));
 }
 
 const DatasetTable render_table{
     .name = "render",
-    .rows = {{"optical_path", Data::scale, "", "length", "middle of the bin of optical path"},
-             {"time", Data::real, "optical_path", "s", "optical path over the speed of light"},
-             {"parameter", Data::numbers, "", "1",
-              "what derivatives are by: see the attribute names"},
-             {"transport/flights", Data::count, "", "1", "ways from one event to the next"},
-             {"transport/lost_flights", Data::count, "", "1",
-              "of these, too long, trapped or into an index that is not positive: they carry "
-              "nothing on"},
-             {"transport/joins", Data::count, "", "1",
-              "vertices of light and sensor that were joined"},
-             {"transport/lost_values", Data::count, "", "1",
-              "contributions that were not finite, left out"},
-             {"invariants/light", Data::invariant, "", "1",
-              "difference between the mean of a sensor and that of the light paths that hit it, or, "
-              "where rays of sensors alone are traced, of bidirectional ones, relative: of the "
-              "sensors the worst"}},
-    .attributes = {{"", "length_unit", "float64", "metres in a unit of length, where given"},
-                   {"", "mesh_volume", "float64", "that body_mesh encloses"},
-                   {"", "body_volume", "float64", "of the smooth body in its place"},
-                   {"parameter", "names", "texts",
-                    "mu_s, mu_a, g, as far as the medium has them (gradient); keys of the field "
-                    "(gradient_by)"}}};
+    .rows =
+        {{"optical_path", Data::scale, "", "length", "middle of the bin of optical path"},
+         {"time", Data::real, "optical_path", "s", "optical path over the speed of light"},
+         {"parameter", Data::numbers, "", "1",
+          "parameters of derivatives: see the attribute names"},
+         {"transport/flights", Data::count, "", "1", "free flights from one event to the next"},
+         {"transport/lost_flights", Data::count, "", "1",
+          "lost flights: too long, trapped or into an index that is not positive; their light is "
+          "missing"},
+         {"transport/joins", Data::count, "", "1",
+          "connections between vertices of light and sensor paths"},
+         {"transport/lost_values", Data::count, "", "1",
+          "contributions left out because they were not finite"},
+         {"invariants/light", Data::invariant, "", "1",
+          "relative difference between the mean of a sensor and that of the light paths that hit "
+          "it, or, for path tracing, that of bidirectional tracing; largest over the sensors"}},
+    .attributes = {
+        {"", "length_unit", "float64", "metres in a unit of length, if given"},
+        {"", "mesh_volume", "float64", "volume enclosed by body_mesh"},
+        {"", "body_volume", "float64", "volume of the smooth body that replaces body_mesh"},
+        {"parameter", "names", "texts",
+         "mu_s, mu_a and g, as far as the medium has them (gradient); numbers of the index "
+         "field (gradient_by)"}}};
 
 RenderResult render_result(const RenderScene& scene, const RenderJob& job,
                            const GroupedSums& sums) {
@@ -425,7 +433,7 @@ RenderResult render_result(const RenderScene& scene, const RenderJob& job,
   for (const Sensor& sensor : scene.sensors) {
     const Pixels pixels{pixels_of(sensor), first, job.bins};
     result.push_back(sensor_result(table_of(sensor), pixels, job, all, sums));
-    doubt(checks[result.size() - 1], pixels.of.area, result.back());
+    widen_errors(checks[result.size() - 1], pixels.of.area, result.back());
     result.back().within = powers_within(
         sensor, first, job.bins, sums,
         [&](const GroupedSums& of, const Estimator& theta) { return job.estimate(of, theta); });

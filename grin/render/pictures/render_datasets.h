@@ -13,58 +13,62 @@
 
 namespace flatspeckle::grin {
 
-/// Derivatives of what a sensor has found, by each parameter of the medium (path_score.h) and of
-/// the field (moving_paths.h), one parameter after the other. Errors of the latter have what the
-/// width of edges does, as far as it is told from chance.
+/// Derivatives of the results of a sensor, [parameter][entry], by parameters of the medium
+/// (path_score.h), then of the field (moving_paths.h). Errors of derivatives by the field include
+/// the bias due to smoothed pixel edges (sensor_edges.h), as far as it exceeds the statistical
+/// error.
 struct PowerGradients {
   Estimate image, mean;
-  Estimate within = {};  ///< of sensors that list radii (PowersWithin)
+  Estimate within = {};  ///< derivatives of PowersWithin, for sensors that list radii
 };
 
-/// Of a sensor whose first pixel is that of a batch's sums; theirs have derivatives.
+/// Returns the derivatives of a sensor. first_pixel: first pixel of the sensor in the sums of a
+/// batch, which must contain derivatives.
 PowerGradients power_gradients(const Sensor& sensor, std::size_t first_pixel, const TimeBins& bins,
                                const GroupedSums& sums);
 
-/// What they are by.
+/// Names of the parameters of the derivatives.
 std::vector<std::string> gradient_names(const RenderScene& scene);
 
 extern const DatasetTable energy_table;
 
-/// By Fate; nothing where the method walks no light path to its end.
+/// Returns the power by Termination; nullopt if the method traces no light paths to their ends.
 std::optional<Estimate> energy_result(const RenderJob& job, const GroupedSums& sums);
 
-/// Whether the power that ended in all fates together is the emitted one, where a light path is
-/// walked to its end.
+/// Invariant: the power of all terminations equals the emitted power, if light paths are traced to
+/// their ends.
 Invariant power_balance(const RenderJob& job, const GroupedSums& sums);
 
-/// Those fates that the scene has.
+/// Writes the terminations that are possible in the scene.
 void write_energy(ResultFile& file, const RenderScene& scene, const RenderRequest& request,
                   const Estimate& energy);
 
 extern const DatasetTable render_table;
 
-/// What a sensor has found. Empty: was not asked for.
+/// Results of a sensor; results that are not requested are empty.
 struct SensorResult {
   RenderedPicture picture;
-  Estimate mean;                       ///< over the pixels
-  std::optional<Estimate> total = {};  ///< a power, where the kind of sensor has it
+  Estimate mean;                       ///< mean over the pixels
+  std::optional<Estimate> total = {};  ///< power on the sensor, if its kind has a total
   std::optional<PowersWithin> within = {};
   std::optional<PowerGradients> gradients = {};
-  /// Mean or total by bin and beyond the bins.
+  /// Total power, or the mean if there is no total, in each bin of optical path, and before and
+  /// after all bins.
   Estimate pulse = {}, pulse_before = {}, pulse_after = {};
-  /// Mean optical path and mean of its square, [pixel][2], and of all pixels.
+  /// Mean and mean squared optical path: pixel_paths, [pixel][2], of the light in each pixel;
+  /// paths, of the light in all pixels.
   Estimate pixel_paths = {}, paths = {};
 };
-/// Of all sensors.
+/// Results by sensor.
 using RenderResult = std::vector<SensorResult>;
 RenderResult render_result(const RenderScene& scene, const RenderJob& job, const GroupedSums& sums);
 
-/// Pictures, and what they add up to. Of several sensors each has a group,
-/// sensors/NAME. length_unit: metres.
+/// Writes pictures, means and totals. Each of several sensors has a group, sensors/NAME.
+/// length_unit: metres per unit of length.
 void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& job,
                   const RenderResult& result, const std::optional<double>& length_unit);
 
-/// What the paths cost.
+/// Writes the counters of the cost of paths.
 void write_counts(ResultFile& file, const TransportCounts& counts);
 
 }  // namespace flatspeckle::grin

@@ -21,7 +21,7 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// Sums over an entry and its neighbours along one axis.
+/// Returns, for each entry, the sum over the entry and its neighbours along one axis.
 std::vector<double> sums_along(const std::vector<double>& values, std::size_t stride,
                                std::size_t length) {
   constexpr std::size_t reach = 2;
@@ -42,15 +42,18 @@ std::vector<double> sums_around(const std::vector<double>& values, const PixelGr
   return sums_along(sums_along(sums_along(values, 1, bins), bins, columns), bins * columns, rows);
 }
 
-/// Contributions of a size c make a variance of c times their sum. Where 3 c were to come nothing
-/// comes one time of 20: that is two errors of 1.5 c.
+/// Error bound for contributions that may have been missed. Contributions of size c have a variance
+/// of c times their sum, from which c follows. If three of them are expected, with sum 3 c, none
+/// arrives with probability 1/20. As this is the probability of a deviation by two standard errors,
+/// the error is 1.5 c.
 double unseen(double variance, double sum) {
   return sum > 0 ? 1.5 * variance / sum : 0;
 }
 
-/// So many that adding up the picture takes little of the time, and so few that a batch ends soon
-/// and the number of batches from which errors are trusted is soon there: long paths are fewer.
-/// A power of two: no rounding of the flights changes it.
+/// Returns the number of paths per batch. It is large enough that summing pictures takes little of
+/// the time, and small enough that a batch ends soon and the batches required for errors are soon
+/// available; it is smaller for long paths. It is a power of two, so that rounding errors of the
+/// flights do not change it.
 int paths_per_batch(const Tracer& tracer, bool scatters, double cost_of_flight, std::size_t sums) {
   constexpr double most = 16384, flights_soon_made = 1024;
   const double fewest = std::clamp(flights_soon_made / tracer.flights_per_pair, 1.0, 32.0);
@@ -58,7 +61,7 @@ int paths_per_batch(const Tracer& tracer, bool scatters, double cost_of_flight, 
   const double paths = std::clamp(static_cast<double>(sums) / (16 * cost_of_flight), fewest, most);
   const auto short_enough =
       static_cast<std::size_t>(std::min(paths, most_flights / tracer.flights_per_pair));
-  const bool fills_lanes = tracer.method == RenderMethod::analog && scatters;
+  const bool fills_lanes = tracer.method == RenderMethod::forward && scatters;
   const double many = fills_lanes ? 4 * lanes / tracer.flights_per_pair : 1;
   return static_cast<int>(
       std::max(std::bit_floor(short_enough), std::bit_ceil(static_cast<std::size_t>(many))));
@@ -69,13 +72,14 @@ std::string described(const RenderScene& scene, const RenderRequest& request, Re
   if (!request.method && !scene.sensors.empty()) text += " (chosen by a pilot)";
   if (!has_finite_variance(scene, method))
     text += " (no finite variance with " +
-            std::string(method == RenderMethod::path ? "points, fibres or beams that are bent"
+            std::string(method == RenderMethod::path ? "points, fibres or refracted beams"
                                                      : "a pinhole") +
-            ": errors are not to be trusted)";
+            ": errors are unreliable)";
   return text + ": ";
 }
 
-/// From [pixel][sum] `count` values for each pixel: use(sums of the pixel, its values).
+/// Makes an estimator of `count` values for each pixel. use(samples, sums of the pixel, values of
+/// the pixel) sets the values.
 template <class Use>
 Estimator for_each_pixel(std::size_t pictures, const TimeBins& bins, std::size_t count,
                          const Use& use) {
@@ -97,7 +101,7 @@ Estimator steady_picture(std::size_t pictures, const TimeBins& bins) {
                         });
 }
 
-/// `count` of the sums of each pixel.
+/// Makes the estimator of the means of `count` sums of each pixel, beginning with sum `first`.
 Estimator some_sums(const RenderJob& job, int first, int count) {
   return for_each_pixel(
       job.pictures, job.bins, static_cast<std::size_t>(count),
@@ -115,7 +119,7 @@ std::string described_steps(const RenderScene& scene, const RenderPlan& plan) {
   return text.str();
 }
 
-/// Nothing of a single one.
+/// Describes the sensors; empty for a single one.
 std::string described_sensors(const RenderScene& scene) {
   std::string text;
   if (scene.sensors.size() > 1)
@@ -129,21 +133,22 @@ std::string described_map(const RenderScene& scene) {
   return scene.map ? "; a map of " + std::to_string(cells(*scene.map)) + " cells" : "";
 }
 
-/// To their ends, booking where their power went.
+/// Whether a method traces light paths to their ends and tallies their power.
 bool walks_light(RenderMethod method) {
   return method == RenderMethod::light || method == RenderMethod::bidirectional ||
-         method == RenderMethod::analog;
+         method == RenderMethod::forward;
 }
 
-/// A map alone asks for no picture.
+/// Makes the tracer of a request. For a scene with a map but no sensor it uses light tracing.
 Tracer tracer_of(const Tracers& tracers, const RenderScene& scene, const RenderRequest& request) {
   if (scene.sensors.empty()) return tracers.make(RenderMethod::light);
   return request.method ? tracers.make(*request.method) : best_tracer(tracers);
 }
 
-/// Groups, where pixels have neighbours to be judged with.
+/// Returns the number of groups below which an error counts as undersampled; it is smaller if all
+/// sensors have enough pixels for the neighbourhoods of bound_errors().
 double few_of(const std::vector<SensorEnd>& sensors) {
-  constexpr int many = 25;  // as bound_errors() looks at
+  constexpr int many = 25;  // size of a neighbourhood in bound_errors()
   const bool have_neighbours = std::ranges::all_of(
       sensors, [](const SensorEnd& sensor) { return sensor.pixels().count() >= many; });
   return have_neighbours ? few_of_pixels : few_of_values;
@@ -151,13 +156,13 @@ double few_of(const std::vector<SensorEnd>& sensors) {
 
 using Estimating = std::function<Estimate(const GroupedSums&, const Estimator&)>;
 
-/// Infinite in the dark, which is no knowledge of it.
+/// Relative error of a picture; infinite if it is dark, since its error is then not known.
 double error_of_light(const Estimate& light) {
   const bool is_lit = std::ranges::any_of(light.value, [](Complex x) { return x.real() > 0; });
   return is_lit ? relative_error(light) : std::numeric_limits<double>::infinity();
 }
 
-/// That of the sensor where it is largest: units of sensors differ.
+/// Returns the largest relative error over the sensors, whose units differ.
 double largest_error(const Transport& transport, const std::vector<Sensor>& kinds,
                      const TimeBins& bins, const Estimate& picture, const GroupedSums& sums,
                      const Estimating& estimate) {
@@ -178,7 +183,7 @@ double largest_error(const Transport& transport, const std::vector<Sensor>& kind
   return largest;
 }
 
-/// Of all pixels of all sensors.
+/// Returns, for each pixel of all sensors, its sensor and its share of the sensor's area.
 std::vector<PixelShare> pixel_shares(const std::vector<Sensor>& sensors) {
   std::vector<PixelShare> shares;
   for (std::size_t sensor = 0; sensor < sensors.size(); ++sensor) {
@@ -189,7 +194,8 @@ std::vector<PixelShare> pixel_shares(const std::vector<Sensor>& sensors) {
   return shares;
 }
 
-/// Adds means over the pixels of each sensor by another tracer, which draws a quarter of the paths.
+/// Adds to `means` the means over the pixels of each sensor, computed by another tracer with a
+/// quarter of the paths.
 void add_means_by(const Tracer& tracer, int paths, const TimeBins& bins,
                   std::span<const PixelShare> shares, RandomStream random,
                   std::span<double> means) {
@@ -207,8 +213,8 @@ void add_means_by(const Tracer& tracer, int paths, const TimeBins& bins,
 }  // namespace
 
 std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& sums) {
-  constexpr double rounding = 1e-6;       // of ends of flights
-  constexpr double least_samples = 2000;  // fewer know nothing of rare paths
+  constexpr double rounding = 1e-6;  // relative error due to rounding of the end points of flights
+  constexpr double least_samples = 2000;  // with fewer samples rare paths are likely missing
   const bool is_enough = sums.groups() > 1 && sums.total_samples() >= least_samples;
   const double errors = is_enough ? std::max(5.0, outlier_errors(sums.groups())) : 0;
   const std::size_t count = job.sensors;
@@ -224,8 +230,8 @@ std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& su
   for (std::size_t i = 0; i < count; ++i) {
     const double mean = all.value[i].real(), other = all.value[count + i].real();
     const bool is_known = is_enough && other > 0 && all.rare[count + i] == 0,
-               is_marked = all.rare[i] != 0 && all.error[i] > mean / 2;
-    if (is_known && !is_marked)
+               is_undersampled = all.rare[i] != 0 && all.error[i] > mean / 2;
+    if (is_known && !is_undersampled)
       checks[i] = {{std::abs(all.value[2 * count + i].real()),
                     errors * all.error[2 * count + i] + all.error[i] + rounding * other},
                    mean,
@@ -250,23 +256,24 @@ TransportCounts transport_counts(const RenderJob& job, const GroupedSums& sums) 
 void bound_errors(Estimate& picture, const PixelGrid& grid) {
   const std::size_t size = picture.value.size();
   const std::vector<double> values = real_parts(picture.value);
-  std::vector<double> variances(size), marked(size), marks(size), lit(size);
+  std::vector<double> variances(size), undersampled(size), undersampled_lit(size), lit(size);
   for (std::size_t i = 0; i < size; ++i) {
     variances[i] = picture.error[i] * picture.error[i];
-    marked[i] = picture.rare[i] ? values[i] : 0;
+    undersampled[i] = picture.rare[i] ? values[i] : 0;
     lit[i] = values[i] != 0;
-    marks[i] = picture.rare[i] ? lit[i] : 0;
+    undersampled_lit[i] = picture.rare[i] ? lit[i] : 0;
   }
   const double of_all = unseen(std::reduce(variances.begin(), variances.end()),
                                std::reduce(values.begin(), values.end()));
-  if (!std::isfinite(of_all)) return;  // a single batch
+  if (!std::isfinite(of_all)) return;  // there is only one batch
   const auto values_around = sums_around(values, grid);
   const auto variances_around = sums_around(variances, grid);
-  const auto marked_around = sums_around(marked, grid);
-  const auto marks_around = sums_around(marks, grid), lit_around = sums_around(lit, grid);
+  const auto undersampled_around = sums_around(undersampled, grid);
+  const auto undersampled_lit_around = sums_around(undersampled_lit, grid),
+             lit_around = sums_around(lit, grid);
   for (std::size_t i = 0; i < size; ++i) {
-    const bool is_known = values[i] != 0 && marked_around[i] <= values_around[i] / 2 &&
-                          marks_around[i] <= lit_around[i] / 2;
+    const bool is_known = values[i] != 0 && undersampled_around[i] <= values_around[i] / 2 &&
+                          undersampled_lit_around[i] <= lit_around[i] / 2;
     picture.rare[i] = !is_known;
     if (is_known) continue;
     const double bound =
@@ -284,15 +291,16 @@ std::string method_word(RenderMethod method) {
 }
 
 std::vector<std::string> method_words() {
-  return {"path", "light", "bidirectional", "analog"};
+  return {"path", "light", "bidirectional", "forward"};
 }
 
 namespace {
 
-void check_analog(const RenderScene& scene) {
-  if (!can_be_analog(scene))
-    throw InputError("method", method_word(RenderMethod::analog),
-                     "is of sensors that light can hit");
+void check_forward(const RenderScene& scene) {
+  if (!can_be_forward(scene))
+    throw InputError("method", method_word(RenderMethod::forward),
+                     "requires sensors that light can hit: no pinhole camera; set lens_radius, or "
+                     "choose another method");
 }
 
 }  // namespace
@@ -305,25 +313,25 @@ void check(const RenderScene& scene, const RenderRequest& request) {
   const auto transport =
       transport_of(scene, request, request.method.value_or(RenderMethod::bidirectional));
   check_path_lengths(scene.stage, transport->max_scatterings);
-  if (request.method == RenderMethod::analog) check_analog(scene);
-  if (scene.bins.derivatives > 0 && request.method != RenderMethod::analog)
-    throw InputError("gradient: needs method = analog");
-  if (!scene.parameters.empty() && request.method != RenderMethod::analog)
-    throw InputError("gradient_by: needs method = analog");
+  if (request.method == RenderMethod::forward) check_forward(scene);
+  if (scene.bins.derivatives > 0 && request.method != RenderMethod::forward)
+    throw InputError("gradient: requires method = forward");
+  if (!scene.parameters.empty() && request.method != RenderMethod::forward)
+    throw InputError("gradient_by: requires method = forward");
   if (scene.random_phase) make_ray_field(scene.field)->frozen(0);
 }
 
 namespace {
 
-/// Adds a batch to its sums.
+/// Computes the sums of a batch.
 struct RenderBatch {
-  RenderJob job;  ///< what the sums are
+  RenderJob job;  ///< layout of the accumulated sums of pictures and maps
   Tracer tracer;
-  std::optional<Tracer> other;  ///< to compare with
+  std::optional<Tracer> other;  ///< for the comparison of LightCheck
   MapKernel map;
   std::vector<PixelShare> shares;
   int paths;
-  bool books;  ///< where the power of the tracer's light paths goes
+  bool tallies_power;  ///< whether the tracer's light paths tally their power
   std::uint64_t seed;
 
   void operator()(std::uint64_t number, std::span<Complex> sums) const {
@@ -335,13 +343,14 @@ struct RenderBatch {
     RandomStream random = stream(Stream::render, number);
     if (!shares.empty()) tracer.add(paths, random, film, counts);
     add_checks(film, number, sums.subspan(job.first_of_checks(), 2 * job.sensors));
-    if (job.has_drift) sums.back() += film.drift;
+    if (job.has_control_variate) sums.back() += film.control_variate;
     if (map) {
       RandomStream own = stream(Stream::light_map, number);
       map(paths, own, sums.subspan(job.first_of_map()), of_map, counts);
     }
     if (job.has_energy)
-      (books ? film.energy : of_map).add_to(sums.subspan(job.pictures, EnergyBalance::size));
+      (tallies_power ? film.energy : of_map)
+          .add_to(sums.subspan(job.pictures, EnergyBalance::size));
     counts.add_to(sums.subspan(job.first_of_counts(), TransportCounts::size));
   }
 
@@ -350,7 +359,8 @@ struct RenderBatch {
     return {seed, static_cast<std::uint64_t>(of), number};
   }
   void add_checks(Film& film, std::uint64_t number, std::span<Complex> sums) const {
-    constexpr std::uint64_t others = std::uint64_t{1} << 62;  // batches of numbers of their own
+    // batch numbers from here on have separate random streams
+    constexpr std::uint64_t others = std::uint64_t{1} << 62;
     std::vector<double> means(job.sensors);
     film.add_means(means);
     if (other) {
@@ -380,48 +390,50 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
              described_steps(scene, tracers.plan()) + described_sensors(scene) +
              described_map(scene) + (tracers.walks() ? "" : "; rays of beams alone");
   job.pictures = static_cast<std::size_t>(pixels) * scene.bins.sums();
-  const bool books = walks_light(tracer.method) && pixels > 0;
-  job.has_energy = books || map;
-  job.has_drift = books && tracers.has_drift();
+  const bool tallies_power = walks_light(tracer.method) && pixels > 0;
+  job.has_energy = tallies_power || map;
+  job.has_control_variate = tallies_power && tracers.has_control_variate();
   job.sensors = scene.sensors.size();
-  job.batches.size =
-      job.first_of_map() + (map ? sums_per_cell * cells(*scene.map) : 0) + (job.has_drift ? 1 : 0);
+  job.batches.size = job.first_of_map() + (map ? sums_per_cell * cells(*scene.map) : 0) +
+                     (job.has_control_variate ? 1 : 0);
   const int paths =
       paths_per_batch(tracer, tracers.plan().scatters, tracers.cost_of_flight(), job.batches.size);
   job.batches.samples_per_batch = paths;
   job.batches.deterministic = !tracers.plan().scatters;
-  if (tracer.method == RenderMethod::analog) job.batches.trusted_batches = 64;  // no path is strong
-  RenderBatch batch{job, tracer, {}, map, pixel_shares(scene.sensors), paths, books, seed};
+  if (tracer.method == RenderMethod::forward)
+    job.batches.trusted_batches = 64;  // no path has a high weight
+  RenderBatch batch{job, tracer, {}, map, pixel_shares(scene.sensors), paths, tallies_power, seed};
   if (tracer.method == RenderMethod::path) batch.other = tracers.make(RenderMethod::bidirectional);
   job.batches.run = batch;
   job.few_of_pictures = few_of(tracer.transport->sensors);
   const EntrySums steady_sums{static_cast<std::size_t>(pixels),
                               static_cast<std::size_t>(scene.bins.sums()),
                               static_cast<std::size_t>(scene.bins.parts())};
-  job.batches.relative_error = [=, checked = job, kinds = scene.sensors, bins = scene.bins,
-                                cells = scene.map,
-                                steady = steady_picture(job.pictures, scene.bins),
-                                has_drift = job.has_drift, few = job.few_of_pictures,
-                                first_of_map = job.first_of_map()](const GroupedSums& sums) {
-    if (!std::ranges::all_of(light_checks(checked, sums), &LightCheck::holds))
-      return std::numeric_limits<double>::infinity();
-    const Estimate picture = has_drift ? controlled_jackknife(sums, steady, sums.size() - 1, few)
-                                       : jackknife(sums, steady_sums, few);
-    const auto estimate = [&](const GroupedSums& of, const Estimator& theta) {
-      return has_drift ? controlled_jackknife(of, theta, of.size() - 1, few_of_values)
-                       : jackknife(of, theta, few_of_values);
-    };
-    const double of_pictures =
-        largest_error(*tracer.transport, kinds, bins, picture, sums, estimate);
-    return cells ? std::max(of_pictures, error_of_light(fluence(sums, first_of_map, *cells)))
-                 : of_pictures;
-  };
+  job.batches.relative_error =
+      [=, checked = job, kinds = scene.sensors, bins = scene.bins, cells = scene.map,
+       steady = steady_picture(job.pictures, scene.bins),
+       has_control_variate = job.has_control_variate, few = job.few_of_pictures,
+       first_of_map = job.first_of_map()](const GroupedSums& sums) {
+        if (!std::ranges::all_of(light_checks(checked, sums), &LightCheck::holds))
+          return std::numeric_limits<double>::infinity();
+        const Estimate picture = has_control_variate
+                                     ? controlled_jackknife(sums, steady, sums.size() - 1, few)
+                                     : jackknife(sums, steady_sums, few);
+        const auto estimate = [&](const GroupedSums& of, const Estimator& theta) {
+          return has_control_variate ? controlled_jackknife(of, theta, of.size() - 1, few_of_values)
+                                     : jackknife(of, theta, few_of_values);
+        };
+        const double of_pictures =
+            largest_error(*tracer.transport, kinds, bins, picture, sums, estimate);
+        return cells ? std::max(of_pictures, error_of_light(fluence(sums, first_of_map, *cells)))
+                     : of_pictures;
+      };
   return job;
 }
 
 Estimate RenderJob::estimate(const GroupedSums& sums, const Estimator& theta, double few) const {
-  return has_drift ? controlled_jackknife(sums, theta, sums.size() - 1, few)
-                   : jackknife(sums, theta, few);
+  return has_control_variate ? controlled_jackknife(sums, theta, sums.size() - 1, few)
+                             : jackknife(sums, theta, few);
 }
 
 RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {

@@ -12,7 +12,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// Share of the choices that are uniform over the detector: rays may be curved.
+/// Fraction of positions that are chosen uniformly over the detector, since curved rays may arrive
+/// anywhere.
 constexpr double anywhere = 0.1;
 
 BoundaryPoint centre_on(const Surface& boundary, const Vec3& centre) {
@@ -29,7 +30,7 @@ const DatasetTable area_table = sensor_table(
     {.name = "area",
      .axes = {{"row", Data::scale, "", "length", "height on the detector, along sensor_up"},
               {"column", Data::scale, "", "length",
-               "position to the right, as light that arrives sees it"}},
+               "position to the right, seen along the arriving light"}},
      .unit = "1/length^2",
      .pixel = "irradiance averaged over the pixel",
      .mean = "mean over the pixels",
@@ -76,7 +77,8 @@ EndPosition AreaDetectorEnd::on_face(const Vec3& x, int pixel) const {
 EndPosition AreaDetectorEnd::at(double u, double v, int pixel) const {
   Vec3 x = centre_ + u * view_.right + v * view_.up;
   if (const auto* sphere = std::get_if<Sphere>(&boundary_)) {
-    // u^2 + v^2 = s (2 R - s), s the depth below the tangent plane
+    // u^2 + v^2 = s (2 R - s), with R the radius and s the distance of the sphere from the tangent
+    // plane
     const double squared = u * u + v * v, r = sphere->radius;
     x -= squared / (r + std::sqrt(r * r - squared)) * view_.forward;
   }
@@ -89,11 +91,11 @@ EndPosition AreaDetectorEnd::sample_position(double stratum, RandomStream& rando
 }
 
 Window AreaDetectorEnd::accepting_from(const Vec3& x) const {
-  constexpr double room_for_curves = 1.25;
+  constexpr double bounds_of_curves = 1.25;
   const Vec3 from_centre = x - centre_;
   const double before = std::max(0.0, -from_centre.dot(view_.forward));
   return face_.near(from_centre.dot(view_.right), from_centre.dot(view_.up),
-                    room_for_curves * acceptance_.tangent() * before);
+                    bounds_of_curves * acceptance_.tangent() * before);
 }
 
 double AreaDetectorEnd::choice_of(double u, double v, const Window& accepting) const {
@@ -118,7 +120,7 @@ double AreaDetectorEnd::choice(const Vec3& position, const Vec3& x) const {
 
 std::optional<EndPosition> AreaDetectorEnd::position_at(const Vec3& x) const {
   if (!(normal(boundary_, x).dot(view_.forward) > 0))
-    return std::nullopt;  // the far side, or another face
+    return std::nullopt;  // the far side of the sphere, or another face
   const Vec3 from_centre = x - centre_;
   const int pixel = face_.pixel_at(from_centre.dot(view_.right), from_centre.dot(view_.up));
   if (pixel < 0) return std::nullopt;
@@ -127,21 +129,21 @@ std::optional<EndPosition> AreaDetectorEnd::position_at(const Vec3& x) const {
 
 EndDirection AreaDetectorEnd::sample_direction(const EndPosition& at, double,
                                                RandomStream& random) const {
-  return acceptance_.sample(at, reading(at), random);
+  return acceptance_.sample(at, sensitivity(at), random);
 }
 
 EndDirection AreaDetectorEnd::towards(const EndPosition& at, const Vec3& direction) const {
-  return acceptance_.towards(at, direction, reading(at));
+  return acceptance_.towards(at, direction, sensitivity(at));
 }
 
 void add_keys(Keys& keys, AreaValues& values) {
-  add_vectors(keys, "sensor_at", values.sensor_at, "The middle of the area, on the boundary")
+  add_vectors(keys, "sensor_at", values.sensor_at, "Centre of the area, on the boundary")
       .unit("length");
   keys.add("sensor_size", values.sensor_size, "Width and height")
       .each_of(2, "width height")
       .positive()
       .unit("length");
-  keys.add("acceptance", values.acceptance, "Half angle about the normal")
+  keys.add("acceptance", values.acceptance, "Light is accepted within this angle from the normal")
       .positive_to(pi / 2)
       .unit("rad");
 }
@@ -152,7 +154,8 @@ AreaDetector make_sensor(const OneSensor& of, const AreaValues& values, const Pi
           of.number(values.acceptance)};
 }
 
-/// Returns a place of the tangent plane, or of the sphere in front of it.
+/// The returned function finds the nearest point of the rectangle in the tangent plane; on a sphere
+/// it returns the point of the sphere in front of that point.
 NearestPlace nearest_place(const AreaDetector& detector, const Surface& boundary) {
   const Vec3 normal = grin::normal(boundary, detector.centre);
   const Vec3 right = normal.cross(detector.up).normalized(), up = right.cross(normal);

@@ -10,10 +10,11 @@ namespace flatspeckle::grin {
 
 class AreaDetectorEnd;
 
-/// A rectangle on a face of a box boundary, or the part of a sphere's boundary in front of a
-/// rectangle in the tangent plane: irradiance averaged over each pixel of the rectangle, of light
-/// that arrives within `acceptance` of the outward normal. Columns along outward normal x up: as
-/// light sees it that arrives.
+/// A detector on a rectangle of a face of a box boundary, or on the part of a sphere boundary in
+/// front of a rectangle in the tangent plane. It measures the irradiance of light that arrives
+/// within the angle `acceptance` of the outward normal, averaged over each pixel of the rectangle.
+/// Column numbers increase along the cross product of outward normal and up, to the right as seen
+/// along the arriving light.
 struct AreaDetector {
   using End = AreaDetectorEnd;
   Vec3 centre, up;
@@ -29,8 +30,9 @@ inline const DatasetTable& table_of(const AreaDetector&) {
 PixelRectangle picture_of(const AreaDetector& detector);
 NearestPlace nearest_place(const AreaDetector& detector, const Surface& boundary);
 
-/// With u, v on the rectangle, W = (du dv / dA) / pixel area; du dv / dA is the cosine between the
-/// normals at the point and at the centre, 1 on a box.
+/// Path endpoint of an area detector, with W (path_end.h) = (du dv / dA) / pixel area. Here u and v
+/// are coordinates on the rectangle, and du dv / dA is the cosine of the angle between the normals
+/// at the point and at the centre, which is 1 on a box.
 class AreaDetectorEnd {
  public:
   /// Throws InputError.
@@ -38,7 +40,7 @@ class AreaDetectorEnd {
 
   const PixelGrid& pixels() const { return face_.grid(); }
   EndPosition sample_position(double stratum, RandomStream& random) const;
-  /// For a join from x: most often where the straight way from x is accepted.
+  /// Chooses a position for a connection from x, mostly where the straight line from x is accepted.
   EndPosition choose_position(const Vec3& x, RandomStream& random) const;
   double choice(const Vec3& position, const Vec3& x) const;
   EndDirection sample_direction(const EndPosition& at, double stratum, RandomStream& random) const;
@@ -46,7 +48,7 @@ class AreaDetectorEnd {
   std::optional<EndPosition> position_at(const Vec3& x) const;
 
  private:
-  double reading(const EndPosition& at) const { return at.position_density * pixels().count(); }
+  double sensitivity(const EndPosition& at) const { return at.position_density * pixels().count(); }
   EndPosition on_face(const Vec3& x, int pixel) const;
   EndPosition at(double u, double v, int pixel) const;
   Window accepting_from(const Vec3& x) const;

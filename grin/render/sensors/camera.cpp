@@ -10,7 +10,8 @@ namespace flatspeckle::grin {
 const DatasetTable camera_table = sensor_table(
     {.name = "camera",
      .axes = {{"row", Data::scale, "", "1", "tangent of the angle above the line of sight"},
-              {"column", Data::scale, "", "1", "tangent of the angle to the right of it"}},
+              {"column", Data::scale, "", "1",
+               "tangent of the angle to the right of the line of sight"}},
      .unit = "1/(length^2 sr)",
      .pixel = "L/n^2 averaged over the pixel",
      .mean = "mean over the pixels"});
@@ -61,8 +62,8 @@ EndDirection CameraEnd::along(const EndPosition& at, const Vec3& direction, int 
   EndDirection to{.direction = direction};
   const double cosine = direction.dot(view_.forward);
   const double ahead = focus_distance_ - (at.point.x - centre_).dot(view_.forward);
-  const double stretch = ahead / focus_distance_;
-  const double film_per_angle = stretch * stretch / (cosine * cosine * cosine);
+  const double relative_distance = ahead / focus_distance_;
+  const double film_per_angle = relative_distance * relative_distance / (cosine * cosine * cosine);
   to.density = film_per_angle / film_.area();
   if (!at.is_point && !(direction.dot(at.inward) > 0)) return to;  // behind the lens
   to.pixel = pixel;
@@ -90,17 +91,17 @@ EndDirection CameraEnd::towards(const EndPosition& at, const Vec3& direction) co
 }
 
 void add_keys(Keys& keys, CameraValues& values) {
-  add_vectors(keys, "sensor_at", values.sensor_at, "The camera's eye, or the middle of its lens")
+  add_vectors(keys, "sensor_at", values.sensor_at, "Position of the pinhole, or centre of the lens")
       .unit("length");
-  add_vectors(keys, "sensor_direction", values.sensor_direction, "Where the camera looks");
-  keys.add("field_of_view", values.field_of_view, "Full angle of a row")
+  add_vectors(keys, "sensor_direction", values.sensor_direction, "View direction of the camera");
+  keys.add("field_of_view", values.field_of_view, "Full angle of view along a row of pixels")
       .between(0, std::numbers::pi)
       .unit("rad");
   keys.add("lens_radius", values.lens_radius,
-           "Of a thin lens on the stage's boundary (default 0: pinhole)")
+           "Radius of a thin lens on the stage's boundary (default 0: pinhole)")
       .not_negative()
       .unit("length");
-  keys.add("focus_distance", values.focus_distance, "Of the lens")
+  keys.add("focus_distance", values.focus_distance, "Focus distance of the lens")
       .positive()
       .unit("length")
       .only_of("a camera with lens_radius");

@@ -9,15 +9,17 @@ namespace flatspeckle::grin {
 
 class CameraEnd;
 
-/// A camera that looks along `forward`: L/n^2 averaged over each pixel of its film.
+/// A camera with view direction `forward`. It measures L/n^2, averaged over each pixel of its film.
 struct Camera {
   using End = CameraEnd;
   Vec3 x, forward, up;
-  double field_of_view;  ///< across the columns, full angle, rad, < pi
+  double field_of_view;  ///< full angle of view along a row of pixels, rad, < pi
   PixelGrid pixels;
-  double lens_radius = 0;     ///< 0: pinhole. A lens is a part of the boundary (BoundaryPatch), and
-                              ///< can be hit; the average is over it, too
-  double focus_distance = 1;  ///< of the lens, along forward, more than its radius
+  /// Radius of the lens; 0 for a pinhole. A lens is a part of the boundary (BoundaryPatch) that
+  /// light can hit; L/n^2 is then also averaged over the lens.
+  double lens_radius = 0;
+  /// Distance to the plane of focus, along forward; larger than lens_radius.
+  double focus_distance = 1;
 };
 
 extern const DatasetTable camera_table;
@@ -29,11 +31,13 @@ inline NearestPlace nearest_place(const Camera& camera, const Surface&) {
   return [x = camera.x](const Vec3&) { return x; };
 }
 
-/// The film is the plane of focus, seen from the camera's centre: u and v are tangents. A ray from
-/// x on the lens along d meets the plane at x + t d, t = F' / cos(theta), F' = F - (x - centre).
-/// forward, so that du dv / dw = t^2 / (F^2 cos(theta)) = (F'/F)^2 / cos^3(theta), theta from
-/// forward; a pinhole is the limit F' = F. Straight rays: the lens is a picture of focus in the
-/// index at it, and refraction further on is left to the field.
+/// Path endpoint of a camera. The film is the plane of focus at distance F; its coordinates u and v
+/// are tangents of angles seen from the camera's centre. A ray from x on the lens along d, at an
+/// angle theta from forward, meets the plane at x + t d, where t = F' / cos(theta) and
+/// F' = F - (x - centre).forward. It follows that
+///   du dv / dw = t^2 / (F^2 cos(theta)) = (F'/F)^2 / cos^3(theta);
+/// a pinhole has F' = F. Focusing assumes straight rays in the index at the lens; the index field
+/// bends the rays beyond it.
 class CameraEnd {
  public:
   /// Throws InputError.
@@ -44,7 +48,7 @@ class CameraEnd {
   EndDirection sample_direction(const EndPosition& at, double stratum, RandomStream& random) const;
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
   std::optional<EndPosition> position_at(const Vec3& x) const;
-  /// A pinhole cannot.
+  /// Whether light can hit the camera: true for a lens, false for a pinhole.
   bool can_be_hit() const { return lens_.has_value(); }
 
  private:

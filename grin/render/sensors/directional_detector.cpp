@@ -31,7 +31,7 @@ EndDirection DirectionalEnd::along(const EndPosition& at, const Vec3& direction,
   const double picture_per_angle = -direction.dot(view_.forward);
   const double cosine = direction.dot(at.inward);
   to.density = picture_per_angle / picture_.area();
-  if (!(cosine > 0)) return to;  // light does not leave this way here
+  if (!(cosine > 0)) return to;  // no light leaves the stage in this direction at this position
   to.pixel = pixel;
   to.strength = at.index * at.index * cosine * picture_per_angle / picture_.pixel_area();
   return to;
@@ -41,7 +41,8 @@ EndDirection DirectionalEnd::sample_direction(const EndPosition& at, double stra
                                               RandomStream& random) const {
   const PicturePoint seen = picture_.sample(stratum, random);
   const double squared = 1 - seen.u * seen.u - seen.v * seen.v;
-  if (!(squared > 0)) return {.direction = at.inward, .density = 1};  // beyond the horizon
+  // a corner of the picture, where no direction exists
+  if (!(squared > 0)) return {.direction = at.inward, .density = 1};
   const Vec3 leaving =
       seen.u * view_.right + seen.v * view_.up + std::sqrt(squared) * view_.forward;
   return along(at, -leaving, seen.pixel);
@@ -56,8 +57,10 @@ EndDirection DirectionalEnd::towards(const EndPosition& at, const Vec3& directio
 }
 
 void add_keys(Keys& keys, DirectionalValues& values) {
-  add_vectors(keys, "sensor_direction", values.sensor_direction, "Middle of the directions");
-  keys.add("half_angle", values.half_angle, "Angle of the middle of a side")
+  add_vectors(keys, "sensor_direction", values.sensor_direction,
+              "Direction at the centre of the picture");
+  keys.add("half_angle", values.half_angle,
+           "Angle from the central direction to the middle of a side of the picture")
       .positive_to(std::numbers::pi / 2)
       .unit("rad");
 }

@@ -8,13 +8,14 @@ namespace flatspeckle::grin {
 
 class DirectionalEnd;
 
-/// All light that leaves the stage through its boundary, by direction: power per solid angle in
-/// pixels of the sines of the angles from `forward` (orthographic), averaged over each pixel:
-/// column along forward x up.
+/// A detector of all light that leaves the stage through its boundary, by direction. It measures
+/// power per solid angle, averaged over each pixel. The coordinates of the picture are the
+/// components of the direction across `forward` (orthographic projection). Column numbers increase
+/// along the cross product of forward and up.
 struct DirectionalDetector {
   using End = DirectionalEnd;
   Vec3 forward, up;
-  double half_angle;  ///< of the square's half side, its sine; up to pi/2
+  double half_angle;  ///< rad, up to pi/2; its sine is half the side of the square picture
   PixelGrid pixels;
 };
 
@@ -27,8 +28,10 @@ inline NearestPlace nearest_place(const DirectionalDetector& detector, const Sur
   return in_front(detector.forward, boundary);
 }
 
-/// With u, v the components of the outward direction, du dv = cos(theta) dw, theta from forward:
-/// W = cos(theta) / pixel area. Pixels beyond the horizon, in the corners, stay dark.
+/// Path endpoint of a directional detector. If u, v are the components of the outward direction
+/// across forward and theta is its angle from forward, then du dv = cos(theta) dw per solid angle
+/// dw, so that W (path_end.h) = cos(theta) / pixel area. Pixels in the corners, where u^2 + v^2 >
+/// 1, stay dark.
 class DirectionalEnd : public WholeBoundary {
  public:
   /// Throws InputError.

@@ -11,13 +11,14 @@
 
 namespace flatspeckle::grin {
 
-/// Pixels, row 0 on top; pixel number = row columns + column.
+/// A grid of pixels with row 0 on top; a pixel has the number row * columns + column.
 struct PixelGrid {
   int columns = 1, rows = 1;
   int count() const { return columns * rows; }
 };
 
-/// Coordinates on a picture: u to the right, v up, from its centre.
+/// A point of a picture and its pixel. From the centre of the picture, u increases to the right and
+/// v upwards.
 struct PicturePoint {
   double u, v;
   int pixel;
@@ -42,7 +43,8 @@ class PixelRectangle {
   double half_width() const { return half_width_; }
   double half_height() const { return half_height_; }
   double area() const { return 4 * half_width_ * half_height_; }
-  /// The part of it within a square; all of it if there is none.
+  /// Returns the part of the rectangle within a square about (u, v); the whole rectangle if the two
+  /// do not overlap.
   Window near(double u, double v, double half_side) const {
     const Window part{std::max(u - half_side, -half_width_), std::min(u + half_side, half_width_),
                       std::max(v - half_side, -half_height_),
@@ -53,7 +55,7 @@ class PixelRectangle {
   Window all() const { return {-half_width_, half_width_, -half_height_, half_height_}; }
   double pixel_area() const { return area() / grid_.count(); }
 
-  /// From left to right, and from top to bottom.
+  /// Centres of columns from left to right, and of rows from top to bottom.
   std::vector<double> column_centres() const { return centres(half_width_, grid_.columns); }
   std::vector<double> row_centres() const {
     auto rows = centres(half_height_, grid_.rows);
@@ -61,7 +63,7 @@ class PixelRectangle {
     return rows;
   }
 
-  /// -1 outside.
+  /// Returns the pixel at (u, v), -1 outside.
   int pixel_at(double u, double v) const {
     const double column = (u / half_width_ + 1) / 2 * grid_.columns;
     const double row = (1 - v / half_height_) / 2 * grid_.rows;
@@ -70,7 +72,8 @@ class PixelRectangle {
            std::min(static_cast<int>(column), grid_.columns - 1);
   }
 
-  /// Uniform where `stratum`, which picks the pixel, is uniform in (0, 1).
+  /// Samples a point. `stratum` selects the pixel; the point is uniformly distributed if `stratum`
+  /// is uniform in (0, 1).
   PicturePoint sample(double stratum, RandomStream& random) const {
     const int pixel = std::min(static_cast<int>(stratum * grid_.count()), grid_.count() - 1);
     const int rows_above = pixel / grid_.columns;
@@ -81,7 +84,7 @@ class PixelRectangle {
   }
 
  private:
-  /// Of `count` equal parts of (-half, half).
+  /// Centres of `count` equal intervals of (-half, half).
   static std::vector<double> centres(double half, int count) {
     std::vector<double> values;
     for (int i = 0; i < count; ++i) values.push_back(half * ((2 * i + 1.0) / count - 1));
@@ -92,17 +95,18 @@ class PixelRectangle {
   double half_width_, half_height_;
 };
 
-/// Which way a picture is held: right = forward x up.
+/// Orientation of a picture: right = forward x up.
 struct Orientation {
-  Vec3 forward, right, up;  ///< unit, right-angled
+  Vec3 forward, right, up;  ///< unit vectors at right angles
 
-  /// Throws InputError for a zero forward (its key) or an up (sensor_up) that is along it.
+  /// Throws InputError if `along` is zero (naming forward_key), or if `upwards` is zero or parallel
+  /// to it (naming sensor_up).
   Orientation(const char* forward_key, const Vec3& along, const Vec3& upwards)
       : forward(unit_direction(forward_key, along)) {
     const Vec3 unit_up = unit_direction("sensor_up", upwards);
     const Vec3 across = forward.cross(unit_up);
     if (!(across.norm() > 1e-6))
-      throw InputError("sensor_up", listed(upwards), "must not be along the view");
+      throw InputError("sensor_up", listed(upwards), "must not be parallel to the view direction");
     right = across.normalized();
     up = right.cross(forward);
   }

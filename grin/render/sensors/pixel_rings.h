@@ -11,14 +11,15 @@
 
 namespace flatspeckle::grin {
 
-/// Pixels that are rings: of a disk by radius, or of directions by polar angle. The
-/// area within r is pi r^2, the solid angle within t is 2 pi (1 - cos t).
+/// Rings that serve as pixels: parts of a disk between two radii, or directions between two polar
+/// angles. The area within radius r is pi r^2, the solid angle within polar angle t is 2 pi (1 -
+/// cos t).
 class PixelRings {
  public:
   enum class Of { radius, angle };
-  /// Of equal width.
+  /// Makes rings of equal width. last: outer radius or angle of the last ring.
   PixelRings(Of of, int rings, double last) : of_(of), rings_(rings), last_(last) {}
-  /// The first is the disk within the first of these radii, which increase.
+  /// Makes rings with these outer radii, which increase; the first ring is a disk.
   explicit PixelRings(std::vector<double> radii)
       : of_(Of::radius),
         rings_(static_cast<int>(radii.size())),
@@ -40,12 +41,12 @@ class PixelRings {
   }
   const char* axis() const { return of_ == Of::radius ? "radius" : "angle"; }
 
-  /// The inner one of a ring.
+  /// Radius or angle of the inner edge of a ring.
   double edge(int ring) const {
     if (radii_.empty()) return last_ * ring / rings_;
     return ring > 0 ? radii_[static_cast<std::size_t>(ring) - 1] : 0;
   }
-  /// -1 beyond.
+  /// Returns the ring at a radius or angle, -1 beyond the last.
   int ring_at(double coordinate) const {
     if (!(coordinate <= last_)) return -1;
     if (!radii_.empty())
@@ -53,7 +54,7 @@ class PixelRings {
                               radii_.begin());
     return std::min(static_cast<int>(coordinate / last_ * rings_), rings_ - 1);
   }
-  /// A place by the area within it, evenly over the ring that `stratum` picks.
+  /// A sampled radius or angle, represented by the area or solid angle within it.
   struct Place {
     double within;
     int ring;
@@ -62,7 +63,7 @@ class PixelRings {
     const int ring = std::min(static_cast<int>(stratum * rings_), rings_ - 1);
     return {within(edge(ring)) + area(ring) * random.uniform(), ring};
   }
-  /// Of what `sample` draws, per area.
+  /// Density with which sample() chooses a point of this ring, per area or solid angle.
   double density(int ring) const { return 1 / (rings_ * area(ring)); }
 
  private:

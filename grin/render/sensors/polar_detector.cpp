@@ -31,7 +31,7 @@ PolarDetectorEnd::PolarDetectorEnd(const PolarDetector& detector, const Stage& s
 EndDirection PolarDetectorEnd::along(const EndPosition& at, const Vec3& direction, int ring) const {
   EndDirection to{.direction = direction, .density = rings_.density(ring)};
   const double cosine = direction.dot(at.inward);
-  if (!(cosine > 0)) return to;  // light does not leave this way here
+  if (!(cosine > 0)) return to;  // no light leaves the stage in this direction at this position
   to.pixel = ring;
   to.strength = at.index * at.index * cosine / rings_.area(ring);
   return to;
@@ -50,9 +50,12 @@ EndDirection PolarDetectorEnd::towards(const EndPosition& at, const Vec3& direct
 }
 
 void add_keys(Keys& keys, PolarValues& values) {
-  add_vectors(keys, "sensor_direction", values.sensor_direction, "Where the angle is 0");
-  keys.add("largest_angle", values.largest_angle, "Of the rings").positive_to(pi).unit("rad");
-  keys.add("rings", values.rings, "Equal steps of the angle").from(1, 16384);
+  add_vectors(keys, "sensor_direction", values.sensor_direction, "Direction of polar angle 0");
+  keys.add("largest_angle", values.largest_angle,
+           "Largest polar angle, up to which directions are divided into rings")
+      .positive_to(pi)
+      .unit("rad");
+  keys.add("rings", values.rings, "Number of rings, of equal width in angle").from(1, 16384);
 }
 
 PolarDetector make_sensor(const OneSensor& of, const PolarValues& values) {

@@ -9,12 +9,12 @@ namespace flatspeckle::grin {
 
 class PolarDetectorEnd;
 
-/// All light that leaves the stage through its boundary, by polar angle from `axis`: power per
-/// solid angle averaged over rings of the angle.
+/// A detector of all light that leaves the stage through its boundary, by polar angle from `axis`.
+/// It measures power per solid angle, averaged over rings of equal width in that angle.
 struct PolarDetector {
   using End = PolarDetectorEnd;
   Vec3 axis;
-  double half_angle;  ///< up to pi
+  double half_angle;  ///< largest polar angle of the rings, rad, up to pi
   int rings;
 };
 
@@ -27,7 +27,7 @@ inline NearestPlace nearest_place(const PolarDetector& detector, const Surface& 
   return in_front(detector.axis, boundary);
 }
 
-/// W = 1 / ring's solid angle.
+/// Path endpoint of a polar detector, with W (path_end.h) = 1 / (solid angle of the ring).
 class PolarDetectorEnd : public WholeBoundary {
  public:
   /// Throws InputError.

@@ -25,11 +25,11 @@ DatasetTable table() {
                                      .mean = "irradiance averaged over the disk",
                                      .total = "power on the disk"});
   const auto add = [&](const DatasetRow& row) { table.rows.push_back(row); };
-  add({"disk_radius", Data::scale, "", "length", "radius of a disk, of those that radii lists"});
-  add({"other_disk_radius", Data::scale, "", "length", "the same"});
+  add({"disk_radius", Data::scale, "", "length", "radius of a disk listed in radii"});
+  add({"other_disk_radius", Data::scale, "", "length", "radius of a disk listed in radii"});
   add({"power_within", Data::estimate, "disk_radius", "1", "power on the disk"});
   add({"power_within_covariance", Data::real, "disk_radius other_disk_radius", "1",
-       "covariance of the errors of two of these powers"});
+       "covariance of the errors of the powers on two disks"});
   add({"power_within_gradient", Data::estimate, "parameter disk_radius", "",
        "derivative of power_within"});
   return table;
@@ -72,15 +72,16 @@ std::optional<EndPosition> RadialDetectorEnd::position_at(const Vec3& x) const {
 }
 
 void add_keys(Keys& keys, RadialValues& values) {
-  add_vectors(keys, "sensor_at", values.sensor_at, "The middle of the disk, on the boundary")
+  add_vectors(keys, "sensor_at", values.sensor_at, "Centre of the disk, on the boundary")
       .unit("length");
-  keys.add("sensor_radius", values.sensor_radius, "Of the disk").positive().unit("length");
+  keys.add("sensor_radius", values.sensor_radius, "Radius of the disk").positive().unit("length");
   keys.add("radii", values.radii,
-           "Of disks, increasing, in place of sensor_radius and rings: the power within each")
+           "Increasing radii of concentric disks: measures the power on each; replaces "
+           "sensor_radius and rings")
       .positive()
       .unit("length");
-  keys.add("rings", values.rings, "Equal steps of the radius").from(1, 16384);
-  keys.add("acceptance", values.acceptance, "Half angle about the normal")
+  keys.add("rings", values.rings, "Number of rings, of equal width").from(1, 16384);
+  keys.add("acceptance", values.acceptance, "Light is accepted within this angle from the normal")
       .positive_to(pi / 2)
       .unit("rad");
 }
@@ -98,7 +99,7 @@ RadialDetector make_sensor(const OneSensor& of, const RadialValues& values) {
           static_cast<int>(of.part(values.rings, 1)[0]), of.number(values.acceptance)};
 }
 
-/// Takes the square around the disk for it.
+/// The returned function treats the disk as the square around it.
 NearestPlace nearest_place(const RadialDetector& detector, const Surface& boundary) {
   const Vec3 normal = grin::normal(boundary, detector.centre);
   const double side = 2 * detector.radius;

@@ -12,16 +12,18 @@ namespace flatspeckle::grin {
 
 class RadialDetectorEnd;
 
-/// A disk on a face of a box boundary, or the cap of a sphere's within this distance of its middle:
-/// irradiance averaged over rings of distance, of light that arrives within `acceptance` of the
-/// outward normal. One ring is the end of a fibre.
+/// A detector on a disk of a face of a box boundary, or on a cap of a sphere boundary, within
+/// `radius` of `centre`. It measures the irradiance of light that arrives within the angle
+/// `acceptance` of the outward normal, averaged over rings. A single ring models the end of a
+/// fibre.
 struct RadialDetector {
   using End = RadialDetectorEnd;
   Vec3 centre;
   double radius;
   int rings;
   double acceptance;  ///< half angle, rad, up to pi/2
-  /// Where given, rings from each to the next, and the powers within each: the last is `radius`.
+  /// If given, the outer radii of the rings; the power within each of them is then a result as
+  /// well. The last one equals `radius`.
   std::vector<double> radii = {};
 };
 
@@ -32,7 +34,7 @@ inline const DatasetTable& table_of(const RadialDetector&) {
 PixelRings picture_of(const RadialDetector& detector);
 NearestPlace nearest_place(const RadialDetector& detector, const Surface& boundary);
 
-/// W = 1 / ring's area.
+/// Path endpoint of a radial detector, with W (path_end.h) = 1 / (area of the ring).
 class RadialDetectorEnd {
  public:
   /// Throws InputError.

@@ -47,7 +47,7 @@ SensorEnd::SensorEnd(const Sensor& sensor, const Stage& stage, int first_pixel)
                       sensor)),
       first_pixel_(first_pixel) {}
 
-std::vector<SensorEnd> sensor_ends(const std::vector<Sensor>& sensors, const Stage& stage) {
+std::vector<SensorEnd> sensor_endpoints(const std::vector<Sensor>& sensors, const Stage& stage) {
   std::vector<SensorEnd> ends;
   int pixels = 0;
   for (const Sensor& sensor : sensors) {
@@ -93,15 +93,18 @@ void add_keys(Keys& keys, SensorValues& values) {
   keys.group("Sensor");
   keys.add(
           "sensor", values.sensor,
-          "Reads L/n^2 (camera), irradiance on the boundary (area; radial: by rings of a disk), or "
-          "power per solid angle that leaves the stage (directional; polar: by polar angle); or "
-          "several, and the keys of sensors have one value for "
-          "all or one for each; none: a map alone")
+          "Measures L/n^2 (camera), irradiance on the boundary (area; radial: by rings of a disk), "
+          "or power per solid angle that leaves the stage (directional; polar: by polar angle). "
+          "Several may be given: each key of a sensor then has one value for all sensors, or one "
+          "for each; none: only a map is computed")
       .one_of(words_for_sensors(values.kinds));
-  keys.add("sensor_name", values.sensor_name, "Of each: its results are in the group sensors/NAME")
+  keys.add("sensor_name", values.sensor_name,
+           "Names of the sensors: results are in the groups sensors/NAME")
       .only_of("several sensors");
-  add_vectors(keys, "sensor_up", values.sensor_up, "Upwards in the picture");
-  keys.add("pixels", values.pixels, "Columns and rows").each_of(2, "columns rows").from(1, 16384);
+  add_vectors(keys, "sensor_up", values.sensor_up, "Upward direction in the picture");
+  keys.add("pixels", values.pixels, "Numbers of columns and rows of the picture")
+      .each_of(2, "columns rows")
+      .from(1, 16384);
   each_kind(values.kinds, [&](auto& kind) {
     keys.group(std::string("Sensor: ") + kind.word, kind.word);
     add_keys(keys, kind);
@@ -113,7 +116,7 @@ std::vector<Sensor> make_sensors(const Keys& keys, const SensorValues& values) {
   std::vector<Sensor> sensors;
   if (words == std::vector<std::string>{no_sensor}) return sensors;
   for (const std::string& word : words) {
-    if (word == no_sensor) throw InputError("sensor", word, "must stand alone");
+    if (word == no_sensor) throw InputError("sensor", word, "must be the only value");
     const OneSensor of(keys, sensors.size(), words.size());
     with_kind(values.kinds, word, [&](const auto& kind) {
       if constexpr (requires { make_sensor(of, kind); })
@@ -135,14 +138,15 @@ std::vector<std::string> make_sensor_names(const Keys& keys, const SensorValues&
     if (name.find_first_not_of(
             "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-") != name.npos ||
         name.empty())
-      refuse(name, "must be of letters, figures, _ and -");
+      refuse(name, "must consist of letters, digits, _ and -");
     if (std::find(names.begin(), names.end(), name) != names.end())
-      refuse(name, "must not be there twice");
+      refuse(name, "must not be repeated");
     names.push_back(name);
   }
   if (names.empty())
     for (std::size_t i = 1; i <= values.sensor.size(); ++i) names.push_back(std::to_string(i));
-  if (names.size() != values.sensor.size()) refuse(names.back(), "must be one for each sensor");
+  if (names.size() != values.sensor.size())
+    refuse(names.back(), "must have one name for each sensor");
   return names;
 }
 

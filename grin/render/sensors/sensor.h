@@ -14,7 +14,7 @@
 
 namespace flatspeckle::grin {
 
-/// All kinds of sensors (sensor_kind.h); the one list of them.
+/// All kinds of sensors (sensor_kind.h). They are listed only here.
 using SensorKinds =
     std::tuple<CameraValues, AreaValues, RadialValues, DirectionalValues, PolarValues>;
 
@@ -27,10 +27,11 @@ struct SensorsOf<std::tuple<Kind...>> {
 };
 using Sensor = SensorsOf<SensorKinds>::Sensor;
 
-/// The sensors of a scene as keys have them: the words of their kinds, and what each kind needs.
+/// Values of the keys of sensors: for each sensor the name of its kind, and the values of each
+/// kind.
 struct SensorValues {
   std::vector<std::string> sensor{CameraValues::word};
-  std::vector<std::string> sensor_name{};  ///< none: "1", "2", ...
+  std::vector<std::string> sensor_name{};  ///< empty: the names are "1", "2", ...
   std::vector<double> sensor_up{0, 1, 0};
   std::vector<std::int64_t> pixels{64, 64};
   SensorKinds kinds{};
@@ -42,24 +43,24 @@ struct SensorValues {
 };
 
 void add_keys(Keys& keys, SensorValues& values);
-/// Both throw InputError.
+/// Make the sensors and their names. Both throw InputError.
 std::vector<Sensor> make_sensors(const Keys& keys, const SensorValues& values);
 std::vector<std::string> make_sensor_names(const Keys& keys, const SensorValues& values);
 
-/// What the file of a sensor has.
+/// Datasets of a sensor in the result file.
 const DatasetTable& table_of(const Sensor& sensor);
 SensorPixels pixels_of(const Sensor& sensor);
 
-/// A sensor of a scene as an end of paths; same interface as StageLights. Its pixels are numbered
-/// from first_pixel on.
+/// A sensor of a scene as a path endpoint; it has the same interface as StageLights. Its pixels are
+/// numbered from first_pixel.
 ///
-/// `stratum`, the same number in (0, 1) for the position and the direction, picks the pixel: evenly
-/// spread numbers share the paths of a batch evenly among the pixels. Densities are those of a
-/// uniform stratum.
+/// `stratum` in (0, 1) selects the pixel, and must be the same number for position and direction.
+/// Stratified numbers distribute the paths of a batch evenly over the pixels. Densities assume that
+/// the stratum is uniformly distributed.
 class SensorEnd {
  public:
-  /// Throws InputError naming the key for a sensor outside the stage, or one
-  /// that does not fit on the boundary.
+  /// Throws InputError naming the key for a sensor outside the stage, or one that does not fit on
+  /// the boundary.
   SensorEnd(const Sensor& sensor, const Stage& stage, int first_pixel = 0);
 
   PixelGrid pixels() const {
@@ -78,7 +79,7 @@ class SensorEnd {
   EndPosition sample_position(const S& space, RandomStream& random) const {
     return sample_position(space, random, random.uniform());
   }
-  /// For a join from x: where the sensor may see light from there.
+  /// Chooses a position for a connection from x, preferably one that accepts light from x.
   template <class S>
   EndPosition choose_position(const S& space, const Vec3& x, RandomStream& random) const {
     EndPosition at = std::visit(
@@ -92,17 +93,19 @@ class SensorEnd {
     at.index = space.index(at.point);
     return at;
   }
-  /// Density of choosing this place from x over at.position_density.
+  /// Returns the density with which choose_position() chooses this position for x, divided by
+  /// at.position_density.
   double choice(const EndPosition& at, const Vec3& x) const;
   EndDirection sample_direction(const EndPosition& at, RandomStream& random) const {
     return sample_direction(at, random, random.uniform());
   }
-  /// pixel -1 and strength 0 where the sensor does not look.
+  /// Returns strength, density and pixel of a direction; outside the view of the sensor the pixel
+  /// is -1 and the strength 0.
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
 
   bool can_be_hit() const;
-  /// A path arrives on the boundary at x along `direction`: calls use(EndHit) if the sensor sees
-  /// it.
+  /// Calls use(EndHit) if a path that arrives on the boundary at x along `direction` hits the
+  /// sensor within its view.
   template <class S, class Use>
   void hit(const S& space, const Vec3& x, const Vec3& direction, const Use& use) const {
     auto at = std::visit([&](const auto& end) { return end.position_at(x); }, end_);
@@ -121,7 +124,7 @@ class SensorEnd {
   int first_pixel_;
 };
 
-/// All sensors of a scene, their pixels numbered through. Throws as SensorEnd does.
-std::vector<SensorEnd> sensor_ends(const std::vector<Sensor>& sensors, const Stage& stage);
+/// Makes all sensors of a scene with consecutive pixel numbers. Throws as SensorEnd does.
+std::vector<SensorEnd> sensor_endpoints(const std::vector<Sensor>& sensors, const Stage& stage);
 
 }  // namespace flatspeckle::grin

@@ -13,32 +13,34 @@ namespace {
   throw InputError("gradient_by: " + why);
 }
 
-/// Between a sensor that reaches so far from its centre along each axis and the next face.
-double room_beside(const Box& stage, const Vec3& centre, const Vec3& outwards, const Vec3& reach) {
-  double room = std::numeric_limits<double>::infinity();
+/// Returns the smallest distance between a sensor and the edges of its face. reach: half extent of
+/// the sensor along each axis.
+double space_beside(const Box& stage, const Vec3& centre, const Vec3& outwards, const Vec3& reach) {
+  double margin = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(outwards[axis]) < 0.5)
-      room = std::min({room, centre[axis] - reach[axis] - stage.low[axis],
-                       stage.high[axis] - centre[axis] - reach[axis]});
-  return room;
+      margin = std::min({margin, centre[axis] - reach[axis] - stage.low[axis],
+                         stage.high[axis] - centre[axis] - reach[axis]});
+  return margin;
 }
 
-PixelLine::Edge edge(double at, double size, double room) {
-  constexpr double least = 0.125, most = 4;  // of the size
-  if (!(room >= least * size))
-    refuse("sensors must be apart from the edges of the stage, by a sixteenth of their width");
-  return {at, size, std::min(room, most * size)};
+PixelLine::Edge edge(double at, double size, double margin) {
+  constexpr double least = 0.125, most = 4;  // in units of the size
+  if (!(margin >= least * size))
+    refuse("sensors must keep a distance of a sixteenth of their width from edges of the stage");
+  return {at, size, std::min(margin, most * size)};
 }
 
-PixelLine even_line(double half, int count, double room) {
+PixelLine even_line(double half, int count, double margin) {
   std::vector<PixelLine::Edge> edges;
-  for (int i = 0; i <= count; ++i) edges.push_back(edge(half * (2.0 * i / count - 1), half, room));
+  for (int i = 0; i <= count; ++i)
+    edges.push_back(edge(half * (2.0 * i / count - 1), half, margin));
   return PixelLine(edges);
 }
 
 void require_all_directions(double acceptance) {
   if (acceptance < std::numbers::pi / 2)
-    refuse("sensors must take light from all directions, without acceptance");
+    refuse("sensors must accept light from all directions: leave out acceptance");
 }
 
 }  // namespace
@@ -68,13 +70,13 @@ void SensorEdges::set(const RadialDetector& detector, const Box& stage) {
   right_ = across.col(0);
   down_ = across.col(1);
   is_round_ = true;
-  const double room = room_beside(stage, centre_, outwards_, Vec3::Constant(detector.radius));
+  const double margin = space_beside(stage, centre_, outwards_, Vec3::Constant(detector.radius));
   const PixelRings rings = picture_of(detector);
   std::vector<PixelLine::Edge> edges{{0, 0, 0}};
   for (int ring = 0; ring < detector.rings; ++ring) {
     areas_.push_back(rings.area(ring));
     const double radius = rings.edge(ring + 1);
-    edges.push_back(edge(radius, radius, room));
+    edges.push_back(edge(radius, radius, margin));
   }
   columns_ = PixelLine(edges);
   rows_ = PixelLine({{-1, 0, 0}, {1, 0, 0}});
@@ -89,9 +91,9 @@ void SensorEdges::set(const AreaDetector& detector, const Box& stage) {
   down_ = -view.up;
   const PixelRectangle face = picture_of(detector);
   const Vec3 reach = face.half_width() * right_.cwiseAbs() + face.half_height() * down_.cwiseAbs();
-  const double room = room_beside(stage, centre_, outwards_, reach);
-  columns_ = even_line(face.half_width(), face.grid().columns, room);
-  rows_ = even_line(face.half_height(), face.grid().rows, room);
+  const double margin = space_beside(stage, centre_, outwards_, reach);
+  columns_ = even_line(face.half_width(), face.grid().columns, margin);
+  rows_ = even_line(face.half_height(), face.grid().rows, margin);
   areas_.assign(static_cast<std::size_t>(face.grid().count()), face.pixel_area());
 }
 

@@ -8,22 +8,23 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// On the faces that light of this direction leaves through.
+/// Returns the point nearest to x on the faces of a box through which light along `forward` leaves.
 Vec3 nearest_on(const Box& box, const Vec3& forward, const Vec3& x) {
   double least = std::numeric_limits<double>::infinity();
   int nearest = 0;
   const auto face = [&](int axis) { return forward[axis] > 0 ? box.high[axis] : box.low[axis]; };
   for (int axis = 0; axis < 3; ++axis) {
-    const double way = std::abs(face(axis) - x[axis]);
-    if (forward[axis] == 0 || way >= least) continue;
-    least = way;
+    const double distance = std::abs(face(axis) - x[axis]);
+    if (forward[axis] == 0 || distance >= least) continue;
+    least = distance;
     nearest = axis;
   }
   Vec3 found = x;
   found[nearest] = face(nearest);
   return found;
 }
-/// On the half that light of this direction leaves through.
+/// Returns the point nearest to x on the half of a sphere through which light along `forward`
+/// leaves.
 Vec3 nearest_on(const Sphere& sphere, const Vec3& forward, const Vec3& x) {
   Vec3 away = x - sphere.centre;
   away -= std::min(0.0, away.dot(forward)) * forward;
@@ -53,10 +54,10 @@ DatasetTable sensor_table(const SensorWords& words) {
   add("pulse", "optical_path", whole_unit, whole + ", in the bin");
   add("pulse_before", "", whole_unit, whole + ", of paths shorter than all bins");
   add("pulse_after", "", whole_unit, whole + ", of paths longer than all bins");
-  add("image_path", axes, "length", "mean optical path of the pixel's light; 0 where none came");
-  add("image_path_square", axes, "length^2", "mean of its square");
+  add("image_path", axes, "length", "mean optical path of the pixel's light; 0 without light");
+  add("image_path_square", axes, "length^2", "mean squared optical path");
   add("mean_path", "", "length", "mean optical path of the sensor's light");
-  add("mean_path_square", "", "length^2", "mean of its square");
+  add("mean_path_square", "", "length^2", "mean squared optical path");
   add("image_gradient", "parameter " + axes, "", "derivative of image");
   add("mean_gradient", "parameter", "", "derivative of mean");
   if (has_total) add("total_gradient", "parameter", "", "derivative of total");

@@ -17,27 +17,27 @@
 
 namespace flatspeckle::grin {
 
-/// Of light that arrives on a surface within an angle from its outward normal: W of path_end.h is
-/// `reading` there and 0 beyond.
+/// Directions in which a surface accepts light: within an angle from its outward normal. W of
+/// path_end.h is `sensitivity` within this angle and 0 beyond.
 class Acceptance {
  public:
   explicit Acceptance(double angle) : sine_squared_(std::sin(angle) * std::sin(angle)) {}
 
-  /// Infinite for all directions.
+  /// Tangent of the angle; infinite if all directions are accepted.
   double tangent() const { return std::sqrt(sine_squared_ / (1 - sine_squared_)); }
 
-  EndDirection sample(const EndPosition& at, double reading, RandomStream& random) const {
+  EndDirection sample(const EndPosition& at, double sensitivity, RandomStream& random) const {
     const double squared = sine_squared_ * random.uniform();
     return towards(at, random_turn(at.inward, squared / (1 + std::sqrt(1 - squared)), random),
-                   reading);
+                   sensitivity);
   }
-  EndDirection towards(const EndPosition& at, const Vec3& direction, double reading) const {
+  EndDirection towards(const EndPosition& at, const Vec3& direction, double sensitivity) const {
     EndDirection to{.direction = direction};
     const double cosine = direction.dot(at.inward);
     if (!(cosine > 0 && 1 - cosine * cosine <= sine_squared_)) return to;
     to.density = cosine / (std::numbers::pi * sine_squared_);
     to.pixel = at.pixel;
-    to.strength = at.index * at.index * cosine * reading;
+    to.strength = at.index * at.index * cosine * sensitivity;
     return to;
   }
 
@@ -45,53 +45,57 @@ class Acceptance {
   double sine_squared_;
 };
 
-/// What a kind of sensor calls what it finds.
+/// Names and units in the datasets of a kind of sensor.
 struct SensorWords {
   std::string name;
-  std::vector<DatasetRow> axes;  ///< of a pixel
-  std::string unit;              ///< of a pixel and of the mean
+  std::vector<DatasetRow> axes;  ///< axes of the picture
+  std::string unit;              ///< unit of a pixel's value and of the mean
   std::string pixel, mean;
-  std::string total = {};  ///< a power; none: there is no total, and pulses are of the mean
+  /// Description of the total, which is a power. If empty, the file contains no total, and the
+  /// pulse is that of the mean over the pixels.
+  std::string total = {};
 };
 
-/// Pictures and what they add up to; the same of bins of optical path and beyond them; the mean
-/// optical path and the mean of its square; derivatives by parameters of the medium.
+/// Returns the datasets of a sensor: picture, mean and total; the same quantities in each bin of
+/// optical path, and before and after all bins; mean and mean squared optical path; derivatives by
+/// parameters.
 DatasetTable sensor_table(const SensorWords& words);
 
-// A kind of sensor is a file with: the sensor; table_of(sensor), what its result file has,
-// picture_of(sensor), its pixels, and nearest_place(sensor, boundary); its End, an end of paths
-// made of (sensor, stage), which throws InputError naming the key where it does not fit the stage;
-// its values, with the word of the key `sensor` for it; add_keys(keys, values) and make_sensor(of,
-// values, picture), without the picture where its pixels are rings; `of` reads what the values have
-// for it. It is listed in sensor.h.
+// The file of a kind of sensor declares: the sensor; table_of(sensor), its datasets;
+// picture_of(sensor), its pixels; nearest_place(sensor, boundary); its End, a path endpoint
+// constructed from (sensor, stage), which throws InputError naming the key if the sensor does not
+// fit the stage; the values of its keys, with the value of the key `sensor` that selects the kind;
+// add_keys(keys, values); and make_sensor(of, values, picture), where `of` reads the values of one
+// sensor, and `picture` is left out if the pixels are rings. The kind is listed in sensor.h.
 //
-// The end tells pixels(), has sample_position(stratum, random), sample_direction(at, stratum,
-// random) and towards(at, direction), and position_at(x) of a point on the boundary, if it can be
-// hit there. Where it may, it has choose_position(x, random) and choice(position, x) for joins from
-// x, and can_be_hit().
+// The endpoint has pixels(), sample_position(stratum, random), sample_direction(at, stratum,
+// random), towards(at, direction), and position_at(x), the position at a point on the boundary, if
+// the sensor can be hit there. It may also have choose_position(x, random) and choice(position, x)
+// for connections from x, and can_be_hit().
 
-/// The pixels of a sensor, as its file has them.
+/// The pixels of a sensor with their axes in the result file.
 struct SensorPixels {
   struct Axis {
     const char* name;
     std::vector<double> middles;
   };
   PixelGrid grid;
-  double area;  ///< of all, in the plane or solid angle that they divide
+  double area;  ///< area or solid angle of all pixels
   std::vector<Axis> axes;
-  std::vector<double> shares = {};  ///< of each in the area; none: all have the same
+  std::vector<double> shares = {};  ///< fraction of the area in each pixel; empty: equal fractions
 
   double share(std::size_t pixel) const {
     return shares.empty() ? 1.0 / grid.count() : shares[pixel];
   }
 };
 
-/// Where straight light from a point in the stage gets to a sensor soonest.
+/// Function that returns the point of a sensor nearest to a given point in the stage.
 using NearestPlace = std::function<Vec3(const Vec3&)>;
-/// On the half of the boundary that light of this direction leaves through.
+/// Makes a function that returns the nearest point on the half of the boundary through which light
+/// along `forward` leaves.
 NearestPlace in_front(const Vec3& forward, const Surface& boundary);
 
-/// All of the boundary, evenly, as the places of an end.
+/// Endpoint positions distributed uniformly over the whole boundary.
 class WholeBoundary {
  public:
   /// Throws InputError.
@@ -116,14 +120,14 @@ class WholeBoundary {
   Regions regions_;
 };
 
-/// What all kinds with a rectangle have.
+/// Values of a sensor that all kinds with a rectangle of pixels have in common.
 struct Picture {
   Vec3 up;
   PixelGrid pixels;
 };
 
-/// What one of a scene's sensors reads of keys, which have numbers for each sensor or the same for
-/// all. Throws InputError for what is not given, or for another number of sensors.
+/// Reads the values of one sensor. A key has one value for each sensor, or one for all. Throws
+/// InputError if a key has no value or another number of values.
 class OneSensor {
  public:
   OneSensor(const Keys& keys, std::size_t number, std::size_t sensors)
@@ -138,15 +142,15 @@ class OneSensor {
                        std::to_string(sensors_));
     return std::span(member).subspan(given > size ? number_ * size : 0, size);
   }
-  /// The same of all sensors.
+  /// Returns the values of a key that is common to all sensors.
   const std::vector<double>& all(const std::vector<double>& member) const {
     return keys_.read(member);
   }
-  /// What another key stands in the place of. Throws InputError.
+  /// Throws InputError if the key of `member` is given, since the key `other` replaces it.
   template <class Member>
   void refuse_beside(const std::string& other, const Member& member) const {
     if (keys_.given(member))
-      throw InputError(keys_.name(member) + ": must not be given beside " + other);
+      throw InputError(keys_.name(member) + ": must not be given together with " + other);
   }
   Vec3 vector(const std::vector<double>& member) const { return vector_of(part(member, 3)); }
   double number(const std::vector<double>& member) const { return part(member, 1)[0]; }
@@ -156,7 +160,7 @@ class OneSensor {
   std::size_t number_, sensors_;
 };
 
-/// The row of x y z for each sensor.
+/// Adds a key that has three numbers, x y z, for each sensor.
 inline Key& add_vectors(Keys& keys, const std::string& name, std::vector<double>& member,
                         const std::string& help) {
   return keys.add(name, member, help).each_of(3, "x y z");

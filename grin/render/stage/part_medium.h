@@ -8,11 +8,11 @@
 
 namespace flatspeckle::grin {
 
-/// A medium as flights and joins see it.
+/// The medium of a part of the stage, for flights and connections.
 class PartMedium {
  public:
   PartMedium() = default;
-  /// The mean of the relative density in the part.
+  /// mean_density: mean of the relative density in the part.
   PartMedium(const ScatteringMedium& medium, double mean_density)
       : grid_(medium.density),
         mu_t_(medium.mu_t()),
@@ -24,28 +24,30 @@ class PartMedium {
   bool is_uniform() const { return scatters_ && !grid_; }
   double reference() const { return reference_; }
   double mu_t() const { return mu_t_; }
-  /// Known to be met everywhere; a grid may be empty.
+  /// Lower bound of the extinction; 0 for a grid, which may be empty.
   double least_extinction() const { return grid_ ? 0 : mu_t_; }
   double majorant() const { return mu_t_ * largest_; }
   const DensityGrid* grid() const { return grid_.get(); }
 
-  /// Is a tentative collision, of density majorant(), one of the true density?
+  /// Samples whether a tentative collision at x is real. Tentative collisions have the density
+  /// majorant() along a path.
   bool accepts(const Vec3& x, RandomStream& random) const {
     return !grid_ || random.uniform() * largest_ < (*grid_)(x);
   }
 
-  /// What a tentative collision is: one; or none, where light that is not scattered loses weight.
+  /// Samples whether a tentative collision at x is real. In a medium that does not scatter no
+  /// collision is real; the weight is reduced instead.
   bool collides(const Vec3& x, double& weight, RandomStream& random) const {
     if (scatters_) return accepts(x, random);
     weight *= lacking(x);
     return false;
   }
 
-  /// The share of tentative collisions that is none.
+  /// Probability that a tentative collision at x is null, that is, not real.
   double lacking(const Vec3& x) const { return 1 - (*grid_)(x) / largest_; }
 
-  /// The arc length to the next collision along a path x(s), from Woodcock's tentative collisions;
-  /// infinity if it would be beyond `longest`.
+  /// Samples the arc length to the next collision along a path x(s) by Woodcock tracking; infinity
+  /// if it is beyond `longest`.
   template <class Path>
   double free_path(const Path& x, double longest, RandomStream& random) const {
     if (!scatters_) return std::numeric_limits<double>::infinity();
@@ -55,7 +57,8 @@ class PartMedium {
     return s < longest ? s : std::numeric_limits<double>::infinity();
   }
 
-  /// exp(-integral of mu_t) along the path; in a grid an unbiased estimate by ratio tracking.
+  /// Returns exp(-integral of mu_t) along the path; in a density grid an unbiased estimate of it by
+  /// ratio tracking.
   template <class Path>
   double transmitted(const Path& x, double length, RandomStream& random) const {
     if (!(mu_t_ > 0)) return 1;

@@ -11,7 +11,7 @@ Regions::Regions(const Stage& stage, std::optional<double> farthest) {
   for (Part part = around; part < stage.parts(); ++part) surfaces_.push_back(stage.surface(part));
   if (stage.bodies.empty()) return;
   for (const Surface& surface : surfaces_)
-    if (std::holds_alternative<LevelSurface>(surface)) most_legs_ = 10000;
+    if (std::holds_alternative<LevelSurface>(surface)) most_segments_ = 10000;
   const auto [low, high] = bounds(stage.boundary);
   farthest_ = farthest.value_or(low.cwiseAbs().cwiseMax(high.cwiseAbs()).maxCoeff());
 }
@@ -29,7 +29,7 @@ bool Regions::goes_into(Part body, const Vec3& x, const Vec3& d) const {
 }
 
 double mean_density(const Stage& stage, Part part) {
-  constexpr int points = 32;  // along an axis
+  constexpr int points = 32;  // lattice points along each axis
   const ScatteringMedium& medium = stage.medium_in(part);
   if (!medium.density) return 1;
   const Regions regions(stage);

@@ -7,15 +7,16 @@
 
 #include "core/error.h"
 #include "grin/media/geometry/vector_values.h"
-#include "grin/rays/surfaces/straight_way.h"
+#include "grin/rays/surfaces/straight_crossing.h"
 #include "grin/render/stage/regions.h"
 
 namespace flatspeckle::grin {
 
 namespace {
 
-/// Of a path from the middle: the way through and diffusion, or what absorption and roulette leave
-/// of it.
+/// Estimates the number of scatterings of a path from the middle of a region, as its optical depth
+/// (light that goes straight on) plus a term for diffusion, limited by absorption and Russian
+/// roulette.
 double most_scatterings(const ScatteringMedium& medium, const Surface& within, double density) {
   const auto [low, high] = bounds(within);
   const double depth = medium.mu_s * density * (high - low).minCoeff() / 2;
@@ -31,12 +32,12 @@ void check_path_lengths(const ScatteringMedium& medium, const Surface& within, d
   std::ostringstream text;
   text << "is too dense: light from the middle would scatter some " << scatterings
        << " times, and paths of more than " << most
-       << " do not end in time; max_scatterings cuts them short";
+       << " scatterings take too long; limit them by max_scatterings";
   throw InputError(prefix + "mu_s", medium.mu_s, text.str());
 }
 
-/// Flights through a density grid go from one tentative collision to the next, as many where the
-/// grid is thin or ends.
+/// Throws InputError if flights through a density grid take too long. Tentative collisions are as
+/// frequent where the density is low, or beyond the grid, as where it is largest.
 void check_flights(const ScatteringMedium& medium, const Surface& within,
                    const std::string& prefix) {
   if (!medium.density) return;
@@ -45,8 +46,8 @@ void check_flights(const ScatteringMedium& medium, const Surface& within,
   const double collisions = medium.mu_t() * medium.density->largest() * (high - low).norm();
   if (collisions <= most) return;
   std::ostringstream text;
-  text << "is too dense: a flight through its density grid might meet " << collisions
-       << " tentative collisions, and more than " << most << " do not end in time";
+  text << "is too dense: a flight through its density grid may have " << collisions
+       << " tentative collisions, and more than " << most << " take too long";
   const bool scatters = medium.mu_s >= medium.mu_a;
   throw InputError(prefix + (scatters ? "mu_s" : "mu_a"), scatters ? medium.mu_s : medium.mu_a,
                    text.str());
@@ -56,8 +57,8 @@ double largest_coordinate(const Box& box) {
   return box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).maxCoeff();
 }
 
-/// Two closed surfaces that are the same but for rounding: they have the same bounds, and lines
-/// along the axes meet both at the same places.
+/// Whether two closed surfaces are equal to rounding: they have the same bounds, and lines along
+/// the axes cross both at the same positions.
 bool coincide(const Surface& a, const Surface& b) {
   constexpr int lines = 7;
   const Box box = bounds(a), other = bounds(b);
@@ -73,7 +74,7 @@ bool coincide(const Surface& a, const Surface& b) {
     share[(axis + 1) % 3] = (i + 0.5) / lines;
     share[(axis + 2) % 3] = (j + 0.5) / lines;
     const Vec3 x = box.low + share.cwiseProduct(box.high - box.low), d = Vec3::Unit(axis);
-    const double to_a = way_in(a, x, d), to_b = way_in(b, x, d);
+    const double to_a = entry_distance(a, x, d), to_b = entry_distance(b, x, d);
     if (to_a != to_b && !(std::abs(to_a - to_b) <= 1e3 * same)) return false;
   }
   return true;
@@ -130,7 +131,9 @@ void check_bodies(const Stage& stage) {
     const Body& body = stage.bodies[part - 1];
     const Box box = bounds(body.surface);
     if (!((box.high - box.low).minCoeff() > 8 * crossing_accuracy(largest_coordinate(box))))
-      throw InputError(name_of(body) + ": is too thin for coordinates as large as its own");
+      throw InputError(name_of(body) +
+                       ": is too thin to be resolved at coordinates as large as its own; move it "
+                       "closer to the origin");
     for (Part other = 1; other < part; ++other)
       if (coincide(body.surface, stage.bodies[other - 1].surface))
         throw InputError(name_of(body) + ": coincides with " + name_of(stage.bodies[other - 1]) +
@@ -147,10 +150,10 @@ void check(const Stage& stage) {
     check_flights(body.medium, body.surface, body.keys);
     if (!lies_in(body.surface, stage.boundary))
       throw InputError(
-          "body: must be inside of the stage; of luneburg without one the ball, or the stage "
-          "inside of it");
+          "body: must be inside of the stage; for luneburg without a body, either the ball must be "
+          "inside of the stage, or the stage inside of the ball");
     if (!body.excess && part != stage.field_part())
-      throw InputError("body: only one of them may be filled by the index field");
+      throw InputError("body: only one body may be filled by the index field");
   }
 }
 

@@ -8,31 +8,31 @@
 
 namespace flatspeckle::grin {
 
-/// What a place lies in: a body, by its number from 1 on, or what is around them.
+/// Part of the stage: a body, numbered from 1, or 0 for the surroundings of the bodies.
 using Part = int;
 inline constexpr Part around = 0;
 
-/// A thing in the stage, with its own index and medium. At its surface light is refracted and
-/// reflected by Fresnel's laws where the index jumps.
+/// A body in the stage with its own index and medium. At its surface light is refracted and
+/// reflected by Fresnel's laws if the index jumps.
 struct Body {
   Surface surface;
   ScatteringMedium medium = {};
-  std::optional<double> excess = {};  ///< index 1 + excess; nothing: the index field fills it
-  const char* keys = "body_";         ///< how names of its keys begin, for messages
+  std::optional<double> excess = {};  ///< index - 1; nullopt: the index field fills the body
+  const char* keys = "body_";         ///< prefix of the keys that define the body, for messages
 };
 
-/// Where light goes. Light that reaches the boundary leaves the scene: nothing is reflected there.
-/// Of bodies that overlap a place is in the last one. The index field fills the first body that has
-/// no index of its own, and around the bodies the index is 1 + excess_around everywhere; without
-/// such a body the field is around them.
+/// The volume in which light propagates. Light that reaches the boundary leaves the scene without
+/// reflection. Where bodies overlap, the last one in the list counts. The index field fills the
+/// first body without an index of its own, and around the bodies the index is 1 + excess_around;
+/// without such a body the field fills the surroundings.
 struct Stage {
   Surface boundary;              ///< closed; light is inside of it
-  ScatteringMedium medium = {};  ///< of the stage, but for the bodies
+  ScatteringMedium medium = {};  ///< medium of the surroundings of the bodies
   std::vector<Body> bodies = {};
   double excess_around = 0;
 
   Part parts() const { return static_cast<Part>(bodies.size()) + 1; }
-  /// Of a part; around the bodies the boundary.
+  /// Returns the surface of a part; for the surroundings, the boundary.
   const Surface& surface(Part part) const {
     return part == around ? boundary : bodies[part - 1].surface;
   }
@@ -40,33 +40,35 @@ struct Stage {
     return part == around ? medium : bodies[part - 1].medium;
   }
   Part field_part() const;
-  /// Some medium absorbs.
+  /// Whether some medium absorbs.
   bool absorbs() const;
-  /// Of a part that the field does not fill.
+  /// Returns index - 1 of a part that the field does not fill.
   double excess_in(Part part) const {
     return part == around ? excess_around : *bodies[part - 1].excess;
   }
 };
 
-/// The same stage where light that collides is lost.
+/// Returns a copy of the stage in which all extinction is absorption.
 Stage without_scattering(const Stage& stage);
 
-/// To rounding: touching is allowed. Of a level surface, its bounds.
+/// Whether `inner` is inside `outer`, apart from rounding; they may touch. For an inner surface
+/// other than a sphere, the corners of its bounds are checked.
 bool lies_in(const Surface& inner, const Surface& outer);
 
-/// Throws InputError for bodies that coincide as a whole and for one so thin that crossings of its
-/// two sides cannot be told apart.
+/// Throws InputError for two bodies that coincide, and for a body so thin that crossings of its two
+/// sides cannot be distinguished.
 void check_bodies(const Stage& stage);
 
 /// Throws InputError for a boundary or a body that is not closed, a body that is not within the
-/// boundary, a second one without an index, and a density grid that flights take too long through.
+/// boundary, a second body without an index of its own, and a density grid so dense that flights
+/// through it take too long.
 void check(const Stage& stage);
 
-/// How often light from the middle of a part scatters at the most, roughly: it goes through,
-/// diffuses, or is absorbed.
+/// Estimates the number of scatterings until light from the middle of a part leaves it or is
+/// absorbed; the largest number over the parts.
 double most_scatterings(const Stage& stage);
 
-/// Throws InputError for a medium so dense that a path of at most so many scatterings may not end
+/// Throws InputError for a medium so dense that a path of at most max_scatterings may not end
 /// within minutes.
 void check_path_lengths(const Stage& stage, int max_scatterings);
 

@@ -6,16 +6,16 @@
 
 namespace flatspeckle::grin {
 
-/// A leg within one part, which absorbs and does not scatter, leaves as much of the light.
+/// Sets the weight of a flight after a segment in a part that absorbs without scattering.
 inline void attenuate(Flight& flight, double weight) {
   if (flight.point.part != around) flight.absorbed_in_body += flight.weight - weight;
   flight.weight = weight;
 }
 
-/// A stage for light that goes straight within a part.
+/// A stage in which light propagates along straight lines within each part.
 class StraightStage {
  public:
-  /// field_excess: of the part that the field fills, where it is the same everywhere.
+  /// field_excess: n - 1 of the part that the field fills; nullopt if it is not constant.
   StraightStage(const Stage& stage, std::optional<double> field_excess) : regions_(stage) {
     for (Part part = around; part < stage.parts(); ++part) {
       const PartMedium medium(stage.medium_in(part), mean_density(stage, part));
@@ -28,49 +28,53 @@ class StraightStage {
 
   const Regions& regions() const { return regions_; }
   const PartMedium& medium(Part part) const { return parts_[part].medium; }
-  /// Index - 1 of a part where it is the same everywhere.
+  /// Returns index - 1 of a part of constant index.
   double excess(Part part) const { return *parts_[part].excess; }
 
-  /// Light goes from one part into the other as if they were one.
+  /// Whether light crosses from one part into the other without refraction.
   bool are_alike(Part a, Part b) const { return parts_[a].first_alike == parts_[b].first_alike; }
-  /// No other part is alike.
+  /// Whether the index of a part differs from that of every other part (are_alike).
   bool is_alone(Part part) const { return parts_[part].is_alone; }
-  /// The index jumps anywhere.
+  /// Whether the index jumps at some surface.
   bool refracts() const { return refracts_; }
 
-  /// To the next collision or to the end of the part. rise: gradient of the logarithm of what light
-  /// is worth, along which flights are stretched; or null.
-  [[gnu::flatten]] LegEnd fly(Flight& flight, RandomStream& random,
-                              const Vec3* rise = nullptr) const {
+  /// Advances a flight to its next collision or to the surface of its part. log_gradient: gradient
+  /// of the logarithm of the importance, which biases the flight (exponential transform); or null.
+  [[gnu::flatten]] SegmentEnd fly(Flight& flight, RandomStream& random,
+                                  const Vec3* log_gradient = nullptr) const {
     const Vec3 x = flight.point.x, d = flight.direction;
     const auto path = [&](double s) -> Vec3 { return x + s * d; };
-    auto [way, end] = regions_.way_out(flight.point, d);
+    auto [distance, end] = regions_.exit_distance(flight.point, d);
     const Part part = flight.point.part;
     const PartMedium& in = medium(part);
-    const double pull = rise && in.is_uniform() ? rise->dot(d) / in.mu_t() : 0;
-    const double free = pull > 0 ? stretched(flight, in.mu_t(), pull, way, random)
-                                 : in.free_path(path, way, random);
-    if (free < way) {
-      way = free;
+    const double growth_rate =
+        log_gradient && in.is_uniform() ? log_gradient->dot(d) / in.mu_t() : 0;
+    const double free = growth_rate > 0
+                            ? sample_biased(flight, in.mu_t(), growth_rate, distance, random)
+                            : in.free_path(path, distance, random);
+    if (free < distance) {
+      distance = free;
       end = at_collision;
     }
-    flight.point.x = path(way);
-    flight.arc_length += way;
-    flight.optical_path += (1 + excess(part)) * way;
-    flight.optical_depth += in.reference() * way;
-    if (!in.scatters()) attenuate(flight, flight.weight * in.transmitted(path, way, random));
+    flight.point.x = path(distance);
+    flight.arc_length += distance;
+    flight.optical_path += (1 + excess(part)) * distance;
+    flight.optical_depth += in.reference() * distance;
+    if (!in.scatters()) attenuate(flight, flight.weight * in.transmitted(path, distance, random));
     return end;
   }
 
-  /// The part that begins where a leg has ended on the surface of a body.
-  Part beyond(const Flight& flight, LegEnd surface) const {
+  /// Returns the part beyond the surface of a body on which a segment has ended.
+  Part beyond(const Flight& flight, SegmentEnd surface) const {
     return regions_.beyond(flight.point.part, surface, flight.point.x, flight.direction);
   }
-  /// At a surface that refracts: to the part beyond or back. The tangent, if not null, goes on too.
+  /// Index and its gradient at a surface: on the side of the arriving flight, and on the other
+  /// side.
   struct Sides {
     IndexGradient here, beyond;
   };
-  void cross(Flight& flight, LegEnd surface, Part to, const Sides& sides, RayTangent* tangent,
+  /// Refracts or reflects a flight at a surface with an index jump, and its tangent if not null.
+  void cross(Flight& flight, SegmentEnd surface, Part to, const Sides& sides, RayTangent* tangent,
              RandomStream& random) const {
     RayState ray{flight.point.x, (1 + sides.here.excess) * flight.direction};
     const RayJump jump(regions_.surface(surface), ray, sides.here, sides.beyond);
@@ -78,36 +82,38 @@ class StraightStage {
     const bool reflected = jump.is_total() || random.uniform() < reflectance;
     jump.pass(reflected, ray, tangent);
     flight.crosses_body = true;
-    flight.is_joinable = flight.is_joinable && flight.passages.count < Passages::most;
-    if (flight.is_joinable) flight.passages.add(reflected);
-    const double chance = jump.chance(reflected);
-    flight.fresnel *= chance;
-    flight.hollows += jump.is_hollow();
-    flight.optical_depth -= std::log(chance);
+    flight.is_connectable =
+        flight.is_connectable && flight.crossings.count < InterfaceCrossings::most;
+    if (flight.is_connectable) flight.crossings.add(reflected);
+    const double probability = jump.probability(reflected);
+    flight.fresnel *= probability;
+    flight.concave_crossings += jump.has_concave_parts();
+    flight.optical_depth -= std::log(probability);
     flight.direction = ray.v.normalized();
     if (!reflected) flight.point.part = to;
   }
-  /// The same where it does not.
+  /// Takes a flight through a surface without an index jump into part `to`.
   void pass(Flight& flight, Part to) const {
     flight.crosses_body = true;
     flight.point.part = to;
   }
 
-  /// Along the straight line, where nothing on it refracts.
-  std::optional<Join> join(const PathPoint& p, const PathPoint& q, RandomStream& random) const {
+  /// Connects two points by the straight line if no surface on it refracts.
+  std::optional<TestConnection> connect(const PathPoint& p, const PathPoint& q,
+                                        RandomStream& random) const {
     if (!are_alike(p.part, q.part)) return std::nullopt;
     const Vec3 chord = q.x - p.x;
     const double square = chord.squaredNorm(), length = std::sqrt(square);
     if (!(length > 0)) return std::nullopt;
     const Vec3 d = chord / length;
-    Join join{.start_direction = d,
-              .end_direction = d,
-              .spreading = square,
-              .optical_path = (1 + excess(p.part)) * length};
+    TestConnection connection{.start_direction = d,
+                              .end_direction = d,
+                              .spreading = square,
+                              .optical_path = (1 + excess(p.part)) * length};
     const auto pass = [&](Part part, double from, double to) {
       const auto path = [&](double s) -> Vec3 { return p.x + (from + s) * d; };
-      join.optical_depth += medium(part).reference() * (to - from);
-      join.transmittance *= medium(part).transmitted(path, to - from, random);
+      connection.optical_depth += medium(part).reference() * (to - from);
+      connection.transmittance *= medium(part).transmitted(path, to - from, random);
     };
     if (is_alone(p.part)) {
       if (is_blocked(p, d, length)) return std::nullopt;
@@ -115,28 +121,29 @@ class StraightStage {
     } else if (!for_each_part(p, d, length, pass)) {
       return std::nullopt;
     }
-    return join;
+    return connection;
   }
 
-  /// The straight way of parallel light to a point.
-  std::optional<BeamWay> way_to_beam(const PathPoint& p, const ParallelLight& light,
-                                     RandomStream& random) const {
+  /// Connects a point to parallel light by the straight line.
+  std::optional<BeamConnection> connection_to_beam(const PathPoint& p, const ParallelLight& light,
+                                                   RandomStream& random) const {
     const double length = (p.x - light.x).dot(light.direction);
     if (!(length > 0)) return std::nullopt;
     const PathPoint from{p.x - length * light.direction, p.part};
-    const auto join = this->join(p, from, random);
-    if (!join) return std::nullopt;
-    return BeamWay{.start_direction = join->start_direction,
-                   .place = from.x,
-                   .thinning = 1,
-                   .orientation = 1,
-                   .arc_length = length,
-                   .optical_path = join->optical_path,
-                   .transmittance = join->transmittance,
-                   .optical_depth = join->optical_depth};
+    const auto connection = this->connect(p, from, random);
+    if (!connection) return std::nullopt;
+    return BeamConnection{.start_direction = connection->start_direction,
+                          .place = from.x,
+                          .thinning = 1,
+                          .orientation = 1,
+                          .arc_length = length,
+                          .optical_path = connection->optical_path,
+                          .transmittance = connection->transmittance,
+                          .optical_depth = connection->optical_depth};
   }
 
-  /// Of the straight line between two points at the least, whether light goes it or not.
+  /// Lower bound of the optical depth of the straight line between two points, whether or not light
+  /// can follow it.
   double least_depth(const PathPoint& p, const PathPoint& q) const {
     const Vec3 chord = q.x - p.x;
     const double length = chord.norm();
@@ -149,20 +156,20 @@ class StraightStage {
     return depth;
   }
 
-  /// To where light cannot go on straight.
-  double way_to_jump(const PathPoint& p, const Vec3& d) const {
-    if (is_alone(p.part)) return regions_.way_out(p, d).length;
-    double way = 0;
-    for_each_part(p, d, no_way, [&](Part, double, double to) { way = to; });
-    return way;
+  /// Distance to the first index jump, or to the boundary.
+  double distance_to_jump(const PathPoint& p, const Vec3& d) const {
+    if (is_alone(p.part)) return regions_.exit_distance(p, d).length;
+    double distance = 0;
+    for_each_part(p, d, no_crossing, [&](Part, double, double to) { distance = to; });
+    return distance;
   }
 
  private:
-  static double stretched(Flight& flight, double mu_t, double pull, double way,
-                          RandomStream& random) {
-    const StretchedFlight of(mu_t, pull);
+  static double sample_biased(Flight& flight, double mu_t, double growth_rate, double distance,
+                              RandomStream& random) {
+    const BiasedFlight of(mu_t, growth_rate);
     const double free = of.sample(random.uniform());
-    flight.stretched = free < way ? of.weight(free) : of.weight_beyond(way);
+    flight.bias_weight = free < distance ? of.weight(free) : of.weight_beyond(distance);
     return free;
   }
 
@@ -187,22 +194,23 @@ class StraightStage {
     }
   }
 
-  /// Calls use(part, from, to) for the stretches of a straight line, through surfaces that do not
-  /// refract, or through all. Returns whether the line goes on to its end.
+  /// Calls use(part, from, to) for the interval of a straight line in each part. The line ends
+  /// early at the boundary and, unless through_all, at a surface that refracts. Returns whether it
+  /// reaches its full length.
   template <bool through_all = false, class Use>
   bool for_each_part(PathPoint at, const Vec3& d, double length, const Use& use) const {
     const double shorter = (1 - 1e-9) * length;  // the end may be on a surface itself
     const Vec3 start = at.x;
     double from = 0;
-    for (int leg = 0; leg < regions_.most_legs(); ++leg) {
-      const auto [way, end] = regions_.way_out(at, d);
-      if (from + way >= shorter) {
+    for (int segment = 0; segment < regions_.most_segments(); ++segment) {
+      const auto [distance, end] = regions_.exit_distance(at, d);
+      if (from + distance >= shorter) {
         use(at.part, from, length);
         return true;
       }
-      use(at.part, from, from + way);
+      use(at.part, from, from + distance);
       if (end == at_boundary) return false;
-      from += way;
+      from += distance;
       const PathPoint next{start + from * d, regions_.beyond(at.part, end, start + from * d, d)};
       if (!through_all && !are_alike(at.part, next.part)) return false;
       at = next;
@@ -213,10 +221,11 @@ class StraightStage {
   bool is_blocked(const PathPoint& p, const Vec3& d, double length) const {
     // The end may be on the surface itself.
     const double shorter = (1 - 1e-9) * length;
-    const Room room = regions_.room(p.part);
-    if (!is_convex(room.surfaces[0]) && way_out(room.surfaces[0], p.x, d) < shorter) return true;
-    for (const Surface& hole : room.surfaces.subspan(1))
-      if (way_in(hole, p.x, d) < shorter) return true;
+    const SurfaceRegion region = regions_.region(p.part);
+    if (!is_convex(region.surfaces[0]) && exit_distance(region.surfaces[0], p.x, d) < shorter)
+      return true;
+    for (const Surface& hole : region.surfaces.subspan(1))
+      if (entry_distance(hole, p.x, d) < shorter) return true;
     return false;
   }
 

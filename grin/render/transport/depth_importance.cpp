@@ -12,19 +12,21 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double largest_log = 600;  // exp of it is finite
-constexpr double thick = 8;          // mean free paths
+constexpr double largest_log = 600;  // exp(largest_log) is finite in double precision
+constexpr double thick = 8;  // optical depth from which connections to a sensor are thinned out
 
 bool is_in_closed_form(const Surface& surface) {
   return std::holds_alternative<Box>(surface) || std::holds_alternative<Sphere>(surface);
 }
 
-/// Diffuse light that goes along a box leaves through its sides.
+/// Returns the decay rate of diffuse light along a direction in a box that is due to leakage
+/// through the sides of the box.
 double leak_rate(const ScatteringMedium& medium, double density, const Surface& within,
                  const Vec3& direction) {
   const auto* box = std::get_if<Box>(&within);
   if (!box || !(medium.mu_s > 0)) return 0;
-  constexpr double extrapolation = 0.7104;  // Milne
+  // Milne's extrapolation length, in transport mean free paths
+  constexpr double extrapolation = 0.7104;
   const double transport =
       1 / (density * (medium.mu_t() - medium.mu_s * medium.phase.mean_cosine()));
   double square = 0;
@@ -41,17 +43,19 @@ double diffuse_rate(const ScatteringMedium& medium, double density) {
   return density * medium.mu_t() * diffusion_rate(medium.albedo(), g, 3);
 }
 
-/// Of directions from a point next to an area detector a path draws those that it accepts evenly; a
-/// join draws places evenly on what it sees of them, which are hardly ever near.
-double joined_share(const Sensor& sensor, double extinction) {
+/// Fraction of the connections to a sensor that are worth their cost; below 1 only for an area
+/// detector. Close to a large detector, hits are more effective: scattered paths sample its
+/// directions uniformly, whereas connections sample positions uniformly over the window that
+/// accepts light, few of which are close.
+double connected_fraction(const Sensor& sensor, double extinction) {
   const auto* detector = std::get_if<AreaDetector>(&sensor);
   if (!detector) return 1;
-  const double slope = std::tan(std::min(detector->acceptance, 1.57)) / extinction;
-  const double area = std::min(detector->width * detector->height, pi * slope * slope);
+  const double reach = std::tan(std::min(detector->acceptance, 1.57)) / extinction;
+  const double area = std::min(detector->width * detector->height, pi * reach * reach);
   return std::min(1.0, 4 * pi / (extinction * extinction * area));
 }
 
-/// Places where light begins, the same ones always.
+/// Deterministic sample of positions where light starts.
 std::vector<PathPoint> starts_of(const StageLights& lights) {
   constexpr int count = 64;
   struct {
@@ -85,16 +89,16 @@ DepthImportance::DepthImportance(const Stage& stage, const StageLights& lights,
   for (const Sensor& sensor : sensors) {
     Destination to{.nearest = std::visit(
                        [&](const auto& kind) { return nearest_place(kind, boundary_); }, sensor)};
-    const Vec3 direction = way(starts[0], to).direction;
+    const Vec3 direction = path_to(starts[0], to).direction;
     to.decay = decay(stage, direction);
     find_shares(to, starts);
-    if (!body_) to.joined = joined_share(sensor, extinction_[0]);
-    most_joins_ = std::max(most_joins_, to.joined);
+    if (!body_) to.connected = connected_fraction(sensor, extinction_[0]);
+    most_connections_ = std::max(most_connections_, to.connected);
     const auto* camera = std::get_if<Camera>(&sensor);
     if (camera && camera->lens_radius == 0) inner_.push_back(camera->x);
     destinations_.push_back(to);
   }
-  find_drift(stage, starts[0]);
+  find_control_variate(stage, starts[0]);
 }
 
 DepthImportance::ByPart DepthImportance::decay(const Stage& stage, const Vec3& direction) const {
@@ -108,23 +112,24 @@ DepthImportance::ByPart DepthImportance::decay(const Stage& stage, const Vec3& d
   return found;
 }
 
-/// From the start that is nearest.
+/// Sets is_deep and log_share of a sensor, for that start of light from which the optical depth to
+/// the sensor is least.
 void DepthImportance::find_shares(Destination& to, const std::vector<PathPoint>& starts) {
-  constexpr double worthwhile = 2;
-  double depth = no_way, direct = no_way;
+  constexpr double least_deep = 2;
+  double depth = no_crossing, direct = no_crossing;
   for (const PathPoint& start : starts) {
-    const Way there = way(start, to);
-    depth = std::min(depth, there.along(to.decay));
-    direct = std::min(direct, there.along(extinction_));
+    const StraightPath path = path_to(start, to);
+    depth = std::min(depth, path.along(to.decay));
+    direct = std::min(direct, path.along(extinction_));
   }
-  to.is_deep = depth > worthwhile;
+  to.is_deep = depth > least_deep;
   to.log_share = depth - std::log(std::max(3.0, depth / 4));
   favours_deep_ |= to.is_deep;
   is_thick_ |= direct > thick;
 }
 
-/// To the sensor that is deepest.
-void DepthImportance::find_drift(const Stage& stage, const PathPoint& start) {
+/// Makes the control variate along the line from `start` to the most distant sensor.
+void DepthImportance::find_control_variate(const Stage& stage, const PathPoint& start) {
   const ScatteringMedium& medium = stage.medium;
   const bool is_known = std::holds_alternative<IsotropicPhase>(medium.phase.which) ||
                         std::holds_alternative<HgPhase>(medium.phase.which);
@@ -132,44 +137,47 @@ void DepthImportance::find_drift(const Stage& stage, const PathPoint& start) {
   double deepest = 0;
   Vec3 axis = Vec3::Zero();
   for (const Destination& to : destinations_) {
-    const Way there = way(start, to);
-    if (there.length[0] <= deepest) continue;
-    deepest = there.length[0];
-    axis = there.direction;
+    const StraightPath path = path_to(start, to);
+    if (path.length[0] <= deepest) continue;
+    deepest = path.length[0];
+    axis = path.direction;
   }
-  const SlowMode mode(medium.albedo(), medium.phase.mean_cosine());
-  constexpr double most_kappa = 0.95, most_growth = 300;  // psi is smooth; exp of it is finite
+  const CaseMode mode(medium.albedo(), medium.phase.mean_cosine());
+  // the eigenmode is smooth up to most_kappa; exp(most_growth) is finite
+  constexpr double most_kappa = 0.95, most_growth = 300;
   if (mode.kappa() > most_kappa || mode.kappa() * medium.mu_t() * deepest > most_growth) return;
-  drift_ = Drift{mode, axis, start.x, medium.mu_t(), medium.albedo()};
+  control_variate_ = ControlVariate{mode, axis, start.x, medium.mu_t(), medium.albedo()};
 }
 
-DepthImportance::Way DepthImportance::way(const PathPoint& p, const Destination& to) const {
+DepthImportance::StraightPath DepthImportance::path_to(const PathPoint& p,
+                                                       const Destination& to) const {
   const Vec3 chord = to.nearest(p.x) - p.x;
   const double length = chord.norm();
   if (!(length > 0)) return {Vec3::Zero()};
-  Way found{chord / length, {length, 0}};
+  StraightPath found{chord / length, {length, 0}};
   if (!body_) return found;
   const bool inside = p.part != around;
-  const double in = inside ? 0 : std::min(length, way_in(*body_, p.x, found.direction));
-  const double within = way_out(*body_, p.x + in * found.direction, found.direction);
+  const double in = inside ? 0 : std::min(length, entry_distance(*body_, p.x, found.direction));
+  const double within = exit_distance(*body_, p.x + in * found.direction, found.direction);
   found.length[1] = std::min(length - in, within);
   found.length[0] = length - found.length[1];
   return found;
 }
 
-DepthImportance::Outlook DepthImportance::outlook(const PathPoint& p) const {
+DepthImportance::ImportanceAndGradient DepthImportance::importance_and_gradient(
+    const PathPoint& p) const {
   double most = -largest_log;
-  Vec3 rise = Vec3::Zero();
-  if (!favours_deep_) return {1, rise};
+  Vec3 log_gradient = Vec3::Zero();
+  if (!favours_deep_) return {1, log_gradient};
   for (const Destination& to : destinations_) {
     if (!to.is_deep) continue;
-    const Way there = way(p, to);
-    const double log_worth = to.log_share - there.along(to.decay);
-    if (log_worth < most) continue;
-    most = log_worth;
-    rise = to.decay[p.part] * there.direction;
+    const StraightPath path = path_to(p, to);
+    const double log_importance = to.log_share - path.along(to.decay);
+    if (log_importance < most) continue;
+    most = log_importance;
+    log_gradient = to.decay[p.part] * path.direction;
   }
-  return {most > 0 ? std::exp(std::min(most, largest_log)) : 1, rise};
+  return {most > 0 ? std::exp(std::min(most, largest_log)) : 1, log_gradient};
 }
 
 double DepthImportance::clearance(const PathPoint& p) const {
@@ -180,7 +188,7 @@ double DepthImportance::clearance(const PathPoint& p) const {
   return least;
 }
 
-double DepthImportance::chance_to_join(const PathPoint& p) const {
+double DepthImportance::connection_probability(const PathPoint& p) const {
   const double depth = extinction_[p.part] * clearance(p);
   const double beyond = 1 + std::max(0.0, depth / 2 - 1) / 8;
   const double square = beyond * beyond, fourth = square * square;

@@ -11,58 +11,68 @@
 
 namespace flatspeckle::grin {
 
-/// What light at a place is worth to the sensors, where little of it comes to them: it grows along
-/// the straight way to a sensor as diffuse light dies out, exp(kappa s), from where only a small
-/// share of the light is left; nearer to the lights it is 1. Light is split where the worth rises
-/// and plays roulette where it falls. It changes the variance alone.
+/// Importance of a position for sensors that little light reaches. Near the lights it is 1. Beyond
+/// the depth at which only a small share of the light is left, it grows with the distance s along
+/// the straight line to a sensor as exp(kappa s), where kappa is the decay rate of diffuse light.
+/// Paths are split where the importance grows and undergo Russian roulette where it falls. Only the
+/// variance depends on it, not the mean.
 class DepthImportance {
  public:
-  /// Nothing where no sensor is deep behind a medium, and where ways lead through several bodies
-  /// or one of any shape.
+  /// Returns nullopt if no sensor is deep behind a medium, or if the stage has several bodies or a
+  /// shape other than a box or a sphere.
   static std::optional<DepthImportance> of(const Stage& stage, const StageLights& lights,
                                            const std::vector<Sensor>& sensors);
 
-  struct Outlook {
-    double worth;
-    Vec3 rise;  ///< gradient of log(worth)
+  struct ImportanceAndGradient {
+    double importance;
+    Vec3 log_gradient;  ///< gradient of log(importance)
   };
-  Outlook outlook(const PathPoint& p) const;
+  ImportanceAndGradient importance_and_gradient(const PathPoint& p) const;
 
-  /// With which joins from here to any sensor are considered: seldom where little light could get
-  /// out of the medium unscattered, more or less exp(1 - depth / 2).
-  double chance_to_join(const PathPoint& p) const;
-  /// And of these joins those to one of them: few where paths hit it much more easily.
-  double share_of_joins(std::size_t sensor) const { return destinations_[sensor].joined; }
-  double most_joins() const { return most_joins_; }  ///< the largest of these shares
+  /// Probability with which connections from p to any sensor are considered. It is low where little
+  /// light could leave the medium unscattered: roughly exp(1 - depth / 2), where depth is the
+  /// smallest optical depth from p to the surface of its part or to a pinhole.
+  double connection_probability(const PathPoint& p) const;
+  /// Fraction of the considered connections that are made to this sensor: small if paths that hit
+  /// the sensor are much more effective than connections to it.
+  double fraction_of_connections(std::size_t sensor) const {
+    return destinations_[sensor].connected;
+  }
+  /// Largest fraction_of_connections() of all sensors.
+  double most_connections() const { return most_connections_; }
 
-  /// The slow mode along the way from where light begins to a sensor. What a path gains of it,
-  /// steps, turns and roulette, is 0 on average, wherever it ends, and most light that is through
-  /// has gained about the same: a control variate, of the greatest worth in deep slabs.
-  struct Drift {
-    SlowMode mode;
+  /// Martingale control variate: the discrete (Case) eigenmode along the line from a light to a
+  /// sensor. Its changes along a path (flights, scattering, roulette) have mean 0, wherever the
+  /// path ends. Along paths that pass through the medium these changes add up to nearly equal sums,
+  /// so that the control variate is most effective in deep slabs.
+  struct ControlVariate {
+    CaseMode mode;
     Vec3 axis, from;
     double mu_t, albedo;
 
     double cosine(const Vec3& direction) const { return axis.dot(direction); }
     double growth(const Vec3& x) const { return mode.growth(mu_t * axis.dot(x - from)); }
   };
-  /// Nothing where media differ, or scatter in another way than the mode knows.
-  const std::optional<Drift>& drift() const { return drift_; }
+  /// Returns nullopt if the stage is not a single uniform medium, if the mode is not known for its
+  /// phase function, or if the decay is too strong for double precision.
+  const std::optional<ControlVariate>& control_variate() const { return control_variate_; }
 
-  /// Whether light is split; else the media are deep alone.
+  /// Whether light paths are split; if not, only the number of connections is reduced.
   bool favours_deep() const { return favours_deep_; }
 
  private:
-  using ByPart = std::array<double, 2>;  ///< of two at the most
+  /// Values in the surroundings and in the body, if any.
+  using ByPart = std::array<double, 2>;
   struct Destination {
     NearestPlace nearest;
-    ByPart decay = {};  ///< of diffuse light
-    double log_share =
-        0;  ///< of diffuse light that gets there, from where the worth begins to rise
+    ByPart decay = {};  ///< decay rate of diffuse light
+    /// Logarithm of the importance at the sensor: integral of `decay` along the straight line to
+    /// the sensor, from the depth at which the importance begins to grow.
+    double log_share = 0;
     bool is_deep = false;
-    double joined = 1;
+    double connected = 1;  ///< fraction_of_connections() of this sensor
   };
-  struct Way {
+  struct StraightPath {
     Vec3 direction;
     ByPart length = {};
 
@@ -72,21 +82,21 @@ class DepthImportance {
   DepthImportance(const Stage& stage, const StageLights& lights,
                   const std::vector<Sensor>& sensors);
 
-  Way way(const PathPoint& p, const Destination& to) const;
+  StraightPath path_to(const PathPoint& p, const Destination& to) const;
   ByPart decay(const Stage& stage, const Vec3& direction) const;
   void find_shares(Destination& to, const std::vector<PathPoint>& starts);
 
-  void find_drift(const Stage& stage, const PathPoint& start);
+  void find_control_variate(const Stage& stage, const PathPoint& start);
   double clearance(const PathPoint& p) const;
 
   Surface boundary_;
   std::optional<Surface> body_;
   ByPart extinction_ = {};
-  std::vector<Vec3> inner_;  ///< sensors that are not on the boundary
+  std::vector<Vec3> inner_;  ///< positions of pinhole cameras
   std::vector<Destination> destinations_;
-  std::optional<Drift> drift_;
+  std::optional<ControlVariate> control_variate_;
   bool favours_deep_ = false, is_thick_ = false;
-  double most_joins_ = 0;
+  double most_connections_ = 0;
 };
 
 }  // namespace flatspeckle::grin

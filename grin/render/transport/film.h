@@ -10,36 +10,38 @@
 
 namespace flatspeckle::grin {
 
-/// What becomes of the power of light. All but `emitted` add up to that.
-enum class Fate {
+/// Ways in which the power of light paths ends. All other entries sum to `emitted`.
+enum class Termination {
   emitted,
-  absorbed_stage,  ///< in the stage, but for bodies
-  absorbed_body,   ///< in bodies
+  absorbed_stage,  ///< absorbed in the stage outside of bodies
+  absorbed_body,   ///< absorbed in bodies
   unscattered,     ///< left the stage without a scattering
-  specular,        ///< the same, reflected at the surface of a body without having entered
-  scattered,       ///< left the stage after one or more
-  lost,            ///< in flights that led nowhere (Flight::End::lost)
-  cut              ///< of paths that reached max_scatterings
+  specular,        ///< left the stage unscattered, after reflection by a body without entering it
+  scattered,       ///< left the stage after one or more scatterings
+  lost,            ///< carried by lost flights (Flight::End::lost)
+  cut              ///< carried by paths that reached max_scatterings
 };
-inline constexpr std::size_t fates = 8;
-inline constexpr std::array<const char*, fates> fate_words{
+inline constexpr std::size_t termination_count = 8;
+inline constexpr std::array<const char*, termination_count> termination_names{
     "emitted", "absorbed", "absorbed in bodies", "unscattered", "reflected by bodies", "scattered",
     "lost",    "cut"};
 
-/// Power by Fate, summed over light paths. A path keeps its own until it has ended, so that sums
-/// round little.
+/// Power by Termination, summed over light paths. Each path accumulates its own balance until it
+/// ends, which limits rounding errors.
 class EnergyBalance {
  public:
-  static constexpr std::size_t size = fates;
+  static constexpr std::size_t size = termination_count;
 
-  void add(Fate fate, double power) { power_[static_cast<std::size_t>(fate)] += power; }
-  double of(Fate fate) const { return power_[static_cast<std::size_t>(fate)]; }
+  void add(Termination termination, double power) {
+    power_[static_cast<std::size_t>(termination)] += power;
+  }
+  double of(Termination termination) const { return power_[static_cast<std::size_t>(termination)]; }
 
   EnergyBalance& operator+=(const EnergyBalance& other) {
     for (std::size_t i = 0; i < size; ++i) power_[i] += other.power_[i];
     return *this;
   }
-  /// sums: [fate].
+  /// Adds the powers to `sums`, which are indexed by Termination.
   void add_to(std::span<Complex> sums) const {
     for (std::size_t i = 0; i < size; ++i) sums[i] += power_[i];
   }
@@ -48,31 +50,34 @@ class EnergyBalance {
   std::array<double, size> power_{};
 };
 
-/// What is kept of a pixel's light: by optical path, in equal bins, beside them what is before the
-/// first and beyond the last, so that the sum of all is the steady picture; moments of it; and
-/// derivatives by parameters of the medium (path_score.h) and of the field (moving_paths.h).
+/// Layout of a pixel's sums: equal bins of optical path, with one more bin below the first and one
+/// above the last, so that the sum of all bins is the steady picture; moments of the optical path;
+/// and derivatives with respect to parameters of the medium (path_score.h) and of the field
+/// (moving_paths.h).
 struct TimeBins {
-  double first = 0, last = 0;  ///< edges
-  int count = 1;               ///< 1: steady state
-  bool moments = false;        ///< also value times path, and times its square
-  int derivatives = 0;         ///< by so many parameters of the medium
-  int by_field = 0;            ///< and so many sums of those by parameters of the field
+  double first = 0,
+         last = 0;  ///< lower edge of the first bin and upper edge of the last, in optical path
+  int count = 1;    ///< number of bins; 1: steady state
+  bool moments = false;  ///< whether value times optical path, and times its square, are summed too
+  int derivatives = 0;   ///< number of parameters of the medium
+  int by_field = 0;      ///< number of sums for derivatives by parameters of the field
 
   bool keeps_paths() const { return count > 1 || moments; }
-  /// Sums of a pixel: [before, bins, beyond] or one, then the moments.
+  /// Number of intensity sums of a pixel: one before the bins, the bins, and one after them; or 1
+  /// in the steady state. The moments follow.
   int parts() const { return count > 1 ? count + 2 : 1; }
   int first_derivative() const { return parts() + (moments ? 2 : 0); }
   int first_by_field() const { return first_derivative() + derivatives; }
   int sums() const { return first_by_field() + by_field; }
 };
 
-/// The sensor of a pixel, and the share of its area that the pixel has.
+/// The sensor of a pixel, and the pixel's share of the sensor area.
 struct PixelShare {
   std::size_t sensor;
   double share;
 };
 
-/// Sums of a batch: [pixel][TimeBins::sums].
+/// Accumulators of a batch: for each pixel, the sums laid out by TimeBins.
 class Film {
  public:
   Film([[maybe_unused]] int pixels, const TimeBins& bins, std::span<Complex> sums)
@@ -94,14 +99,14 @@ class Film {
     own[bins_.parts() + 1] += value * optical_path * optical_path;
   }
 
-  /// Counts light that hit a pixel by itself, whatever weight it has among the strategies that find
-  /// such light. Nothing is counted where `hits` is empty.
+  /// Tallies light that hit a pixel without a connection, without its MIS weight. Does nothing if
+  /// `hits` is empty.
   void add_hit(int pixel, double value) {
     if (hits.empty() || pixel < 0 || !std::isfinite(value)) return;
     const PixelShare& of = shares[static_cast<std::size_t>(pixel)];
     hits[of.sensor] += of.share * value;
   }
-  /// The steady light of all pixels so far, to be added to means over the pixels of each sensor.
+  /// Adds the light of all pixels, summed over the bins, to the mean of each sensor.
   void add_means(std::span<double> means) const {
     for (std::size_t pixel = 0; pixel < shares.size(); ++pixel)
       for (int part = 0; part < bins_.parts(); ++part)
@@ -111,8 +116,8 @@ class Film {
                 .real();
   }
 
-  std::span<const PixelShare> shares;  ///< of all pixels
-  std::vector<double> hits;            ///< of each sensor
+  std::span<const PixelShare> shares;  ///< sensor and share of its area, for each pixel
+  std::vector<double> hits;            ///< light that hit each sensor; empty if not tallied
 
   bool has_derivatives() const { return bins_.derivatives > 0; }
   void add_derivative(int pixel, int parameter, double value) {
@@ -124,14 +129,15 @@ class Film {
     own[bins_.first_by_field() + number] += value;
   }
 
-  EnergyBalance energy;  ///< of light paths that are walked to their ends
-  double drift = 0;      ///< of the same (DepthImportance::Drift)
+  EnergyBalance energy;  ///< power of light paths that are traced to their ends
+  /// Sum of DepthImportance::ControlVariate over the light paths that are traced to their ends.
+  double control_variate = 0;
 
  private:
-  /// A contribution within the edges is shared between the two bins whose centres are next to it
-  /// (linear splat), which keeps its optical path between the first and the last centre.
+  /// Splits a contribution between the two bins with the nearest centres (linear splat), which
+  /// preserves the mean optical path of light between the first and the last centre.
   void add_to_bins(Complex* own, double value, double optical_path) const {
-    // bin centres are the whole numbers
+    // in these units bin centres are at integers
     const double at = (optical_path - bins_.first) * bins_per_length_ + 0.5;
     if (!(optical_path >= bins_.first)) {
       own[0] += value;

@@ -11,11 +11,12 @@
 
 namespace flatspeckle::grin {
 
-/// What powers are differentiated by: coefficients of a uniform medium that fills the stage.
+/// Parameters by which powers are differentiated: coefficients of a uniform medium that fills the
+/// stage.
 enum class MediumParameter { mu_s, mu_a, g };
 
-/// In this order, those that a medium has: mu_s where it scatters, mu_a, and g of the phase
-/// function of Henyey and Greenstein.
+/// Returns the parameters of a medium in this order: mu_s if it scatters, mu_a, and g of a
+/// Henyey-Greenstein phase function.
 inline std::vector<MediumParameter> parameters_of(const ScatteringMedium& medium) {
   if (!(medium.mu_s > 0)) return {MediumParameter::mu_a};
   if (!std::holds_alternative<HgPhase>(medium.phase.which))
@@ -27,29 +28,29 @@ inline std::string name_of(MediumParameter parameter) {
   return names[static_cast<int>(parameter)];
 }
 
-/// Derivatives of the logarithm of a path's density, mu_s^N exp(-(mu_s + mu_a) s) and the product
-/// of the phase function over its N collisions, with s its length. Times what the path brings they
-/// have the mean of the power's derivatives, however paths were drawn (score function: Glynn 1990,
-/// likelihood ratio gradient estimation for stochastic systems).
+/// Derivatives of the logarithm of a path's density. For a path of length s with N collisions the
+/// density is mu_s^N exp(-(mu_s + mu_a) s) times the phase function at each collision. The mean of
+/// contribution times derivative is the derivative of the power, however paths are sampled (score
+/// function: Glynn [glynn1990], likelihood ratio gradient estimation for stochastic systems).
 class PathScore {
  public:
   void flew(double length) { length_ += length; }
-  /// A collision at which the path turns from one direction, a unit vector, to another.
+  /// Adds a collision at which the path turns between two directions, unit vectors.
   void turned(const ScatteringMedium& medium, const Vec3& from, const Vec3& to) {
     ++collisions_;
     const auto* phase = std::get_if<HgPhase>(&medium.phase.which);
     if (!phase) return;
     const bool is_forward = phase->g >= 0;
-    const double slope = slope_of_log(
+    const double derivative = derivative_of_log(
         std::abs(phase->g), (is_forward ? Vec3(to - from) : Vec3(to + from)).squaredNorm() / 2);
-    by_g_ += is_forward ? slope : -slope;
+    by_g_ += is_forward ? derivative : -derivative;
   }
 
   double by(MediumParameter parameter, const ScatteringMedium& medium) const {
     if (parameter == MediumParameter::mu_s) return collisions_ / medium.mu_s - length_;
     return parameter == MediumParameter::mu_a ? -length_ : by_g_;
   }
-  /// Of what has been added to a pixel.
+  /// Adds the derivatives of a contribution `value` to a pixel.
   void add_to(Film& film, int pixel, double value, const ScatteringMedium& medium) const {
     if (pixel < 0 || value == 0 || !std::isfinite(value)) return;
     int number = 0;
@@ -58,9 +59,10 @@ class PathScore {
   }
 
  private:
-  /// Derivative of log((1 - g^2) / (1 + g^2 - 2 g cosine)^(3/2)) by g >= 0. In the peak of g near
-  /// 1, 1 - cosine keeps the digits that the cosine loses.
-  static double slope_of_log(double g, double one_minus_cosine) {
+  /// Derivative of log((1 - g^2) / (1 + g^2 - 2 g cosine)^(3/2)) with respect to g >= 0. cosine: of
+  /// the scattering angle. The function takes 1 - cosine to avoid cancellation in the narrow
+  /// forward peak if g is near 1.
+  static double derivative_of_log(double g, double one_minus_cosine) {
     const double beside = 1 - g, square = beside * beside + 2 * g * one_minus_cosine;
     return 3 * (beside - one_minus_cosine) / square - 2 * g / (beside * (1 + g));
   }

@@ -9,22 +9,23 @@
 
 namespace flatspeckle::grin {
 
-/// What estimators are told of a scene, but for its space.
+/// Stage, lights, sensors and settings of the estimators. Rays and free flights are in Space.
 struct Transport {
   Stage stage;
   StageLights lights;
   std::vector<SensorEnd> sensors;
   Strategies strategies = {};
-  /// Of plans that are deep.
+  /// Importance by which light paths are split; null if they are not split (RenderPlan::deep).
   std::shared_ptr<const DepthImportance> depth = {};
   int max_scatterings = std::numeric_limits<int>::max();
-  /// Of each sensor: joins that promise less than this are left to chance, in proportion to what
-  /// they promise.
-  std::vector<double> join_levels = std::vector<double>(sensors.size());
-  std::vector<double> beam_levels = join_levels;  ///< of those to beams
-  bool absorbs = stage.absorbs();                 ///< some medium does
+  /// Thresholds of Russian roulette, by sensor. A connection whose expected contribution is below
+  /// the threshold is made with probability expected contribution / threshold.
+  std::vector<double> connection_levels = std::vector<double>(sensors.size());
+  /// Thresholds of Russian roulette for connections to beams, by sensor.
+  std::vector<double> beam_levels = connection_levels;
+  bool absorbs = stage.absorbs();  ///< whether some medium absorbs
 
-  /// Of all sensors.
+  /// Number of pixels of all sensors.
   int pixels() const {
     int count = 0;
     for (const SensorEnd& sensor : sensors) count += sensor.pixels().count();

@@ -24,7 +24,7 @@ ScatteringMedium medium_of(const std::string& keys, double mu_s, double mu_a, do
   return {.mu_s = mu_s, .mu_a = mu_a, .phase = {HgPhase{g}}};
 }
 
-/// material: index mu_s mu_a g.
+/// Makes a body. material: the four numbers index, mu_s, mu_a, g.
 Body body_of(const char* keys, const Surface& surface, Numbers material) {
   const std::string prefix = keys;
   return {.surface = surface,
@@ -46,7 +46,8 @@ IndexRange index_range(const SceneField& field, const Surface& region, const std
   constexpr int nodes = 33;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const Box box = bounds(region);
-  const bool is_same_along_z =  // where it is in the region at one z or at all
+  // the field and the region are both the same at all z
+  const bool is_same_along_z =
       std::holds_alternative<Box>(region) && field.axis == Vec3::UnitZ() &&
       (field.symmetry == Symmetry::guide || field.symmetry == Symmetry::round_guide);
   IndexRange range{infinity, -infinity};
@@ -67,10 +68,10 @@ IndexRange index_range(const SceneField& field, const Surface& region, const std
 }
 
 LevelSurface mesh_body(const Keys& keys, const FieldBodyValues& values, const std::string& file,
-                       const Surface* room) {
+                       const Surface* stage) {
   const TriangleMesh mesh = read_stl(keys.name(values.body_mesh), file);
   const Box box = bounds(mesh);
-  if (room && !lies_in(box, *room))
+  if (stage && !lies_in(box, *stage))
     throw InputError(keys.name(values.body_mesh) + ": from " + listed(box.low) + " to " +
                      listed(box.high) + ", must be inside of the stage");
   const std::string name = keys.name(values.body_mesh_spacing);
@@ -90,15 +91,20 @@ void add_keys(Keys& keys, PlainBodyValues& values) {
   const char* const block = "x y z x y z index mu_s mu_a g";
   keys.add("ball", values.ball,
            std::string(ball) +
-               ": a ball with its own index and medium, g of Henyey and Greenstein; bodies may lie "
-               "in each other: where they overlap the smaller one is")
+               ": a ball with its own index and medium, scattering by Henyey and Greenstein's "
+               "phase function; where bodies overlap, the smaller one counts")
       .each_of(8, ball);
-  keys.add("block", values.block, std::string(block) + ": the same between two corners")
+  keys.add("block", values.block,
+           std::string(block) +
+               ": a box with its own index and medium, given by two opposite corners")
       .each_of(10, block);
   const std::string lens = std::string(lens_words) + " index mu_s mu_a g";
   keys.add("lens", values.lens,
-           lens + ": the same with a lens about an axis along z: front vertex, radius, radii of " +
-               "curvature, positive where the centre is at larger z; 0: plane")
+           lens +
+               ": a lens with its own index and medium; its axis is along z, and x y z is the "
+               "front " +
+               "vertex; front and back are the radii of curvature of the faces, positive if the "
+               "centre is at larger z, 0 for a plane")
       .each_of(lens_numbers + 4, lens);
 }
 
@@ -144,37 +150,41 @@ Lens lens_of(const std::string& key, std::span<const double> numbers) {
   const double thickness = positive(key + ", thickness", numbers[6]);
   if (const auto lens = Lens::make(vector_of(numbers), radius, numbers[4], numbers[5], thickness))
     return *lens;
-  throw InputError(key, number_text({numbers.begin(), numbers.begin() + lens_numbers}),
-                   "radii of curvature must not be below the radius, and faces not meet within it");
+  throw InputError(
+      key, number_text({numbers.begin(), numbers.begin() + lens_numbers}),
+      "radii of curvature must not be below the radius, and the faces must not meet within it");
 }
 
 void add_body_keys(Keys& keys, FieldBodyValues& values) {
   keys.add("body_box", values.body_box,
-           "x y z x y z of two corners: the index field fills this body alone")
+           "x y z x y z of two corners: the index field fills only this box")
       .each_of(6, "two opposite corners, the low one first");
   keys.add("body_sphere", values.body_sphere,
-           "x y z radius: the same with a sphere; luneburg in a larger stage needs none")
+           "x y z radius: the index field fills only this sphere; not needed for luneburg in a "
+           "larger stage")
       .each_of(4, "centre and radius");
-  keys.add("body_lens", values.body_lens,
-           std::string(lens_words) + ": the same with a lens of spherical faces about an axis " +
-               "along z: front vertex, radius, radii of curvature (positive where the centre is " +
-               "at larger z; 0: plane); a rod, where both are 0")
+  keys.add(
+          "body_lens", values.body_lens,
+          std::string(lens_words) +
+              ": the index field fills only this lens; its axis is along z, and x y z is the " +
+              "front vertex; front and back are the radii of curvature of the faces, positive if " +
+              "the centre is at larger z, 0 for a plane; a rod if both are 0")
       .each_of(lens_numbers, lens_words);
   keys.add("body_mesh", values.body_mesh,
-           "STL file, binary or text: the same with a closed surface of triangles, in place of "
-           "which a smooth one is taken")
+           "STL file, binary or text: the index field fills only the inside of this closed surface "
+           "of triangles, which is replaced by a smooth surface")
       .file();
   keys.add("body_mesh_spacing", values.body_mesh_spacing,
-           "Of the grid of distances from the mesh that the smooth surface comes from; its edges "
-           "are rounded over one (default: the longest side / 64, or finer down to / 256 where its "
-           "volume would be off by 1 %)")
+           "Spacing of the grid of distances from the mesh that defines the smooth surface; edges "
+           "are rounded over one spacing (default: 1/64 of the longest side of the mesh, or less, "
+           "down to 1/256, if the volume would be wrong by 1 % otherwise)")
       .positive()
       .unit("length")
       .only_of("body_mesh");
 }
 
 void add_index_around(Keys& keys, FieldBodyValues& values) {
-  keys.add("index_around", values.index_around, "Index around the body").positive();
+  keys.add("index_around", values.index_around, "Index of refraction around the body").positive();
 }
 
 std::optional<Surface> one_surface(const std::string& name, const std::string& keys,
@@ -185,7 +195,7 @@ std::optional<Surface> one_surface(const std::string& name, const std::string& k
 }
 
 std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& values,
-                                  const Surface* room) {
+                                  const Surface* stage) {
   std::vector<Surface> given;
   for (const Box& box : boxes_of(keys, values.body_box)) given.push_back(box);
   for (const Sphere& sphere : spheres_of(keys, values.body_sphere)) given.push_back(sphere);
@@ -195,12 +205,13 @@ std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& value
   const auto body = one_surface("body", body_key_names, given);
   if (file.empty()) return body;
   if (body) throw InputError(std::string(body_key_names) + ": give one body");
-  return mesh_body(keys, values, file, room);
+  return mesh_body(keys, values, file, stage);
 }
 
 IndexRange check_field(const SceneField& field, const Surface& region, const std::string& name) {
   if (field.grid && !lies_in(region, *field.grid))
-    throw InputError("grid: ends inside of the " + name + ", and light needs a field in all of it");
+    throw InputError("grid: must cover all of the " + name +
+                     ": light needs a field everywhere in it");
   return index_range(field, region, name);
 }
 

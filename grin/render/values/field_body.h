@@ -14,8 +14,7 @@
 
 namespace flatspeckle::grin {
 
-/// Bodies whose index and medium are the same everywhere, as keys have them: as many as there are
-/// rows of numbers.
+/// Values of the keys of bodies with constant index and medium, one body per row of numbers.
 struct PlainBodyValues {
   std::vector<double> ball{}, block{}, lens{};
 };
@@ -24,23 +23,25 @@ void add_keys(Keys& keys, PlainBodyValues& values);
 
 /// Throws InputError for numbers out of range.
 std::vector<Body> make_plain_bodies(const Keys& keys, const PlainBodyValues& values);
-/// And for a body that is not within a region; name: of that.
+/// Throws InputError for a body that is not within a region. name: what the message calls the
+/// region.
 void check_within(const Body& body, const Surface& region, const std::string& name);
 
-/// A smaller body, by its volume, lies over a larger one; of those equal to rounding the later.
+/// Sorts bodies by decreasing volume, so that smaller bodies replace larger ones where they
+/// overlap. Bodies of equal volume, to rounding, keep their order.
 void sort_by_size(std::vector<Body>& bodies);
 
-// The numbers of a lens as keys have them.
+// Numbers that define a lens in keys.
 inline constexpr int lens_numbers = 7;
 inline constexpr const char* lens_words = "x y z radius front back thickness";
 
-/// Of that many numbers. Throws InputError, naming the key, for what is no lens.
+/// Makes a lens of lens_numbers numbers. Throws InputError, naming the key, for an invalid lens.
 Lens lens_of(const std::string& key, std::span<const double> numbers);
 
-/// The keys that name a body.
+/// Keys that define a body.
 inline constexpr const char* body_key_names = "body_box, body_sphere, body_lens, body_mesh";
 
-/// The body that an index field fills, and the index around it, as keys have them.
+/// Values of the keys of the body that an index field fills, and of the index around it.
 struct FieldBodyValues {
   std::vector<double> body_box{}, body_sphere{}, body_lens{};
   std::string body_mesh{};
@@ -48,21 +49,26 @@ struct FieldBodyValues {
   double index_around = 1;
 };
 
-/// The rows of the body, and of the index around it, which stand in different groups.
+/// Add the keys of the body, and the key of the index around it. The two are in different groups of
+/// keys.
 void add_body_keys(Keys& keys, FieldBodyValues& values);
 void add_index_around(Keys& keys, FieldBodyValues& values);
 
-/// What one of some keys says; nothing where none is given. Throws InputError.
+/// Returns the only surface given, nullopt if there is none. Throws InputError if several are
+/// given.
 std::optional<Surface> one_surface(const std::string& name, const std::string& keys,
                                    const std::vector<Surface>& given);
-/// room: a mesh beyond it is refused before it costs anything; or null.
+/// Returns the body given, if any. stage: boundary of the stage, or null. A mesh that extends
+/// beyond it is rejected before it is processed.
 std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& values,
-                                  const Surface* room = nullptr);
+                                  const Surface* stage = nullptr);
 
-/// Throws InputError for a field that ends, or has no index above 0, somewhere in a region; name:
-/// of that. Returns the range of its index there.
+/// Returns the range of the index of a field in a region. name: what messages call the region.
+/// Throws InputError for a field that does not cover the region, or has an index that is not
+/// positive there.
 IndexRange check_field(const SceneField& field, const Surface& region, const std::string& name);
-/// And for a body beyond the rim of a ball.
+/// Throws InputError for a body that extends beyond the rim of the field, if the field has one
+/// (luneburg).
 void check_rim(const SceneField& field, const Surface& body);
 
 }  // namespace flatspeckle::grin

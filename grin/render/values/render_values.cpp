@@ -25,14 +25,14 @@ std::optional<Surface> given_boundary(const Keys& keys, const StageValues& value
   return one_surface("stage", "stage_box, stage_sphere", given);
 }
 
-/// Distance from the z axis.
+/// Largest distance of a surface from the z axis.
 double reach_of(const Surface& surface) {
   const Box box = bounds(surface);
   const Vec3 far = box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs());
   return std::hypot(far[0], far[1]);
 }
 
-/// A grid beside the medium would leave it clear without a word.
+/// Throws InputError if a density grid does not overlap its medium, which would be empty then.
 void check_overlap(const ScatteringMedium& medium, const Surface& region, const std::string& key,
                    const std::string& name) {
   if (!medium.density) return;
@@ -49,13 +49,13 @@ ScatteringMedium medium_in(const Keys& keys, const MediumValues& values, const S
   return medium;
 }
 
-/// The body that the keys name, or the ball where a field ends at its rim.
+/// Returns the body given by keys, or the ball of a field that ends at its rim.
 std::optional<Surface> body_of(const SceneField& field, const Surface& boundary,
                                const std::optional<Surface>& body) {
   if (body) check_rim(field, *body);
   if (body || !field.rim || lies_in(boundary, *field.rim)) return body;
   if (std::holds_alternative<AnySum>(field.field))
-    throw InputError("field: luneburg in a sum needs a stage or a body that is inside of its rim");
+    throw InputError("field: luneburg in a sum requires a stage or a body inside of its rim");
   return *field.rim;
 }
 
@@ -63,7 +63,7 @@ std::optional<Surface> body_of(const SceneField& field, const Surface& boundary,
   throw InputError("gradient_by", name, why);
 }
 
-/// One number of a key.
+/// One of the numbers of a key, by which the result is to be differentiated.
 struct FieldNumber {
   std::string key;
   std::size_t which = 0;
@@ -72,7 +72,8 @@ struct FieldNumber {
   double value() const { return read_number(texts[which]).value_or(0); }
 };
 
-/// The key as one of the field's kinds has been given it: others of its name are at their defaults.
+/// Returns the key of this name; null if there is none. Several kinds of fields may have a key of
+/// the same name; one that is given takes precedence.
 const Key* key_of(const Keys& keys, const std::string& name) {
   const Key* found = nullptr;
   for (const Key& key : keys.rows())
@@ -86,15 +87,15 @@ FieldNumber number_of(const Keys& keys, const std::string& name) {
   const Key* const key = key_of(keys, number.key);
   if (!key || !key->is_number() || key->is_whole() || key->value().empty())
     refuse(name,
-           "must be a number that the index field is given, as amplitude or transducer.2 "
-           "(derivatives by mu_s, mu_a and g are those of gradient)");
+           "must be a given number of the index field, such as amplitude or transducer.2 (for "
+           "mu_s, mu_a and g use gradient)");
   number.texts = key->value();
   const bool has_part = dot != std::string::npos;
   const auto part = has_part ? read_whole_number(name.substr(dot + 1)) : std::optional(0L);
   if (!part || *part < 0 || static_cast<std::size_t>(*part) >= number.texts.size() ||
       has_part != (number.texts.size() > 1))
-    refuse(name, "is a key of " + std::to_string(number.texts.size()) + " numbers: " + number.key +
-                     ".0 is the first of several");
+    refuse(name, "has " + std::to_string(number.texts.size()) +
+                     " numbers; in a key of several numbers, the first is " + number.key + ".0");
   number.which = static_cast<std::size_t>(*part);
   return number;
 }
@@ -109,9 +110,10 @@ AnyIndexField field_with(const IndexFieldValues& values, FieldNumber number, dou
   return made.field;
 }
 
-/// The fields beside that of the values, for derivatives by these of their keys; name.2 is the
-/// third number of a key of several. Throws InputError (gradient_by) for what is no number of the
-/// field, or 0.
+/// Returns, for each name of a number of the index field, the fields with that number decreased and
+/// increased, from which derivatives by the number are computed. If a key has several numbers,
+/// name.2 is the third of them. Throws InputError (gradient_by) for names that are not numbers of
+/// the field.
 std::vector<FieldParameter> field_parameters(const IndexFieldValues& values,
                                              const std::vector<std::string>& names,
                                              const FieldUse& use) {
@@ -144,13 +146,14 @@ TimeBins time_bins(const Keys& keys, const RenderValues& values) {
   const auto refuse = [&](const std::string& accepted) {
     throw InputError("path_bins", number_text(bins), accepted);
   };
-  if (!(bins[0] >= 0 && bins[1] > bins[0])) refuse("must go from a length to a larger one");
+  if (!(bins[0] >= 0 && bins[1] > bins[0]))
+    refuse("must have a first length of at least 0, and a larger last length");
   if (!(bins[2] >= 2 && bins[2] <= most && bins[2] == std::floor(bins[2])))
     refuse("must have a whole count from 2 to 100000");
   return {bins[0], bins[1], static_cast<int>(bins[2]), moments};
 }
 
-constexpr double most_sums = 1 << 23;  // of which 16 groups are 2 GiB
+constexpr double most_sums = 1 << 23;  // 16 groups of this many sums take 2 GiB
 
 void check_size(const std::vector<Sensor>& sensors, const TimeBins& bins) {
   double size = 0;
@@ -159,7 +162,7 @@ void check_size(const std::vector<Sensor>& sensors, const TimeBins& bins) {
   if (size > most_sums) throw InputError("pixels x path_bins", size, "must be at most 8388608");
 }
 
-/// Checked, as many as the axes of the map.
+/// Returns the numbers of cells along the axes of the map, after checking them.
 template <std::size_t axes>
 std::array<int, axes> map_counts(const std::vector<std::int64_t>& cells, const std::string& names) {
   double product = 1;
@@ -185,11 +188,12 @@ RingCells ring_cells(const Keys& keys, const RenderValues& values) {
   const Vec3 from(given[0], given[1], given[2]), to(given[3], given[4], given[5]);
   if (!(given[6] > 0 && (to - from).norm() > 0))
     throw InputError("map_cylinder", number_text(given),
-                     "must have two ends apart and a positive radius");
+                     "must have two different end points and a positive radius");
   return {from, to, given[6], map_counts<2>(keys.required(values.map_cells), "radius and axis")};
 }
 
-/// Throws InputError for a map that no light of the stage reaches.
+/// Returns the cells. Throws InputError if they are all outside of the stage, since no light
+/// reaches them there.
 template <class Cells>
 Cells within(const Cells& cells, const Box& stage, const std::string& key) {
   const Box box = cells.bounds();
@@ -207,7 +211,7 @@ std::optional<LightMap> light_map(const Keys& keys, const RenderValues& values, 
   return std::nullopt;
 }
 
-/// Sound so faint that it bends no rays is none.
+/// Returns the field; if it is sound too weak to bend rays, its homogeneous background instead.
 AnyIndexField without_silence(const SceneField& field, const Stage& stage) {
   if (!bends_nothing(field, stage)) return field.field;
   return std::visit(
@@ -254,24 +258,24 @@ double max_length_of(const Keys& keys, const RenderValues& values, double scale,
   return scale > 0 ? keys.read(values.max_length).value_or(usual) : usual;
 }
 
-/// By the parameters of the one medium.
+/// Requests derivatives by the parameters of the stage's only medium (key gradient).
 void add_derivatives(RenderScene& scene) {
   const auto refuse = [](const std::string& why) { throw InputError("gradient: " + why); };
-  if (!scene.stage.bodies.empty()) refuse("the stage must have no bodies, but one medium alone");
+  if (!scene.stage.bodies.empty()) refuse("the stage must have a single medium: leave out bodies");
   const ScatteringMedium& medium = scene.stage.medium;
-  if (medium.density) refuse("the medium must be uniform, without density");
-  if (!(medium.mu_t() > 0)) refuse("there is no medium; mu_s or mu_a must be above 0");
+  if (medium.density) refuse("the medium must be uniform: leave out density");
+  if (!(medium.mu_t() > 0)) refuse("the stage must have a medium: mu_s or mu_a must be positive");
   scene.bins.derivatives = static_cast<int>(parameters_of(medium).size());
 }
 
-/// By numbers of the field.
+/// Requests derivatives by numbers of the index field (key gradient_by).
 void add_motion(const RenderValues& values, const FieldUse& use, RenderScene& scene) {
   const auto refuse = [](const std::string& why) { throw InputError("gradient_by: " + why); };
   if (scene.is_silent || std::holds_alternative<Homogeneous>(scene.field))
-    refuse("the field must bend rays, which sound of no amplitude does not");
-  if (scene.random_phase) refuse("the sound must be of one phase, without random_phase");
-  if (!scene.stage.bodies.empty()) refuse("the stage must have no bodies, but one medium alone");
-  if (scene.stage.medium.density) refuse("the medium must be uniform, without density");
+    refuse("the field must bend rays; sound requires a nonzero amplitude");
+  if (scene.random_phase) refuse("the sound must have a fixed phase: leave out random_phase");
+  if (!scene.stage.bodies.empty()) refuse("the stage must have a single medium: leave out bodies");
+  if (scene.stage.medium.density) refuse("the medium must be uniform: leave out density");
   const auto* box = std::get_if<Box>(&scene.stage.boundary);
   if (!box) refuse("the stage must be a box");
   for (const Sensor& sensor : scene.sensors) SensorEdges(sensor, *box, 0);
@@ -281,15 +285,18 @@ void add_motion(const RenderValues& values, const FieldUse& use, RenderScene& sc
 
 void add_map_keys(Keys& keys, RenderValues& values) {
   keys.group("Map of the fluence rate and of absorbed power");
-  keys.add("map_box", values.map_box, "x y z x y z of two corners: cells of this box")
+  keys.add("map_box", values.map_box,
+           "x y z x y z of two corners: the map divides this box into cells")
       .exactly(6, "two opposite corners, the low one first")
       .unit("length");
   keys.add("map_cylinder", values.map_cylinder,
-           "x y z x y z radius: rings about the axis from the first point to the second")
+           "x y z x y z radius: the map divides this cylinder, whose axis extends from the first "
+           "point to the second, into rings")
       .exactly(7, "two points and a radius")
       .unit("length");
   keys.add("map_cells", values.map_cells,
-           "Counts: along x, y and z of a box; along the radius and the axis of a cylinder")
+           "Numbers of cells along x, y and z of map_box, or along the radius and the axis of "
+           "map_cylinder")
       .from(1, 1 << 21)
       .only_of("a map (map_box, map_cylinder)");
 }
@@ -303,7 +310,8 @@ void add_keys(Keys& keys, StageValues& values) {
   keys.add("stage_box", values.stage_box,
            "x y z x y z of two corners: light leaves the scene through this box")
       .each_of(6, box);
-  keys.add("stage_sphere", values.stage_sphere, "x y z radius: the same with a sphere")
+  keys.add("stage_sphere", values.stage_sphere,
+           "x y z radius: light leaves the scene through this sphere")
       .each_of(4, sphere);
   add_keys(keys, values.medium, "");
   keys.group("Body in the stage");
@@ -319,7 +327,7 @@ FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexF
   const auto boundary = given_boundary(keys, values);
   if (!boundary)
     throw InputError(
-        "stage is not given: light that leaves the index field needs a boundary (stage_box or "
+        "stage is not given: light needs a boundary through which it leaves (stage_box or "
         "stage_sphere)");
   const auto given = given_body(keys, values, &*boundary);
   const double reach = reach_of(given ? *given : *boundary);
@@ -347,15 +355,15 @@ FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexF
 void add_keys(Keys& keys, RenderValues& values) {
   add_keys(keys, values.field);
   keys.group("Rays", "a field that bends rays");
-  keys.add("random_phase", values.random_phase, "Each path meets the sound at a phase of its own")
+  keys.add("random_phase", values.random_phase, "Each path has a random phase of the sound")
       .only_of("ultrasound, focused_sound");
   keys.add("step", values.step,
-           "Equal steps of rays, length at index 1 (default: chosen by a pilot)")
+           "Step of curved rays, as a length at index 1 (default: chosen by a pilot run)")
       .positive()
       .unit("length");
   keys.add("max_length", values.max_length,
-           "Arc length of one flight between scatterings, at the most (default: 10 times the "
-           "stage's size)")
+           "Largest arc length of a flight between scatterings (default: 10 times the stage's "
+           "size)")
       .positive()
       .unit("length");
   add_keys(keys, values.stage);
@@ -363,19 +371,21 @@ void add_keys(Keys& keys, RenderValues& values) {
   add_keys(keys, values.sensors);
   keys.group("Picture");
   keys.add("path_bins", values.path_bins,
-           "first last count: also pictures by optical path, in equal bins of it, shared between "
-           "the two nearest middles")
+           "first last count: also computes pictures by optical path, in this number of equal bins "
+           "between two optical paths; contributions are split between the two nearest bins")
       .exactly(3, "three numbers: first last count");
-  keys.add("path_moments", values.path_moments,
-           "Also the mean optical path of the light in each pixel, and the mean of its square");
-  keys.add("gradient", values.gradient,
-           "Also derivatives of pictures and powers by mu_s, mu_a and g (method = analog)");
   keys.add(
-      "gradient_by", values.gradient_by,
-      "Also derivatives by numbers of the index field: amplitude, frequency, transducer.2, the "
-      "third of its numbers (method = analog)");
+      "path_moments", values.path_moments,
+      "Also computes the mean optical path of the light in each pixel, and the mean of its square");
+  keys.add(
+      "gradient", values.gradient,
+      "Also computes derivatives of pictures and powers by mu_s, mu_a and g (method = forward)");
+  keys.add("gradient_by", values.gradient_by,
+           "Also computes derivatives by these numbers of the index field, such as amplitude, or "
+           "transducer.2 for the third number of transducer (method = forward)");
   keys.add("length_unit", values.length_unit,
-           "What lengths are in, um or 1e-6, for frequency of sound and the times of path_bins")
+           "Unit of length, such as um or 1e-6, for the frequency of sound and the times of "
+           "path_bins")
       .positive()
       .unit("m");
   add_map_keys(keys, values);
@@ -384,12 +394,14 @@ void add_keys(Keys& keys, RenderValues& values) {
 void add_keys(Keys& keys, RenderRequestValues& values) {
   keys.group("Method");
   keys.add("method", values.method,
-           "Path tracing is from the sensor; light tracing is best for powers on large areas; "
-           "analog: light paths that are joined to nothing; auto: chosen by a pilot")
+           "path: paths from the sensor; light: paths from the lights, best for powers on large "
+           "areas; bidirectional: both, connected; forward: photon tracing without connections; "
+           "auto: chosen by a pilot run")
       .one_of(words_for_methods())
+      .formerly("analog", "forward")
       .gone("; photon_map is a baseline of `bench error`");
   keys.add("max_scatterings", values.max_scatterings,
-           "Paths of more scatterings are left out; 0: no limit")
+           "Largest number of scatterings of a path; longer paths are left out; 0: no limit")
       .from(0, std::numeric_limits<int>::max());
 }
 
@@ -419,7 +431,7 @@ RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
   if (!keys.read(values.gradient_by).empty()) add_motion(values, use, scene);
   check_size(scene.sensors, scene.bins);
   if (scene.sensors.empty() && !scene.map)
-    throw InputError("sensor", "none", "wants a map (map_box, map_cylinder)");
+    throw InputError("sensor", "none", "requires map_box or map_cylinder");
   return scene;
 }
 

@@ -12,7 +12,7 @@
 
 namespace flatspeckle::grin {
 
-/// The stage of light and the bodies in it as keys have them.
+/// Values of the keys of the stage and its bodies.
 struct StageValues : FieldBodyValues {
   std::vector<double> stage_box{}, stage_sphere{};
   MediumValues medium{}, body_medium{};
@@ -21,20 +21,20 @@ struct StageValues : FieldBodyValues {
 
 void add_keys(Keys& keys, StageValues& values);
 
-/// A stage and the index field that light meets in it.
+/// A stage and its index field.
 struct FilledStage {
   Stage stage;
   SceneField field;
   IndexRange index = {};
-  FieldUse use = {};  ///< what the field was made for
+  FieldUse use = {};  ///< argument with which the field was made
 };
 
-/// A Luneburg ball in a larger stage is a body by itself. Throws InputError, also for a field that
-/// has no index above 0 somewhere in its part of the stage.
+/// Makes the stage; a Luneburg ball in a larger stage becomes a body. Throws InputError, also for a
+/// field with an index that is not positive somewhere in its part of the stage.
 FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexFieldValues& field,
                        bool any_phase, const std::optional<double>& length_unit);
 
-/// What a picture is of, as keys have it.
+/// Values of the keys of a scene.
 struct RenderValues {
   IndexFieldValues field{};
   StageValues stage{};
@@ -48,7 +48,7 @@ struct RenderValues {
   std::optional<double> length_unit = {}, step = {}, max_length = {};
   bool random_phase = false;
 };
-/// And how it is made.
+/// Values of the keys of the method.
 struct RenderRequestValues {
   std::string method = "auto";
   std::int64_t max_scatterings = 0;
@@ -57,7 +57,8 @@ struct RenderRequestValues {
 void add_keys(Keys& keys, RenderValues& values);
 void add_keys(Keys& keys, RenderRequestValues& values);
 
-/// All throw InputError; of values alone, all must be of use.
+/// Make scene and request. All throw InputError; the overloads without keys also if a value is
+/// given that is not used.
 RenderScene make_render_scene(const Keys& keys, const RenderValues& values);
 RenderScene make_render_scene(const RenderValues& values);
 RenderRequest make_render_request(const Keys& keys, const RenderRequestValues& values);

@@ -13,8 +13,10 @@ namespace flatspeckle::grin {
 
 namespace {
 
-constexpr std::size_t spread = 32, steep = 16, places = 16;  // rays of the pilot
-constexpr double longest_ray = 1000;                         // in steps of the field's scale
+// numbers of rays of the pilot run that start at random, where the index is steepest, and at places
+// listed by the field
+constexpr std::size_t spread = 32, steep = 16, places = 16;
+constexpr double longest_ray = 1000;  // longest ray of the pilot run, in units of the field's scale
 
 const Surface& filled(const Stage& stage) {
   return stage.surface(stage.field_part());
@@ -24,7 +26,7 @@ double size(const Stage& stage) {
   return (box.high - box.low).norm();
 }
 
-/// As light meets it: as it is, or at phases of the sound.
+/// The field as given, and at further phases of the sound if light may meet any phase.
 using FieldsMet = std::vector<std::unique_ptr<const RayField>>;
 FieldsMet fields_met(const SceneField& field, bool any_phase, bool leapfrogs) {
   FieldsMet met;
@@ -35,17 +37,17 @@ FieldsMet fields_met(const SceneField& field, bool any_phase, bool leapfrogs) {
   return met;
 }
 
-/// Where rays of the pilot start: anywhere, where the index is steepest, and where the field says
-/// that it may be.
+/// Starts of the rays of the pilot run: at random, where the index is steepest, and at the critical
+/// places listed by the field.
 class PilotStarts {
  public:
   PilotStarts(const RayField& field, const SceneField& facts, const Surface& region)
       : region_(region), box_(bounds(region)) {
-    constexpr std::size_t looks = 512;
-    while (points_.size() < looks) points_.push_back(anywhere());
-    const auto slope = [&](const Vec3& x) { return field.gradient(x).gradient.squaredNorm(); };
+    constexpr std::size_t candidates = 512;
+    while (points_.size() < candidates) points_.push_back(anywhere());
+    const auto steepness = [&](const Vec3& x) { return field.gradient(x).gradient.squaredNorm(); };
     std::partial_sort(points_.begin() + spread, points_.begin() + spread + steep, points_.end(),
-                      [&](const Vec3& a, const Vec3& b) { return slope(a) > slope(b); });
+                      [&](const Vec3& a, const Vec3& b) { return steepness(a) > steepness(b); });
     points_.resize(spread + steep);
     for (const Vec3& place : facts.places) add(place);
     if (facts.symmetry == Symmetry::stratified)
@@ -62,7 +64,8 @@ class PilotStarts {
   Vec3 anywhere() {
     for (;;) {
       Vec3 share;
-      for (const int axis : {2, 1, 0}) share[axis] = random_.uniform();  // steps hang on the order
+      for (const int axis : {2, 1, 0})
+        share[axis] = random_.uniform();  // the chosen step depends on this order of random numbers
       const Vec3 x = box_.low + share.cwiseProduct(box_.high - box_.low);
       if (distance(region_, x) < 0) return x;
     }
@@ -77,10 +80,10 @@ class PilotStarts {
   std::vector<Vec3> points_;
 };
 
-/// A ray of a pilot, of so long a way in sigma, as light meets the field for the nth time.
+/// A ray of the pilot run, of a given length in sigma, in one of the fields of FieldsMet.
 class PilotRay {
  public:
-  /// Its length is found to `stride`.
+  /// Determines the length of the ray to an accuracy of `stride`.
   PilotRay(const RayField& field, std::size_t met, const Surface& region, const RayState& start,
            double longest, double stride)
       : met_(met), start_(start) {
@@ -97,8 +100,8 @@ class PilotRay {
     }
   }
 
-  /// What halving such steps changes, by how much a ray's end moves where its start is turned; NaN
-  /// where there is no ray.
+  /// Returns the change of the ray when the step is halved, relative to the motion of its end when
+  /// its start direction turns; NaN if there is no ray.
   double change_by_halving(const FieldsMet& fields, double step) const {
     const int steps = static_cast<int>(std::max(1.0, std::ceil(sigma_ / step)));
     const auto [coarse, coarse_tangent] = end(*fields[met_], steps);
@@ -159,18 +162,20 @@ double longest_step(const SceneField& field, const Stage& stage) {
 
 namespace {
 
-/// What halving its steps changed last.
+/// A ray, and its change when the step was halved for the last time.
 struct KnownChange {
   const PilotRay* ray;
   double change = 0;
 };
 
-/// Of one kind of steps; 0 where it would be less than `least`. Rays that were off most are looked
-/// at first, as one that is says enough.
+/// Returns the longest step with which the errors of all rays are below step_tolerance, for one
+/// integrator; 0 if that step is below `least`. Rays with the largest changes are tried first: a
+/// single ray out of tolerance rules out a step.
 double longest_good_step(const std::vector<PilotRay>& rays, const FieldsMet& met, int order,
                          double step, double least = 0) {
   constexpr int halvings = 8;
-  const double seen = order == Leapfrog::order ? 0.75 : 1;  // of an error, by halving the step
+  const double seen =
+      order == Leapfrog::order ? 0.75 : 1;  // fraction of the error that halving the step reveals
   std::vector<KnownChange> known;
   for (const PilotRay& ray : rays) known.push_back({&ray});
   for (int i = 0; i < halvings && step > least; ++i, step /= 2) {
@@ -178,7 +183,7 @@ double longest_good_step(const std::vector<PilotRay>& rays, const FieldsMet& met
     double worst = 0;
     const auto finer = [&] { return std::pow(step_tolerance / worst, 1.0 / order); };
     for (auto& [ray, change] : known) {
-      change = std::max(0.0, ray->change_by_halving(met, step) / seen);  // NaN is not kept
+      change = std::max(0.0, ray->change_by_halving(met, step) / seen);  // NaN becomes 0
       worst = std::max(worst, change);
       if (finer() < 0.5) break;
     }
@@ -193,7 +198,7 @@ bool may_leap(const SceneField& field) {
 }
 
 StepChoice choice_of(const SceneField& field, const Stage& stage, bool any_phase, bool may_leap) {
-  constexpr double cheaper = 2.2;  // one force instead of three
+  constexpr double cheaper = 2.2;  // Leapfrog evaluates one force per step instead of three
   const double longest = longest_step(field, stage);
   if (bends_nothing(field, stage)) return {longest};
   const FieldsMet met = fields_met(field, any_phase, false);

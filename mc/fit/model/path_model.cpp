@@ -20,10 +20,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// By a coordinate, of a number of the spec.
+/// Function that returns the derivative of a member of MovingSpec by a coordinate.
 using Difference = std::function<double(double MovingSpec::*)>;
 
-MovingSlope moving_slope(MediumSlope medium, const Difference& by) {
+MovingDerivative moving_derivative(MediumDerivative medium, const Difference& by) {
   return {std::move(medium),
           by(&MovingSpec::diffusion),
           {by(&MovingSpec::velocity_x), by(&MovingSpec::velocity_z)},
@@ -40,7 +40,7 @@ MatrixXd SampledModel::noise() const {
 }
 
 MatrixXd SampledModel::added_information(const MatrixXd& weight) const {
-  const Index size = values.size(), parameters = slopes.cols();
+  const Index size = values.size(), parameters = derivatives.cols();
   MatrixXd sum = MatrixXd::Zero(parameters, parameters);
   for (const MatrixXd& run : deviations)
     for (Index i = 0; i < parameters; ++i) {
@@ -60,9 +60,10 @@ std::vector<Complex> PathModel::FixedCount::correction(double samples,
 }
 
 PathModel::PathModel(const FitTask& task) : task_(task), curves_(curves_of(task)) {
-  if (task.free.size() > most_slopes)
+  if (task.free.size() > most_derivatives)
     throw InputError("free", task.free.size(),
-                     "parameters: paths take at most " + std::to_string(most_slopes));
+                     "with method = mc, the number of free keys must be at most " +
+                         std::to_string(most_derivatives));
   const Media media = media_at(task, middle(task));
   for (std::size_t i = 0; i < curves_.size(); ++i) {
     first_.push_back(size_);
@@ -73,7 +74,7 @@ PathModel::PathModel(const FitTask& task) : task_(task), curves_(curves_of(task)
       continue;
     }
     const auto run =
-        std::ranges::find_if(runs_, [&](const Run& one) { return joins(one, media, i); });
+        std::ranges::find_if(runs_, [&](const Run& one) { return can_share(one, media, i); });
     if (run == runs_.end())
       runs_.push_back({.power = power,
                        .reversed = !power && needs_reversed(media[i].scene),
@@ -88,7 +89,7 @@ PathModel::PathModel(const FitTask& task) : task_(task), curves_(curves_of(task)
   move(middle(task));
 }
 
-bool PathModel::joins(const Run& run, const Media& media, std::size_t curve) const {
+bool PathModel::can_share(const Run& run, const Media& media, std::size_t curve) const {
   const Scene &first = media[run.curves.front()].scene, &scene = media[curve].scene;
   return first.domain.kind == scene.domain.kind && first.domain.depth == scene.domain.depth &&
          first.domain.width == scene.domain.width && first.k == scene.k &&
@@ -111,23 +112,23 @@ void PathModel::begin(Run& run, std::uint64_t seed, const Media& media) const {
   const bool moving = !run.delays.empty();
   Scene scene = joint_scene(media, run.curves);
   if (moving) scene.request.kind = CovarianceRequest::Kind::intensity;
-  const auto all = slopes(run, scene);
+  const auto all = derivatives(run, scene);
   run.state = {};
   run.beta = spec.beta;
-  std::vector<MediumSlope> media_alone;
-  for (const MovingSlope& slope : all) media_alone.push_back(slope.medium);
+  std::vector<MediumDerivative> media_alone;
+  for (const MovingDerivative& derivative : all) media_alone.push_back(derivative.medium);
   if (run.power) {
     run.lights = scene.request.lights;
-    run.job = flux_slope_job(scene, media_alone, seed);
+    run.job = flux_derivative_job(scene, media_alone, seed);
     return;
   }
   Plan plan = gradient_plan(scene, run.reversed ? ReversedPaths::yes : ReversedPaths::no);
   if (moving) {
     plan.sampled_single = true;
-    run.job = moving_slope_job(scene, plan, run.delays, spec.motion(), all, seed);
+    run.job = moving_derivative_job(scene, plan, run.delays, spec.motion(), all, seed);
     return;
   }
-  run.job = slope_job(scene, plan, media_alone, seed);
+  run.job = derivative_job(scene, plan, media_alone, seed);
   if (!curves_[run.curves.front()].fixed_count) return;
   plan.sampled_single = true;
   run.fixed_count = {fixed_count_job(scene, plan, ~seed),
@@ -135,13 +136,15 @@ void PathModel::begin(Run& run, std::uint64_t seed, const Media& media) const {
                      scene.medium.density * scene.domain.width * scene.domain.depth};
 }
 
-/// About a place so far from the bounds that all steps are within.
-std::vector<MovingSlope> PathModel::slopes(Run& run, const Scene& scene) const {
+/// Returns the derivatives of the medium by each coordinate. If a coordinate is close to a bound,
+/// the finite differences are taken about a point so far from the bound that all steps stay within
+/// the bounds.
+std::vector<MovingDerivative> PathModel::derivatives(Run& run, const Scene& scene) const {
   constexpr double share = 1e-4;
   const VectorXd lower = lower_coordinates(task_.free), upper = upper_coordinates(task_.free);
   const MovingSpec& spec = curves_[run.curves.front()].scene;
-  std::vector<MovingSlope> found;
-  run.beta_slopes.clear();
+  std::vector<MovingDerivative> found;
+  run.beta_derivatives.clear();
   for (Index i = 0; i < at_.size(); ++i) {
     const double step = share * (upper[i] - lower[i]);
     const double about = std::clamp(at_[i], lower[i] + 3 * step, upper[i] - 3 * step);
@@ -154,17 +157,17 @@ std::vector<MovingSlope> PathModel::slopes(Run& run, const Scene& scene) const {
     const Difference by = [&](double MovingSpec::*value) {
       return (above.*value - below.*value) / (2 * step);
     };
-    found.push_back(
-        moving_slope(medium_slope(task_.free[static_cast<std::size_t>(i)].key, scene, step,
-                                  [&](double more) { return scene_of(moved(more)); }),
-                     by));
-    run.beta_slopes.push_back(by(&MovingSpec::beta));
+    found.push_back(moving_derivative(
+        medium_derivative(task_.free[static_cast<std::size_t>(i)].key, scene, step,
+                          [&](double more) { return scene_of(moved(more)); }),
+        by));
+    run.beta_derivatives.push_back(by(&MovingSpec::beta));
   }
   return found;
 }
 
 void PathModel::sample(double paths) {
-  constexpr double of_correction = 0.5;  // which is small, and may be as uncertain
+  constexpr double of_correction = 0.5;  // fraction of the paths; the correction is small
   RunOptions options;
   options.threads = task_.paths->threads;
   const auto sample_to = [&](const PathJob& job, RunState& state, double most) {
@@ -179,7 +182,8 @@ void PathModel::sample(double paths) {
   }
 }
 
-/// Of shares [light][reflected, transmitted].
+/// Returns the values of those curves of a run that measure power. shares: [light][reflected,
+/// transmitted].
 std::vector<Complex> PathModel::power_values(const Run& run,
                                              std::span<const Complex> shares) const {
   std::vector<Complex> all;
@@ -213,8 +217,9 @@ std::vector<Complex> PathModel::curve_values(const Run& run, double beta,
   return all;
 }
 
-/// Of the run's curves, then their slopes by each parameter; 0 of other curves. all: what its job
-/// estimates; correction: is added to the covariances.
+/// Returns the values of all curves, then their derivatives by each parameter. Both are 0 for
+/// curves that belong to other runs. all: estimates by the job of this run. correction: result of
+/// FixedCount::correction(), which is added to the covariances.
 std::vector<Complex> PathModel::run_values(const Run& run, std::vector<Complex> all,
                                            std::span<const Complex> correction) const {
   for (std::size_t e = 0; e < correction.size(); ++e) all[e] += correction[e];
@@ -224,7 +229,7 @@ std::vector<Complex> PathModel::run_values(const Run& run, std::vector<Complex> 
   std::vector<Complex> found(quantities * size);
   for (std::size_t q = 0; q < quantities; ++q) {
     auto values = q == 0 ? curve_values(run, run.beta, covariances)
-                         : directional_slope(
+                         : directional_derivative(
                                [&](const std::vector<Complex>& moved) {
                                  return curve_values(run, run.beta, moved);
                                },
@@ -235,7 +240,7 @@ std::vector<Complex> PathModel::run_values(const Run& run, std::vector<Complex> 
         Complex& value = found[q * size + static_cast<std::size_t>(first_[curve]) + i];
         value = *next++;
         if (q > 0 && curves_[curve].observable == Observable::squared_contrast)
-          value += run.beta_slopes[q - 1] / run.beta *
+          value += run.beta_derivatives[q - 1] / run.beta *
                    found[static_cast<std::size_t>(first_[curve]) + i];
       }
   }
@@ -248,7 +253,7 @@ SampledModel PathModel::model() const {
   SampledModel model;
   for (const Run& run : runs_) add(run, model, all);
   model.values = all.head(size_);
-  model.slopes = Eigen::Map<MatrixXd>(all.data() + size_, size_, parameters);
+  model.derivatives = Eigen::Map<MatrixXd>(all.data() + size_, size_, parameters);
   put_power(model);
   return model;
 }
@@ -288,12 +293,12 @@ void PathModel::put_power(SampledModel& model) const {
   BoundedLeastSquares problem = bounds_of(task_.free);
   problem.residuals = [&](const VectorXd& at) { return transport.values(media(at)); };
   const VectorXd here = problem.residuals(at_);
-  const MatrixXd slopes = jacobian(problem, at_, here);
+  const MatrixXd derivatives = jacobian(problem, at_, here);
   Index next = 0;
   for (const std::size_t i : power_)
     for (std::size_t j = 0; j < curves_[i].entries.size(); ++j, ++next) {
       model.values[first_[i] + static_cast<Index>(j)] = here[next];
-      model.slopes.row(first_[i] + static_cast<Index>(j)) = slopes.row(next);
+      model.derivatives.row(first_[i] + static_cast<Index>(j)) = derivatives.row(next);
     }
 }
 

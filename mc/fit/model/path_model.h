@@ -9,69 +9,73 @@
 #include "mc/fit/model/slab_model.h"
 #include "mc/fit/task/fit_task.h"
 #include "mc/jobs/path_job.h"
-#include "mc/paths/dynamics/moving_slopes.h"
+#include "mc/paths/dynamics/moving_derivatives.h"
 
 namespace flatspeckle::mc {
 
-/// What paths tell of all values at one medium.
+/// Monte Carlo estimates of all measured values for one medium.
 struct SampledModel {
   Eigen::VectorXd values;
-  Eigen::MatrixXd slopes;  ///< by the coordinates, [value][parameter]
-  /// Of each run, which is independent of the others: [values, then each column of slopes][group];
-  /// products of them are the covariances of errors by chance.
+  /// Derivatives of the values by the coordinates of the parameters, [value][parameter].
+  Eigen::MatrixXd derivatives;
+  /// Jackknife deviations, one matrix per run: deviations() of the values, then of each column of
+  /// `derivatives`, [value or derivative][group]. The product of one matrix with its transpose is
+  /// the covariance of the sampling errors of that run. Runs are independent of each other.
   std::vector<Eigen::MatrixXd> deviations;
 
-  /// Covariance of the values' errors by chance.
+  /// Returns the covariance of the sampling errors of the values.
   Eigen::MatrixXd noise() const;
-  /// What chance in the slopes adds to J^T weight J in the mean.
+  /// Returns the expected increase of the matrix J^T weight J by sampling noise in the derivatives
+  /// J.
   Eigen::MatrixXd added_information(const Eigen::MatrixXd& weight) const;
 };
 
-/// Curves by Monte Carlo, with derivatives from the same paths; the power through slabs is by
-/// transport, that of boxes by walks of its own. Where placements hold a fixed number of
-/// scatterers, that is taken in. Media next to each other see the same random numbers.
+/// Estimates the measured curves by Monte Carlo, with derivatives from the same paths. Reflected
+/// and transmitted power is computed by transport for slabs and by separate random walks for boxes.
+/// A correction is included if all placements have the same number of scatterers. All media use the
+/// same random numbers.
 class PathModel {
  public:
-  /// Throws InputError for what paths cannot tell.
+  /// Throws InputError for measurements that the Monte Carlo model does not support.
   explicit PathModel(const FitTask& task);
 
-  /// Begins anew in the medium at these coordinates. Throws InputError.
+  /// Selects the medium at these coordinates and discards all earlier samples. Throws InputError.
   void move(const Eigen::VectorXd& coordinates);
-  /// Goes on until each run has so many paths.
+  /// Samples the selected medium until each run has this number of paths.
   void sample(double paths);
   SampledModel model() const;
 
  private:
-  /// What a fixed number of scatterers changes, by paths of its own.
+  /// Correction of covariances for a fixed number of scatterers, estimated from separate paths.
   struct FixedCount {
     PathJob job;
     RunState state;
-    double count = 0;
+    double count = 0;  ///< mean number of scatterers
 
-    /// Of each entry.
+    /// Returns the correction of each entry.
     std::vector<Complex> correction(double samples, std::span<const Complex> sums) const;
   };
 
-  /// Curves that the same paths tell.
+  /// Curves that are estimated from the same paths.
   struct Run {
     bool power, reversed;
     std::vector<double> delays;
     std::vector<std::size_t> curves;
-    std::vector<CovarianceRequest> requests;  ///< of each
+    std::vector<CovarianceRequest> requests;  ///< request of each curve
     PathJob job{};
     RunState state{};
     std::optional<FixedCount> fixed_count{};
-    Lights lights{};  ///< of all curves, of power
+    Lights lights{};  ///< illuminations of all curves, if `power`
     double beta = 1;
-    std::vector<double> beta_slopes{};  ///< by the coordinates
+    std::vector<double> beta_derivatives{};  ///< derivatives of beta by the coordinates
 
-    /// Covariances of all curves, [0 and delays][entry].
+    /// Number of covariances of all curves: the entries at time 0 and after each delay.
     std::size_t covariances() const { return job.entries * (1 + delays.size()); }
   };
 
-  bool joins(const Run& run, const Media& media, std::size_t curve) const;
+  bool can_share(const Run& run, const Media& media, std::size_t curve) const;
   void begin(Run& run, std::uint64_t seed, const Media& media) const;
-  std::vector<MovingSlope> slopes(Run& run, const Scene& scene) const;
+  std::vector<MovingDerivative> derivatives(Run& run, const Scene& scene) const;
   std::vector<Complex> power_values(const Run& run, std::span<const Complex> shares) const;
   std::vector<Complex> curve_values(const Run& run, double beta,
                                     std::span<const Complex> covariances) const;
@@ -82,10 +86,11 @@ class PathModel {
 
   const FitTask& task_;
   std::vector<Curve> curves_;
-  std::vector<Eigen::Index> first_;  ///< of each curve in all values
+  std::vector<Eigen::Index> first_;  ///< index of each curve's first value among all values
   Eigen::Index size_ = 0;
   std::vector<Run> runs_;
-  std::vector<std::size_t> power_;  ///< curves of it
+  /// Indices of the curves of power reflected or transmitted by slabs.
+  std::vector<std::size_t> power_;
   Eigen::VectorXd at_;
 };
 

@@ -25,13 +25,14 @@ void put(VectorXd& all, Index first, const std::vector<double>& values) {
 SlabModel::SlabModel(std::vector<Curve> curves, const Media& media) : curves_(std::move(curves)) {
   for (std::size_t i = 0; i < curves_.size(); ++i) {
     if (media[i].scene.domain.kind != Domain::Kind::slab)
-      throw InputError("domain", "box", "measurements are compared with slabs");
+      throw InputError("domain", "box",
+                       "the transport model requires domain = slab; boxes require method = mc");
     if (curves_[i].moving() && !media[i].spec.only_diffuses())
-      throw InputError("velocity_x, velocity_z, shear: are of method = mc");
+      throw InputError("velocity_x, velocity_z, shear: require method = mc");
     first_.push_back(size_);
     size_ += static_cast<Index>(curves_[i].entries.size());
     const auto group =
-        std::ranges::find_if(groups_, [&](const Group& one) { return joins(one, media, i); });
+        std::ranges::find_if(groups_, [&](const Group& one) { return can_share(one, media, i); });
     const bool flux = is_flux(curves_[i].observable);
     if (group == groups_.end())
       groups_.push_back({flux, !flux && needs_reversed(media[i].scene), curves_[i].delays, {i}});
@@ -40,12 +41,12 @@ SlabModel::SlabModel(std::vector<Curve> curves, const Media& media) : curves_(st
   }
 }
 
-bool SlabModel::joins(const Group& group, const Media& media, std::size_t curve) const {
+bool SlabModel::can_share(const Group& group, const Media& media, std::size_t curve) const {
   const Scene &first = media[group.curves.front()].scene, &scene = media[curve].scene;
   const bool flux = is_flux(curves_[curve].observable);
   return group.delays == curves_[curve].delays && first.domain.depth == scene.domain.depth &&
          first.k == scene.k && group.flux == flux &&
-         (flux || (!has_near_ends(first.request) && !has_near_ends(scene.request) &&
+         (flux || (!has_near_endpoints(first.request) && !has_near_endpoints(scene.request) &&
                    group.reversed == needs_reversed(scene)));
 }
 
@@ -75,7 +76,9 @@ VectorXd SlabModel::solved(const Media& media, int order) const {
 
 void SlabModel::solve_fields(const Group& group, const Media& media, int order,
                              VectorXd& all) const {
-  constexpr double tolerance = 1e-4;  // of paths of two scatterings, a hundredth of it
+  // A hundredth of this relative tolerance applies to the integrals over paths with two
+  // scatterings.
+  constexpr double tolerance = 1e-4;
   const Medium& first = media[group.curves.front()];
   const Scene joint = joint_scene(media, group.curves);
   const Refinement once{tolerance, order, 0};

@@ -8,44 +8,45 @@
 
 namespace flatspeckle::mc {
 
-/// Curves of slabs by transport, a smooth function of the medium: the number of ordinates does not
-/// change between calls. Curves of one slab, and after the same delays, are solved together. Paths
-/// count walked backwards too where a view is so near to exact backscattering that they make a
-/// thousandth.
+/// Computes the measured curves of slabs by solving the transport of field pairs. The values are a
+/// smooth function of the medium, because the number of ordinates does not change between calls of
+/// values(). Curves of the same slab with the same delays are solved together. Reversed paths are
+/// included if needs_reversed() returns true.
 class SlabModel {
  public:
-  /// media: of each curve, like those that are to come. Throws InputError for boxes,
-  /// and for scatterers that flow.
+  /// media: the medium of each curve, representative of the media in later calls. Throws InputError
+  /// for boxes, and for scatterers that flow.
   SlabModel(std::vector<Curve> curves, const Media& media);
 
-  /// Of all curves, one after the other, in their media.
+  /// Returns the values of all curves, concatenated. media: the medium of each curve.
   Eigen::VectorXd values(const Media& media) const { return solved(media, order_); }
 
-  /// Takes more ordinates until still more change the values by less than `share` of these errors.
-  /// Returns the largest change, in them.
+  /// Increases the number of ordinates until a further increase changes no value by more than
+  /// `share` of its error. Returns the largest change by that further increase, in units of the
+  /// errors.
   double refine(const Media& media, const Eigen::VectorXd& errors, double share);
 
   int order() const { return order_; }
   bool reversed() const;
 
  private:
-  /// Curves that one solution gives.
+  /// Curves whose values follow from the same solution.
   struct Group {
     bool flux = false, reversed = false;
     std::vector<double> delays;
     std::vector<std::size_t> curves;
   };
 
-  bool joins(const Group& group, const Media& media, std::size_t curve) const;
+  bool can_share(const Group& group, const Media& media, std::size_t curve) const;
   Eigen::VectorXd solved(const Media& media, int order) const;
   void solve_fields(const Group& group, const Media& media, int order, Eigen::VectorXd& all) const;
   void solve_flux(const Group& group, const Media& media, Eigen::VectorXd& all) const;
 
   std::vector<Curve> curves_;
-  std::vector<Eigen::Index> first_;  ///< of each curve in all values
+  std::vector<Eigen::Index> first_;  ///< index of each curve's first value among all values
   Eigen::Index size_ = 0;
   std::vector<Group> groups_;
-  int order_ = 5;  ///< nodes of a panel of directions
+  int order_ = 5;  ///< nodes per panel of the angular grid
 };
 
 }  // namespace flatspeckle::mc

@@ -16,30 +16,34 @@ namespace flatspeckle::mc {
 
 const DatasetTable plan_table{
     .name = "fit plan",
-    .rows = {{"parameter", Data::numbers, "", "1", "number of the free key"},
-             {"parameter_2", Data::numbers, "", "1", "number of the second free key"},
-             {"parameter_name", Data::text, "parameter", "", "its name"},
-             {"planned", Data::estimate, "parameter", "", "its value, with the least error"},
-             {"parameter_correlation", Data::real, "parameter parameter_2", "1",
-              "correlation of the estimates' errors"},
-             {"patterns_to_percent", Data::real, "parameter", "1",
-              "patterns that make the error a hundredth of the value"},
-             {"view_angle", Data::scale, "", "rad", "direction of view, from +z towards +x"},
-             {"tilt", Data::scale, "", "rad", "rotation of the light"},
-             {"growth_without_view", Data::real, "view_angle parameter", "1",
-              "error without this view over that with all"},
-             {"growth_without_tilt", Data::real, "tilt parameter", "1",
-              "error without this tilt over that with all"},
-             {"point", Data::numbers, "", "1", "number of the plan, of several"},
-             {"point_name", Data::text, "point", "", "what is varied there"},
-             {"point_planned", Data::estimate, "point parameter", "",
-              "value there, with the least error"},
-             {"point_patterns_to_percent", Data::real, "point parameter", "1",
-              "patterns that make the error there a hundredth of the value"}},
-    .attributes = {{"", "patterns", "float64", "independent patterns of each view"},
-                   {"", "condition", "float64",
-                    "largest over least eigenvalue of the information, parameters in distances of "
-                    "their bounds; absent where a combination is not known at all"}}};
+    .rows =
+        {{"parameter", Data::numbers, "", "1", "number of the free key"},
+         {"parameter_2", Data::numbers, "", "1", "number of the second free key"},
+         {"parameter_name", Data::text, "parameter", "", "name of the free key"},
+         {"planned", Data::estimate, "parameter", "",
+          "value of the free key, with the smallest possible error"},
+         {"parameter_correlation", Data::real, "parameter parameter_2", "1",
+          "correlation of the estimates' errors"},
+         {"patterns_to_percent", Data::real, "parameter", "1",
+          "number of patterns that reduces the error to a hundredth of the value"},
+         {"view_angle", Data::scale, "", "rad", "direction of view, from +z towards +x"},
+         {"tilt", Data::scale, "", "rad", "rotation of the illumination"},
+         {"growth_without_view", Data::real, "view_angle parameter", "1",
+          "error without this view, divided by the error with all views"},
+         {"growth_without_tilt", Data::real, "tilt parameter", "1",
+          "error without this tilt, divided by the error with all tilts"},
+         {"point", Data::numbers, "", "1", "number of the point"},
+         {"point_name", Data::text, "point", "", "values that are varied at this point"},
+         {"point_planned", Data::estimate, "point parameter", "",
+          "value at this point, with the smallest possible error"},
+         {"point_patterns_to_percent", Data::real, "point parameter", "1",
+          "number of patterns that reduces the error at this point to a hundredth of the value"}},
+    .attributes = {
+        {"", "patterns", "float64", "number of independent patterns of each view"},
+        {"", "condition", "float64",
+         "ratio of the largest to the least eigenvalue of the information, with parameters "
+         "in units of the distance between their bounds; absent if a combination is not "
+         "determined at all"}}};
 
 void write_plan(ResultFile& file, const PlanTask& task, const FitPlan& plan) {
   const ResultGroup root(file, plan_table);
@@ -84,7 +88,8 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Covariances of each view's fields: at rest, then of each tilt.
+/// Returns the covariance matrix of the fields in each view. The first field belongs to the
+/// illumination without tilt, the others to the tilted illuminations.
 std::vector<MatrixXcd> covariances(Scene scene) {
   const CovarianceRequest tilts = scene.request;
   const std::size_t views = tilts.reference_views, fields = 1 + tilts.moves;
@@ -115,27 +120,27 @@ std::vector<MatrixXcd> covariances(Scene scene) {
   return found;
 }
 
-/// Of each view's fields, with derivatives by the coordinates of the parameters.
+/// Covariances of the fields in each view, with derivatives by the coordinates of the parameters.
 struct PlannedFields {
   std::vector<MatrixXcd> covariance;
-  std::vector<std::vector<MatrixXcd>> slopes;  ///< [view][parameter]
+  std::vector<std::vector<MatrixXcd>> derivatives;  ///< [view][parameter]
 };
 
 PlannedFields fields_of(const PlanTask& task, const VectorXd& at) {
-  constexpr double step = 1e-3;  // of the distance of the bounds
+  constexpr double step = 1e-3;  // in units of the distance between the bounds
   const auto c = [&](const VectorXd& x) {
     return covariances(scene_of(with_parameters(task.scene, task.free, x)));
   };
   const VectorXd lower = lower_coordinates(task.free), upper = upper_coordinates(task.free);
   PlannedFields found{c(at), {}};
-  found.slopes.resize(found.covariance.size());
+  found.derivatives.resize(found.covariance.size());
   for (Index i = 0; i < at.size(); ++i) {
     VectorXd high = at, low = at;
     high[i] = std::min(at[i] + step * (upper[i] - lower[i]), upper[i]);
     low[i] = std::max(at[i] - step * (upper[i] - lower[i]), lower[i]);
     const auto above = c(high), below = c(low);
     for (std::size_t v = 0; v < above.size(); ++v)
-      found.slopes[v].push_back((above[v] - below[v]) / (high[i] - low[i]));
+      found.derivatives[v].push_back((above[v] - below[v]) / (high[i] - low[i]));
   }
   return found;
 }
@@ -148,23 +153,24 @@ MatrixXcd without(const MatrixXcd& matrix, Index field) {
   return found;
 }
 
-/// Of all views but one, and all fields but one; -1: none is left out.
+/// Returns the Fisher information of all fields, except those in the given view and those of the
+/// given tilt (`field`). -1: no view or no tilt is left out.
 MatrixXd total_information(const PlannedFields& fields, Index parameters, Index view, Index field) {
   MatrixXd total = MatrixXd::Zero(parameters, parameters);
   for (std::size_t v = 0; v < fields.covariance.size(); ++v) {
     if (static_cast<Index>(v) == view) continue;
     MatrixXcd covariance = fields.covariance[v];
-    auto slopes = fields.slopes[v];
+    auto derivatives = fields.derivatives[v];
     if (field >= 0) {
       covariance = without(covariance, field);
-      for (auto& slope : slopes) slope = without(slope, field);
+      for (auto& derivative : derivatives) derivative = without(derivative, field);
     }
-    total += field_information(covariance, slopes);
+    total += field_information(covariance, derivatives);
   }
   return total;
 }
 
-/// What is known with some of it left out.
+/// Fisher information of a plan, with all fields or without some of them.
 class Planned {
  public:
   static constexpr Index none = -1;
@@ -185,7 +191,8 @@ class Planned {
     return information_of(bounds_, task_.patterns * one);
   }
 
-  /// Errors over those of all, with one of so many left out in turn.
+  /// Returns the errors if one of `count` views or tilts is left out, divided by the errors with
+  /// all fields, [left out][parameter]. left_out(i): information without view or tilt i.
   template <typename LeftOut>
   MatrixXd growth(Index count, const LeftOut& left_out) const {
     const VectorXd all = known(none, none).errors();
@@ -207,19 +214,19 @@ void check_finite(const PlanTask& task, const FitPlan& plan) {
     if (!std::isfinite(plan.patterns_to_percent[i]))
       throw InputError(
           task.free[static_cast<std::size_t>(i)].key, plan.values[i],
-          "has no finite error in percent: it must not be (nearly) 0, and no tilt be 0 "
-          "or (nearly) another");
+          "has no finite relative error: its value must not be close to 0, and the tilts "
+          "must differ from 0 and from each other");
 }
 
 }  // namespace
 
-MatrixXd field_information(const MatrixXcd& covariance, const std::vector<MatrixXcd>& slopes) {
+MatrixXd field_information(const MatrixXcd& covariance, const std::vector<MatrixXcd>& derivatives) {
   const Eigen::PartialPivLU<MatrixXcd> solver(covariance);
-  const auto count = static_cast<Index>(slopes.size());
+  const auto count = static_cast<Index>(derivatives.size());
   std::vector<MatrixXcd> relative;
-  for (const MatrixXcd& slope : slopes) relative.push_back(solver.solve(slope));
+  for (const MatrixXcd& derivative : derivatives) relative.push_back(solver.solve(derivative));
   MatrixXd found(count, count);
-  VectorXd with_scale(count);  // whose own derivative of C is C
+  VectorXd with_scale(count);  // the derivative of C by its scale factor is C
   for (Index a = 0; a < count; ++a) {
     with_scale[a] = relative[static_cast<std::size_t>(a)].trace().real();
     for (Index b = 0; b < count; ++b)
@@ -239,7 +246,7 @@ FitPlan fit_plan(const PlanTask& task) {
   for (Index i = 0; i < plan.values.size(); ++i) {
     const FreeParameter& free = task.free[static_cast<std::size_t>(i)];
     plan.values[i] = free.start.value();
-    plan.errors[i] *= free.slope(planned.at()[i]);
+    plan.errors[i] *= free.derivative(planned.at()[i]);
   }
   plan.correlation = all.correlation;
   plan.condition = all.condition;

@@ -11,11 +11,12 @@
 
 namespace flatspeckle::mc {
 
-/// What would be measured: fields of a view under a light at rest and tilted (matched views), in
-/// independent patterns, their scale unknown.
+/// A plan for measuring fields in several detection directions. The illumination has its original
+/// angle in one measurement and is tilted in the others, with matched views. All are repeated in
+/// independent patterns. The scale of the fields is unknown.
 struct PlanTask {
-  std::vector<FreeParameter> free;  ///< with a start each: where the plan is made
-  MovingSpec scene;                 ///< of a slab, covariance = memory_effect
+  std::vector<FreeParameter> free;  ///< each with a start, the value for which the plan is made
+  MovingSpec scene;                 ///< a slab, with covariance = memory_effect
   double patterns = 1;
 };
 
@@ -23,24 +24,31 @@ struct FitPlan {
   Eigen::VectorXd values, errors;
   Eigen::MatrixXd correlation;
   double condition = 0;
-  Eigen::VectorXd patterns_to_percent;  ///< that make an error a hundredth of the value
+  /// Number of patterns that reduces each error to a hundredth of the value.
+  Eigen::VectorXd patterns_to_percent;
   std::vector<double> views, tilts;
-  Eigen::MatrixXd without_view, without_tilt;  ///< errors over those of all; [left out][parameter]
+  /// Errors if one view or one tilt is left out, divided by the errors without omission,
+  /// [left out][parameter].
+  Eigen::MatrixXd without_view, without_tilt;
 };
 
-/// The Fisher information of circular Gaussian fields, tr(C^-1 C_a C^-1 C_b) of each pattern and
-/// view (Slepian 1954, Bangs 1971), less what an unknown scale of each view takes away; the bound
-/// is its inverse. Throws InputError.
+/// Returns the Cramer-Rao bound of the errors: the inverse of the Fisher information of circular
+/// Gaussian fields. For parameters a and b, each pattern and view contributes tr(C^-1 C_a C^-1 C_b)
+/// to the information, where C_a and C_b are derivatives of the covariance C (Slepian
+/// [slepian1954], Bangs [bangs1971]), less the information that the unknown scale of each view
+/// removes. Throws InputError.
 FitPlan fit_plan(const PlanTask& task);
 
-/// Of fields of covariance C with derivatives, their scale unknown: [parameter][parameter].
+/// Returns the Fisher information, [parameter][parameter], of fields with this covariance and an
+/// unknown scale. derivatives: derivatives of the covariance by each parameter.
 Eigen::MatrixXd field_information(const Eigen::MatrixXcd& covariance,
-                                  const std::vector<Eigen::MatrixXcd>& slopes);
+                                  const std::vector<Eigen::MatrixXcd>& derivatives);
 
 extern const DatasetTable plan_table;
 void write_plan(ResultFile& file, const PlanTask& task, const FitPlan& plan);
 
-/// A plan of the same free keys at each of several points.
+/// The plan for one of several points, at which some scene keys have different values. All points
+/// have the same free keys.
 struct PlanPoint {
   std::string name;
   FitPlan plan;

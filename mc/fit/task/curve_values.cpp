@@ -34,7 +34,7 @@ bool needs_reversed(const Scene& scene) {
 
 namespace {
 
-/// Where it is in a list, to which it is added if it is not there.
+/// Returns the index of `one` in a list. If it is missing, it is appended.
 template <typename List, typename One>
 std::uint32_t place_in(List& list, const One& one) {
   const auto found = std::ranges::find(list, one);
@@ -43,8 +43,8 @@ std::uint32_t place_in(List& list, const One& one) {
   return place;
 }
 
-/// Adds the channels and entries of another request, as pairs.
-void join(CovarianceRequest& all, const CovarianceRequest& more) {
+/// Adds the channels and entries of another request to a request of kind pairs.
+void append_pairs(CovarianceRequest& all, const CovarianceRequest& more) {
   const auto channels = static_cast<std::uint32_t>(all.channels.size());
   all.kind = CovarianceRequest::Kind::pairs;
   for (const Channel& channel : more.channels)
@@ -54,7 +54,8 @@ void join(CovarianceRequest& all, const CovarianceRequest& more) {
     all.entries.push_back({entry.a + channels, entry.b + channels});
 }
 
-/// Of entries [light][view] at time 0 and after each delay.
+/// Computes observables from covariances: intensities of all channels, [light][view], then the
+/// covariance of the fields at time 0 and after each delay, [delay][light][view].
 class Decays {
  public:
   Decays(const Curve& curve, double beta, std::size_t channels, std::span<const Complex> entries)
@@ -91,7 +92,7 @@ class Decays {
 Scene joint_scene(const Media& media, const std::vector<std::size_t>& curves) {
   Scene joint = media[curves.front()].scene;
   joint.request = {};
-  for (const std::size_t i : curves) join(joint.request, media[i].scene.request);
+  for (const std::size_t i : curves) append_pairs(joint.request, media[i].scene.request);
   return joint;
 }
 

@@ -7,29 +7,31 @@
 
 namespace flatspeckle::mc {
 
-/// A scene of the plane or, with dimension = 3, of space. Throws InputError.
+/// Makes a scene in the plane or, with dimension = 3, in space. Throws InputError.
 Scene scene_of(const SceneSpec& spec);
 
-/// What a curve is of: its scene, made, and its motion.
+/// The medium of a curve: its scene and the motion of its scatterers.
 struct Medium {
   MovingSpec spec;
   Scene scene;
 
   explicit Medium(const MovingSpec& of) : spec(of), scene(scene_of(of)) {}
 };
-using Media = std::vector<Medium>;  ///< of all curves
+using Media = std::vector<Medium>;  ///< the medium of each curve
 
 bool is_flux(Observable observable);
 
-/// Reversed paths add about 1 / (k l* angle) of what is seen at this angle from backscattering:
-/// whether that is a thousandth or more in some view.
+/// Whether reversed paths contribute a thousandth or more in some detection direction. At an angle
+/// from exact backscattering they contribute about 1 / (k l* angle), with the transport mean free
+/// path l*.
 bool needs_reversed(const Scene& scene);
 
-/// The scene of some curves, the first's, with the channels and entries of all as pairs.
+/// Returns the scene of the first given curve with one request of kind pairs, which contains the
+/// channels and entries of all given curves.
 Scene joint_scene(const Media& media, const std::vector<std::size_t>& curves);
 
-/// Those of a curve, of the covariance entries of its request, [0 and its delays][entry]. beta: K^2
-/// of still scatterers.
+/// Returns the values of a curve from the covariances of its request, [time][entry], at time 0 and
+/// after each delay of the curve. beta: squared contrast K^2 of the speckle of static scatterers.
 std::vector<double> observed(const Curve& curve, double beta, const CovarianceRequest& request,
                              std::span<const Complex> entries);
 

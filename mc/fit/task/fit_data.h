@@ -14,23 +14,25 @@ namespace flatspeckle::mc {
 std::vector<Curve> curves_of(const FitTask& task);
 Media media_at(const FitTask& task, const Eigen::VectorXd& coordinates);
 
-/// The bounds of the parameters, as coordinates, of a problem without residuals.
+/// Returns a least-squares problem that contains only the bounds of the parameters, as coordinates.
 BoundedLeastSquares bounds_of(const std::vector<FreeParameter>& free);
 
-/// Where parameters start, or amid their bounds.
+/// Returns the starting coordinates of the parameters. A parameter without a start begins at the
+/// middle of its bounds.
 Eigen::VectorXd middle(const FitTask& task);
-/// All combinations of the parameters' starts.
+/// Returns all combinations of the parameters' starts.
 std::vector<Eigen::VectorXd> grid_of_starts(const FitTask& task);
 
-/// All measurements as one, their errors made independent.
+/// The values of all measurements, concatenated, and the transformation that makes their errors
+/// independent.
 class FitData {
  public:
-  /// Throws InputError where a covariance is not positive definite.
+  /// Throws InputError if the covariance of a measurement is not positive definite.
   explicit FitData(const FitTask& task);
 
   bool has_fields() const { return has_fields_; }
-  /// With the errors that fields have where the model is right; of a scale that is not known,
-  /// fields in that of the model.
+  /// Returns the data with the errors that measured fields have if the model is correct. Fields of
+  /// unknown scale are rescaled to the scale of the model. model: values of all curves.
   FitData about(const Eigen::VectorXd& model) const;
 
   const Eigen::VectorXd& values() const { return values_; }
@@ -38,11 +40,12 @@ class FitData {
   Eigen::VectorXd residuals(const Eigen::VectorXd& model) const {
     return whitened(model - values_);
   }
-  /// Of each column: L^-1, where L L^T is the covariance.
+  /// Multiplies each column by L^-1, where L L^T is covariance().
   Eigen::MatrixXd whitened(const Eigen::MatrixXd& of) const;
-  /// Of all values.
+  /// Returns the covariance of all values.
   Eigen::MatrixXd covariance() const;
-  /// The same before it was shrunk: how the values scatter, in place of how they weigh.
+  /// Returns the covariance of all values before shrinkage. It describes the scatter of the values;
+  /// the shrunk covariance() determines their weights.
   Eigen::MatrixXd scatter() const;
 
  private:

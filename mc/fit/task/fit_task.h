@@ -10,36 +10,39 @@
 
 namespace flatspeckle::mc {
 
-/// How a model by Monte Carlo is sampled.
+/// Settings of a Monte Carlo model that is fitted.
 struct PathSettings {
   std::uint64_t seed = 1;
   int threads = 1;
-  double share = 0.2;             ///< of errors' variances, that chance in the model may add
-  std::optional<double> seconds;  ///< after which no more paths are drawn
-  bool trusted = false;           ///< what paths neglect of waves counts as no error
+  /// Fraction that sampling noise of the model may add to the variances of the estimates.
+  double share = 0.2;
+  std::optional<double> seconds;  ///< time after which no more paths are sampled
+  bool trusted = false;           ///< true: no errors are added for wave effects that paths neglect
 };
 
-/// Where a search by Monte Carlo stands: all that it needs to go on.
+/// State of a search by Monte Carlo, sufficient to resume it.
 struct FitStep {
-  std::size_t start = 0;  ///< which of the starts
+  std::size_t start = 0;  ///< index of the start point of the search
   int iteration = 0;
   double paths = 0, damping = 0;
-  double chi_squared = 0, cpu_s = 0;  ///< of this process, so far
+  /// cpu_s: processor time of this process so far.
+  double chi_squared = 0, cpu_s = 0;
   Eigen::VectorXd at;
 };
 
-/// Which medium gave these measurements?
+/// An inverse problem: the free parameters of a medium and the measurements that determine them.
 struct FitTask {
   std::vector<FreeParameter> free;
   std::vector<Measurement> measurements;
-  int starts = 2;  ///< of each parameter without a start
+  int starts = 2;  ///< number of start values of each parameter that has no given start
   int most_iterations = 60;
-  std::optional<PathSettings> paths;  ///< the model is by Monte Carlo; else by transport
-  // Of a search by Monte Carlo: what is told of each step, and steps that were made before.
+  /// If set, the model is computed by Monte Carlo, else by transport.
+  std::optional<PathSettings> paths;
+  // For a search by Monte Carlo: callback for each step, and steps of an earlier run.
   std::function<void(const FitStep&)> keep{};
   std::vector<FitStep> made{};
 
-  /// Whether any curve is of delays or exposures.
+  /// Whether any curve is a function of delays or exposures.
   bool moving() const {
     for (const Measurement& one : measurements)
       for (const Curve& curve : one.curves)

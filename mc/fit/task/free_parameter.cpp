@@ -11,14 +11,17 @@ namespace flatspeckle::mc {
 
 void add_motion_keys(Keys& keys, MovingSpec& spec) {
   keys.group("Motion");
-  keys.add("diffusion", spec.diffusion, "k^2 D of the scatterers per unit of the delays")
+  keys.add("diffusion", spec.diffusion,
+           "k^2 D per unit of the delays, D the diffusion constant of the scatterers")
       .not_negative();
   keys.add("velocity_x", spec.velocity_x,
-           "Of the scatterers along the surface, per unit of the delays")
+           "Velocity of the scatterers along the surface, per unit of the delays")
       .unit("length");
-  keys.add("velocity_z", spec.velocity_z, "Of the scatterers along the depth").unit("length");
-  keys.add("shear", spec.shear, "Of the velocity: velocity_x grows so much per depth");
-  keys.add("beta", spec.beta, "K^2 of still scatterers").positive_to(1);
+  keys.add("velocity_z", spec.velocity_z,
+           "Velocity of the scatterers along the depth, per unit of the delays")
+      .unit("length");
+  keys.add("shear", spec.shear, "Shear rate: change of velocity_x per unit of depth");
+  keys.add("beta", spec.beta, "K^2 (squared speckle contrast) of static scatterers").positive_to(1);
 }
 
 void add_keys(Keys& keys, MovingSpec& spec) {
@@ -33,9 +36,9 @@ using Eigen::Index;
 using Eigen::VectorXd;
 using Scale = FreeParameter::Scale;
 
-constexpr const char* form = "must be key=lower:upper, as g=0.5:0.99";
+constexpr const char* form = "must be key=lower:upper, for example g=0.5:0.99";
 
-/// Positive and without an upper bound of their own.
+/// Keys of positive quantities without an upper bound. Their coordinate in a fit is the logarithm.
 const std::set<std::string> of_any_size = {"optical_depth", "mean_free_path", "density",
                                            "radius",        "depth",          "diffusion"};
 
@@ -50,7 +53,7 @@ double number_in(const std::string& given, const std::string& text) {
   return *number;
 }
 
-/// Sets a number, or the real part of a complex one.
+/// Sets a key to a number; of a complex key only the real part is set.
 void set(const Keys& keys, const std::string& name, double value) {
   const Key& key = *keys.find(name);
   if (key.is_number()) return keys.set(name, {number_text(value)});
@@ -80,7 +83,7 @@ FreeParameter parsed(const std::string& text) {
 void check_bounds(const FreeParameter& free, const std::string& text, const MovingSpec& scene) {
   const Keyed<MovingSpec> keyed(scene);
   if (!is_one_number(keyed.keys.find(free.key)))
-    throw InputError("free", text, free.key + " is no key of the scene that holds one number");
+    throw InputError("free", text, free.key + " must be a scene key that holds one number");
   for (const double bound : {free.lower, free.upper}) {
     set(keyed.keys, free.key, bound);
     keyed.keys.check();
@@ -94,7 +97,7 @@ FreeParameter read_one(const std::string& text, const MovingSpec& scene) {
   free.start = start_of(*keyed.keys.find(free.key));
   if (free.start && !(free.lower <= *free.start && *free.start <= free.upper))
     throw InputError(free.key, *free.start,
-                     "starts the fit: must be within its bounds, free " + text);
+                     "the start of a fit must lie within the bounds given by free = " + text);
   if (free.key == "g") free.scale = Scale::to_one;
   if (of_any_size.contains(free.key)) free.scale = Scale::logarithmic;
   return free;
@@ -121,7 +124,7 @@ double FreeParameter::value(double coordinate) const {
   return std::clamp(found, lower, upper);
 }
 
-double FreeParameter::slope(double coordinate) const {
+double FreeParameter::derivative(double coordinate) const {
   if (scale == Scale::linear) return 1;
   return scale == Scale::logarithmic ? std::exp(coordinate) : std::exp(-coordinate);
 }

@@ -11,42 +11,43 @@
 
 namespace flatspeckle::mc {
 
-/// A scene and how its scatterers move while it is measured.
+/// A scene and the motion of its scatterers during a measurement.
 struct MovingSpec : SceneSpec {
   double diffusion = 1, velocity_x = 0, velocity_z = 0, shear = 0, beta = 1;
 
   Motion motion() const { return {diffusion, {velocity_x, velocity_z}, shear}; }
-  /// Diffusion alone, which transport can do.
+  /// Whether the scatterers only diffuse, which transport solutions can model.
   bool only_diffuses() const { return velocity_x == 0 && velocity_z == 0 && shear == 0; }
 };
 
-/// Of the motion alone.
+/// Adds only the keys of the motion.
 void add_motion_keys(Keys& keys, MovingSpec& spec);
-/// All, found by the struct's name (Keyed).
+/// Adds all keys of a MovingSpec. Keyed<MovingSpec> calls this function.
 void add_keys(Keys& keys, MovingSpec& spec);
 
-/// A key of the scene that is fitted, within bounds. Steps are taken in a coordinate that makes a
-/// straight line of what thick media alone tell, mu_s (1 - g): the logarithm of 1 - g and of what
-/// is positive without bound.
+/// A scene key that is fitted within bounds. The fit takes steps in a coordinate: -log(1 - g) for
+/// g, the logarithm of positive quantities without an upper bound, and other values themselves.
+/// Thick media determine only the combination mu_s (1 - g). In these coordinates, media with equal
+/// mu_s (1 - g) lie nearly on a straight line.
 struct FreeParameter {
   enum class Scale { linear, logarithmic, to_one };
   std::string key;
   double lower = 0, upper = 0;
-  std::optional<double> start;  ///< without one a grid of starts
+  std::optional<double> start;  ///< start value of the search; if empty, several are tried
   Scale scale = Scale::linear;
 
   double coordinate(double value) const;
   double value(double coordinate) const;
-  double slope(double coordinate) const;  ///< of the value by the coordinate
+  double derivative(double coordinate) const;  ///< d value / d coordinate
 };
 
-/// Of texts such as "g=0.5:0.99"; the value that the scene gives a key is where it starts. Throws
-/// InputError for what is no such text, for keys that are no number, for bounds that the key does
-/// not accept, and for starts beyond them.
+/// Parses texts such as "g=0.5:0.99"; a value that the scene gives to the key is its start. Throws
+/// InputError for malformed texts, for keys that are not numbers, for bounds that the key does not
+/// accept, and for starts outside them.
 std::vector<FreeParameter> read_free_parameters(const std::vector<std::string>& texts,
                                                 const MovingSpec& scene);
 
-/// The scene with the values of the parameters at these coordinates.
+/// Returns the scene with the values of the parameters at these coordinates.
 MovingSpec with_parameters(const MovingSpec& scene, const std::vector<FreeParameter>& free,
                            const Eigen::VectorXd& coordinates);
 

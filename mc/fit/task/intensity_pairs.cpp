@@ -10,7 +10,7 @@ using Eigen::ArrayXd;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// I_1(z) / I_0(z)
+/// Returns I_1(z) / I_0(z).
 double bessel_ratio(double z) {
   constexpr double far = 30;
   if (z < far) return std::cyl_bessel_i(1, z) / std::cyl_bessel_i(0, z);
@@ -18,7 +18,8 @@ double bessel_ratio(double z) {
   return 1 - t * (0.5 + t * (0.125 + t * (0.125 + t * 25 / 128)));
 }
 
-/// Of C_I = c and a pair of intensities: what is 0 in the mean at the right c.
+/// Score of C_I = c for intensities x and y of two channels: the derivative of the log likelihood
+/// by c, or x y - 1 - c. Its expectation is 0 if c is the true value of C_I.
 class Score {
  public:
   explicit Score(bool likelihood) : likelihood_(likelihood) {}
@@ -36,7 +37,7 @@ class Score {
   bool likelihood_;
 };
 
-/// Where the mean score is 0.
+/// Returns the c at which the score, averaged over the patterns, is 0.
 double root_of(const Score& score, const ArrayXd& x, const ArrayXd& y) {
   constexpr double least = 1e-6, precise = 1e-12;
   double low = least, high = 1 - least;
@@ -47,7 +48,7 @@ double root_of(const Score& score, const ArrayXd& x, const ArrayXd& y) {
   return (low + high) / 2;
 }
 
-/// C_I of two channels, and what each pattern moves it by.
+/// Estimate of C_I of two channels, and the influence of each pattern on this estimate.
 struct PairEstimate {
   double value = 0;
   ArrayXd influence;
@@ -61,10 +62,11 @@ struct PairEstimate {
       return score(x * x_scale, y * y_scale, c).mean();
     };
     const double change = step * (1 - value),
-                 slope = (mean(1, 1, value - change) - mean(1, 1, value + change)) / (2 * change),
+                 derivative =
+                     (mean(1, 1, value - change) - mean(1, 1, value + change)) / (2 * change),
                  by_x = (mean(1 - step, 1, value) - mean(1 + step, 1, value)) / (2 * step),
                  by_y = (mean(1, 1 - step, value) - mean(1, 1 + step, value)) / (2 * step);
-    influence = (score(x, y, value) + by_x * (x - 1) + by_y * (y - 1)) / slope;
+    influence = (score(x, y, value) + by_x * (x - 1) + by_y * (y - 1)) / derivative;
   }
 };
 
@@ -84,7 +86,8 @@ PairCorrelations likeliest_correlations(std::span<const double> intensities, std
     influence.col(i) = pair.influence;
   }
   const auto n = static_cast<double>(patterns);
-  // its inverse is unbiased (Hartlap, Simon and Schneider 2007, eq. 17)
+  // The factor n - pairs - 2 makes the inverse of the covariance unbiased (Hartlap, Simon and
+  // Schneider [hartlap2007], eq. 17).
   found.covariance = influence.transpose() * influence / (n * (n - static_cast<double>(pairs) - 2));
   return found;
 }

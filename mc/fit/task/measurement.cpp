@@ -23,8 +23,9 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A packed number is tr(E S) of a Hermitian matrix E of at most two entries.
-struct PatternReading {
+/// One of the numbers of packed(S), written as tr(E S) with a Hermitian matrix E. `terms` contains
+/// the one or two nonzero entries of E.
+struct PatternMeasurement {
   struct Term {
     Index row, column;
     Complex factor;
@@ -32,8 +33,8 @@ struct PatternReading {
   std::vector<Term> terms;
 };
 
-std::vector<PatternReading> readings(Index channels) {
-  std::vector<PatternReading> all;
+std::vector<PatternMeasurement> packed_measurements(Index channels) {
+  std::vector<PatternMeasurement> all;
   const Complex half = 0.5, turned(0, 0.5);
   for (Index i = 0; i < channels; ++i) {
     for (Index j = 0; j < i; ++j) {
@@ -52,7 +53,7 @@ MatrixXd deviations(const GroupedSums& sums, const Estimator& theta) {
   const auto total = sums.total();
   const VectorXd all = real_values(theta(samples, total));
   const auto groups = static_cast<Index>(sums.groups());
-  // Pseudo-values and weights as those of jackknife().
+  // Pseudo-values and weights are the same as in jackknife().
   VectorXd mean = VectorXd::Zero(all.size()), rest(groups);
   MatrixXd found(all.size(), groups);
   auto without = total;
@@ -124,9 +125,9 @@ MatrixXcd unpacked(const VectorXd& values, std::size_t channels) {
   return matrix;
 }
 
-// Cov(tr(E S), tr(F S)) = tr(E C F C) / N.
+// Uses Cov(tr(E S), tr(F S)) = tr(E C F C) / N, for the sample covariance S of N patterns.
 MatrixXd sample_errors(const FieldSample& sample, const MatrixXcd& c) {
-  const auto all = readings(c.rows());
+  const auto all = packed_measurements(c.rows());
   const Index size = std::ssize(all);
   MatrixXd errors(size, size);
   for (Index p = 0; p < size; ++p)
@@ -138,7 +139,8 @@ MatrixXd sample_errors(const FieldSample& sample, const MatrixXcd& c) {
       errors(p, q) = errors(q, p) = sum.real() / sample.patterns;
     }
   if (sample.known_scale) return errors;
-  constexpr double free = 1e6;  // relative to what N patterns tell of the scale
+  // Variance of the scale, relative to the one that N patterns would give.
+  constexpr double free = 1e6;
   const VectorXd along = packed(c);
   return errors + free / sample.patterns * along * along.transpose();
 }

@@ -2,15 +2,16 @@
 
 namespace flatspeckle::mc {
 
-/// What a camera adds to the light. Frames are in units of the light's mean over the pixels.
+/// Noise and background of a camera. Frames are in units of the light's mean over the pixels.
 struct CameraNoise {
-  double photons = 0;     ///< detected per pixel, mean of the light; 0: no shot noise
-  double read_noise = 0;  ///< standard deviation, in photons
-  double background = 0;  ///< even light besides, over the mean
+  /// Mean number of photons of the light detected per pixel, without background; 0: no noise.
+  double photons = 0;
+  double read_noise = 0;  ///< standard deviation of the read noise, in photons
+  double background = 0;  ///< uniform background light, divided by the mean of the light
 };
 
-/// Of what the camera adds, over the square of the mean, where that is so many times the mean of
-/// the frame.
+/// Returns the variance of the camera's noise divided by the squared mean, for pixels whose mean is
+/// `times` the mean of the frame.
 inline double noise_variance(const CameraNoise& noise, double times = 1) {
   if (noise.photons == 0) return 0;
   const double mean = times * (1 + noise.background) * noise.photons;

@@ -31,9 +31,10 @@ std::vector<double> wiener(std::span<const double> frame, std::span<const double
   return about_zero(spectra.line(std::move(picture)), lags);
 }
 
-/// The frame as reference * object and even light, all of them positive: multiplied at each
-/// iteration by how much more of each the frame asks for. Of the frame only the inner part is
-/// compared, which all shifts of the reference reach.
+/// Richardson-Lucy iteration. The frame is modelled as the reference convolved with the object,
+/// plus uniform light, all positive. Each step multiplies object and uniform light by factors that
+/// follow from the ratio of frame and model. Frame and model are compared only in the inner part of
+/// the frame, which the reference covers at all shifts.
 class RichardsonLucy {
  public:
   RichardsonLucy(std::span<const double> frame, std::span<const double> reference, std::size_t lags)
@@ -43,7 +44,7 @@ class RichardsonLucy {
         frame_(frame),
         object_(2 * lags - 1, 0.5 / static_cast<double>(2 * lags - 1)) {}
 
-  /// The rms of what the frame differs by before the step.
+  /// Performs one step. Returns the rms difference between frame and model before the step.
   double step() {
     const auto model = modelled();
     std::vector<double> ratio(frame_.size());
@@ -69,7 +70,8 @@ class RichardsonLucy {
   }
 
  private:
-  /// Element 0 of the object is the shift -(lags - 1): what the line of a product has begins there.
+  /// Returns the model of the frame. Element 0 of the object belongs to the shift -(lags - 1), so
+  /// that the frame begins at element lags - 1 of the convolution.
   std::vector<double> modelled() const {
     auto spectrum = spectra_.of(object_);
     for (std::size_t m = 0; m < spectrum.size(); ++m)
@@ -84,8 +86,9 @@ class RichardsonLucy {
     auto spectrum = spectra_.of(ratio);
     for (std::size_t m = 0; m < spectrum.size(); ++m)
       spectrum[m] = product(spectrum[m], std::conj(reference_[m]));
-    const auto asked = about_zero(spectra_.line(std::move(spectrum)), lags_);
-    for (std::size_t i = 0; i < object_.size(); ++i) object_[i] *= std::max(asked[i], 0.0) / count;
+    const auto correction = about_zero(spectra_.line(std::move(spectrum)), lags_);
+    for (std::size_t i = 0; i < object_.size(); ++i)
+      object_[i] *= std::max(correction[i], 0.0) / count;
   }
 
   std::size_t lags_;
@@ -97,7 +100,8 @@ class RichardsonLucy {
 };
 
 std::vector<double> plus_one(std::vector<double> line) {
-  for (double& value : line) value = std::max(value + 1, 0.0);  // read noise
+  // Values below 0 are due to read noise.
+  for (double& value : line) value = std::max(value + 1, 0.0);
   return line;
 }
 

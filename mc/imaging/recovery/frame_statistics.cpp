@@ -33,10 +33,11 @@ double grain_of(double band) {
 
 namespace {
 
-/// An autocorrelation along a peak, of which what stands beside the main lobe is taken off.
+/// Fit of speckle_peak() to an autocorrelation, from which its mean beside the main lobe is first
+/// subtracted.
 struct PeakFit {
   double height = 0;
-  double part = 0;  ///< over its standard deviation where all lags have one of 1
+  double part = 0;  ///< height / its standard deviation, for noise of variance 1 at each lag
 };
 
 PeakFit fitted_peak(std::span<const double> autocorrelation, double band, double white) {
@@ -60,17 +61,17 @@ PeakFit fitted_peak(std::span<const double> autocorrelation, double band, double
   return {own / norm, own / std::sqrt(norm)};
 }
 
-/// An even line of `size` values and its mirror image.
+/// Appends the mirror image of a line, so that the result is even and periodic.
 std::vector<double> both_sides(std::span<const double> line) {
   std::vector<double> both(line.begin(), line.end());
   both.insert(both.end(), line.rbegin() + 1, line.rend() - 1);
   return both;
 }
 
-/// By frequency. The peak of a pair keeps its height.
+/// Filter as a function of frequency. It does not change the height of the peak of a pair.
 struct Filter {
   std::vector<double> spectrum;
-  double width = 0;  ///< of what it makes of a peak
+  double width = 0;  ///< width of a filtered peak in pixels
 };
 
 Filter filter_of(const LineSpectrum& spectra, const AutocorrelationTerms& terms) {
@@ -87,7 +88,8 @@ Filter filter_of(const LineSpectrum& spectra, const AutocorrelationTerms& terms)
   return {std::move(filter), squares / (kept * kept)};
 }
 
-/// A line of another number of values, as many frequencies as either has.
+/// Resamples a line, given by its spectrum, to another number of values. Only frequencies below
+/// both Nyquist frequencies are used.
 std::vector<double> resampled(std::span<const Complex> spectrum, std::size_t size) {
   std::vector<Complex> part(size);
   const std::size_t half = (std::min(size, spectrum.size()) - 1) / 2;
@@ -108,11 +110,11 @@ double rms(std::span<const double> values) {
   return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-/// What is averaged by: a Gaussian, or what keeps cubics as they are, but follows speckle more and
-/// may even be negative.
+/// Kernel of the moving average: a Gaussian, or a kernel that preserves cubic polynomials but
+/// follows speckle more closely and may give negative values.
 enum class Envelope { gaussian, cubics };
 
-/// Averages of a line; nothing comes from beyond the ends.
+/// Returns moving averages of a line; values beyond its ends count as 0.
 std::vector<double> averaged(const LineSpectrum& spectra, std::span<const double> line,
                              double width, Envelope kind) {
   auto spectrum = spectra.of(line);
@@ -140,7 +142,8 @@ std::vector<double> over(std::span<const double> frame, std::span<const double> 
   return rest;
 }
 
-/// Mean of what the camera adds to the variance of a frame over its envelope, at these pixels.
+/// Returns the contribution of the camera's noise to the variance of a frame divided by its
+/// envelope, averaged over the pixels of `envelope`.
 double mean_noise(std::span<const double> envelope, double mean, const CameraNoise& noise) {
   double sum = 0;
   for (const double value : envelope) sum += noise_variance(noise, value / mean);
@@ -197,9 +200,9 @@ PairPeaks pair_peaks(std::span<const double> autocorrelation, std::size_t lags,
   const auto filter = filter_of(spectra, terms);
   for (std::size_t m = 0; m < spectrum.size(); ++m) spectrum[m] *= filter.spectrum[m];
 
-  const double finest = 0.5, asked = std::max(grain_of(terms.band) / 3, finest),
+  const double finest = 0.5, target_step = std::max(grain_of(terms.band) / 3, finest),
                length = static_cast<double>(line.size());
-  const std::size_t size = transform_size(length / asked);
+  const std::size_t size = transform_size(length / target_step);
   PairPeaks peaks;
   peaks.step = length / static_cast<double>(size);
   peaks.alone = terms.alone;
@@ -209,11 +212,12 @@ PairPeaks pair_peaks(std::span<const double> autocorrelation, std::size_t lags,
     return static_cast<std::size_t>(static_cast<double>(pixels) / peaks.step);
   };
   const std::size_t inside = in_steps(lags), beyond = std::min(in_steps(known), size / 2);
-  const auto nothing = std::span(peaks.height).subspan(inside, beyond - inside);
+  const auto noise_only = std::span(peaks.height).subspan(inside, beyond - inside);
   const double mean =
-      std::reduce(nothing.begin(), nothing.end()) / static_cast<double>(nothing.size());
-  for (double& height : peaks.height) height -= mean;  // the envelope has taken it
-  peaks.noise = rms(nothing);
+      std::reduce(noise_only.begin(), noise_only.end()) / static_cast<double>(noise_only.size());
+  for (double& height : peaks.height)
+    height -= mean;  // removes the offset that the division by the envelope introduces
+  peaks.noise = rms(noise_only);
   peaks.height.resize(inside);
   return peaks;
 }
@@ -236,7 +240,8 @@ double squared_contrast(std::span<const double> frame, std::size_t lags, const C
   const auto by = [&](std::size_t one_width) {
     const auto w = static_cast<double>(one_width);
     auto envelope = envelope_of(frame, w, Envelope::cubics);
-    if (!(*std::min_element(envelope.begin(), envelope.end()) > 0))  // of few and large grains
+    // An envelope that is not positive occurs if grains are few and large.
+    if (!(*std::min_element(envelope.begin(), envelope.end()) > 0))
       envelope = envelope_of(frame, w, Envelope::gaussian);
     const auto rest = over(frame, envelope);
     const auto seen = inner(rest);

@@ -8,87 +8,102 @@
 
 namespace flatspeckle::mc {
 
-/// Speckle of light from an even band of directions: its autocorrelation is sinc^2(band lag), whose
+/// Speckle of light from a uniform band of directions has the autocorrelation sinc^2(band lag). Its
 /// power spectrum is a triangle that ends at `band` cycles per pixel.
 
-/// Autocorrelation of unit variance at a lag in pixels.
+/// Returns the autocorrelation of speckle of unit variance at a lag in pixels.
 double speckle_peak(double lag, double band);
-/// Power of unit variance at a frequency in cycles per pixel, folded where pixels are too coarse.
+/// Returns the power spectrum of speckle of unit variance at a frequency in cycles per pixel. If
+/// the pixels are too coarse, it includes aliasing.
 double speckle_power(double frequency, double band);
-/// Pixels of a grain: sum over all lags of the square of the autocorrelation, by which averages
-/// over a frame get better; 2 / (3 band) where grains are larger than pixels.
+/// Returns the size of a grain in pixels: the sum of the squared autocorrelation over all lags.
+/// This size determines the error of averages over a frame. It is 2 / (3 band) if grains are larger
+/// than pixels.
 double grain_of(double band);
 
-/// The band whose peak about lag 0 has most of an autocorrelation in it, and at least half of its
-/// height; 0 where nothing has. Speckle of few paths has a wide base besides. noise: standard
-/// deviation at any lag but 0; there the variance is larger by 2 + white, where white is the
-/// variance of the camera's photons over the square of their mean (Poisson's distribution).
+/// Returns the band for which speckle_peak() is the most significant part of an autocorrelation
+/// about lag 0. Its fitted height must be at least half of the value at lag 0; if no band fits, the
+/// result is 0. The peak may stand on a wider base, as in speckle of few paths. noise: standard
+/// deviation at lags other than 0. At lag 0 the variance is 2 + white times as large, where white
+/// is the variance of the camera's photon number divided by its squared mean (Poisson
+/// distribution).
 double fitted_band(std::span<const double> autocorrelation, double noise, double white = 0);
 
-/// What a frame tells of pairs of points, by their distance: the autocorrelation, filtered so that
-/// noise of the camera, which knows nothing of grains, is suppressed.
+/// The peaks of pairs of points as a function of their distance: the autocorrelation, filtered to
+/// suppress camera noise, which is uncorrelated between pixels.
 struct PairPeaks {
-  double step = 1;             ///< pixels from one lag to the next: a third of a grain
-  std::vector<double> height;  ///< of the peak of a pair at each lag; the mean square of its noise
-                               ///< is noise^2
-  double noise = 0;
-  double alone = 0;  ///< the autocorrelation at lag 0, (sum of b^2) / (sum of b)^2
-  double width = 1;  ///< pixels of a filtered peak, as a grain's: a third more at most
+  double step = 1;  ///< distance from one lag to the next, in pixels: about a third of a grain
+  std::vector<double> height;  ///< height of the peak of a pair at each lag
+  double noise = 0;            ///< rms noise of the heights of the pair peaks
+  /// Autocorrelation at lag 0, (sum of b^2) / (sum of b)^2 for points of brightness b.
+  double alone = 0;
+  /// Width of a filtered peak in pixels, defined like the grain size; at most 4/3 of the grain
+  /// size.
+  double width = 1;
 };
 
-/// What is known of an estimated autocorrelation.
+/// Parameters of an estimated autocorrelation.
 struct AutocorrelationTerms {
-  double alone = 0, white = 0;  ///< at lag 0, of the light and of the camera
-  double band = 1;              ///< of the speckle, cycles per pixel
+  double alone = 0, white = 0;  ///< values at lag 0 due to the light and to camera noise
+  double band = 1;              ///< band of the speckle, in cycles per pixel
 };
 
-/// A frame of power P = alone T + white, T that of speckle of unit variance, has an autocorrelation
-/// whose noise has the spectrum P^2 / pixels (Bartlett's formula); the peak of a pair has T. Of
-/// filters T / P^n, n = 2 is the best in Gaussian noise, but rings where the camera has none and a
-/// pair stands beside another; n = 1, which is taken here, passes an autocorrelation without noise
-/// of the camera as it is. The peak about lag 0 is taken off. autocorrelation: by lag in pixels,
-/// the camera's noise taken off lag 0; of as many lags beyond the first `lags` nothing is expected
-/// but noise.
+/// Subtracts the peak about lag 0 from an autocorrelation and filters the rest. The power spectrum
+/// of a frame is P = a T + w, with T the spectrum of speckle of unit variance, a = terms.alone its
+/// variance and w = terms.white the spectrum of the camera's noise. The noise of
+/// the autocorrelation then has the spectrum P^2 / pixels (Bartlett's formula), and the peak of a
+/// pair has the spectrum T. Among the filters T / P^n, n = 2 is optimal in Gaussian noise, but its
+/// result rings if the camera has no noise and two pairs have similar distances. This function uses
+/// n = 1, which leaves an autocorrelation without camera noise unchanged. autocorrelation: by lag
+/// in pixels, with the camera's noise subtracted at lag 0. Between `lags` and twice `lags` it must
+/// contain only noise.
 PairPeaks pair_peaks(std::span<const double> autocorrelation, std::size_t lags,
                      const AutocorrelationTerms& terms);
 
-/// What the pixels of a frame tell without a reference.
+/// Statistics of the pixels of one or several frames.
 struct FrameStatistics {
-  double contrast = 0;  ///< standard deviation over mean, of what is left of the envelope
-  double square = 0;  ///< of it, below 0 where the camera's noise happened to be less than expected
-  double grain = 0;   ///< pixels, as grain_of()
-  double grains = 0;  ///< in the frames
-  double noise = 0;   ///< standard deviation of the autocorrelation where nothing is expected
+  /// Standard deviation divided by the mean, for the frame divided by its envelope.
+  double contrast = 0;
+  double square = 0;  ///< squared contrast; negative if the camera's noise was less than expected
+  double grain = 0;   ///< grain size in pixels (grain_of())
+  double grains = 0;  ///< number of grains in all frames
+  double noise = 0;   ///< standard deviation of the autocorrelation at lags without signal
   std::vector<double> autocorrelation;  ///< by lag in pixels, from 0
   PairPeaks peaks;
-  /// Relative difference between the autocorrelation at lag 0 and the variance of the pixels.
+  /// Check: relative difference between the autocorrelation at lag 0 and the variance of the
+  /// pixels.
   Invariant variance;
 };
 
-/// The frame over its smooth envelope, less 1: what varies within `width` pixels (standard
-/// deviation of a Gaussian average). Throws InputError for a frame whose envelope is not positive.
+/// Returns the frame divided by its smooth envelope, minus 1. The envelope is a Gaussian average
+/// with a standard deviation of `width` pixels. Throws InputError for a frame whose envelope is not
+/// positive.
 std::vector<double> without_envelope(std::span<const double> frame, double width);
 
-/// Of the envelope of frames whose autocorrelation is looked at: twice the lags, but at most a 32nd
-/// of the frame. A wider one leaves what varies slowly as a pedestal under all peaks, higher at
-/// short lags, by which a search prefers short objects.
+/// Returns the width of the envelope for autocorrelations: twice the lags, but at most 1/32 of the
+/// frame or 32 pixels, whichever is larger. With a wider envelope, slow variations would remain as
+/// a pedestal under all peaks. The pedestal would be higher at short lags and bias a search towards
+/// short objects.
 double envelope_width(std::size_t pixels, std::size_t lags);
 
-/// Variance over the square of the mean of what is left of the envelope, in the inner three
-/// quarters of at least 64 pixels, less that of the camera, whose shot noise is what the envelope
-/// lets expect: the less the brighter. An envelope that is taken from the speckle itself follows it
-/// a little: the variance lacks a part as 1/width, which is seen in two widths and put back. lags:
-/// of the longest distance of peaks in its autocorrelation, which the width should exceed.
+/// Returns the squared contrast of a frame: the variance of the frame divided by its envelope, less
+/// the variance of the camera's noise, for which the envelope determines the shot noise. Only the
+/// inner part of the frame is used, one half to three quarters of its length; the frame must have
+/// at least 64 pixels. An envelope that is estimated from the speckle itself follows the speckle
+/// slightly, so that the variance is too small by an amount proportional to 1/width. This amount is
+/// measured with two widths and corrected. lags: longest distance of peaks in the autocorrelation,
+/// which the width of the envelope should exceed.
 double squared_contrast(std::span<const double> frame, std::size_t lags = 0,
                         const CameraNoise& noise = {});
 
-/// Of frames of one object, of the same pixels: the mean autocorrelation, the rms contrast, and the
-/// grains of all. lags: so many of the autocorrelation, at most half of the pixels; its noise is
-/// that of as many beyond. The camera's noise, without correlation, stands in the first value
-/// alone, and is taken off there.
+/// Computes the statistics of frames of one object, which have the same number of pixels: the mean
+/// autocorrelation, the rms contrast, and the total number of grains. lags: number of lags of the
+/// autocorrelation, at most half the number of pixels. The noise is estimated from the next `lags`
+/// lags. The camera's noise is uncorrelated between pixels; it affects only the value at lag 0,
+/// from which it is subtracted.
 FrameStatistics frame_statistics(std::span<const std::vector<double>> frames, std::size_t lags,
                                  const CameraNoise& noise = {});
-/// Of one.
+/// Computes the statistics of one frame.
 FrameStatistics frame_statistics(std::span<const double> frame, std::size_t lags,
                                  const CameraNoise& noise = {});
 

@@ -11,7 +11,8 @@ LineObject mirrored(LineObject object) {
   return object;
 }
 
-/// Each found point serves once.
+/// Returns the score if the found object is shifted by `shift`. Each found point is matched at most
+/// once.
 ImageScore score_at(const LineObject& truth, const LineObject& found, double shift,
                     double resolution) {
   std::vector<bool> used(found.x.size());

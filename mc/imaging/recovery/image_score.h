@@ -4,14 +4,15 @@
 
 namespace flatspeckle::mc {
 
-/// How well one object is another, at the best shift and, as an autocorrelation leaves open,
-/// mirrored or not.
+/// Agreement of a found object with the true one, at the best shift. The mirror image of the found
+/// object may be used instead, because an autocorrelation does not distinguish the two.
 struct ImageScore {
-  double found = 0;  ///< share of the true points that have one of the found within resolution
-  double correlation = 0;  ///< of the brightness of those pairs, about 0: 1 for the same shares
+  double found = 0;  ///< fraction of the true points that have a found point within the resolution
+  double correlation = 0;  ///< sum of products of the true and the found brightness over matched
+                           ///< points, normalised to 1 if they are proportional
 };
 
-/// Whether what is found may be the mirror image.
+/// Whether the found object may be a mirror image of the true one.
 enum class MirrorImage { perhaps, no };
 
 ImageScore score(const LineObject& truth, const LineObject& found, double resolution,

@@ -9,7 +9,7 @@
 
 namespace flatspeckle::mc {
 
-/// Fourier transforms of real lines that zeros make as long as `size`.
+/// Fourier transforms of real lines, padded with zeros to `size`.
 class LineSpectrum {
  public:
   explicit LineSpectrum(std::size_t size)
@@ -18,13 +18,13 @@ class LineSpectrum {
         backward_(size, LineTransform::Direction::backward) {}
 
   std::size_t size() const { return size_; }
-  /// Cycles per pixel of element m, without its sign.
+  /// Returns the absolute value of the frequency of element m, in cycles per pixel.
   double frequency(std::size_t m) const {
     return static_cast<double>(m < size_ - m ? m : size_ - m) / static_cast<double>(size_);
   }
 
   std::vector<Complex> of(std::span<const double> line) const;
-  /// The line of a spectrum, size() values.
+  /// Returns the line of size() values with this spectrum.
   std::vector<double> line(std::vector<Complex> spectrum) const;
 
  private:
@@ -32,10 +32,11 @@ class LineSpectrum {
   LineTransform forward_, backward_;
 };
 
-/// Values -(lags - 1) to lags - 1 of a periodic line.
+/// Returns the values of a periodic line at positions -(lags - 1) to lags - 1.
 std::vector<double> about_zero(std::span<const double> line, std::size_t lags);
 
-/// exp(-x^2 / (2 width^2)) over its integral, as its spectrum has it at a frequency.
+/// Returns the Fourier transform, at a frequency, of the Gaussian exp(-x^2 / (2 width^2)) divided
+/// by its integral.
 double gaussian_spectrum(double frequency, double width);
 
 }  // namespace flatspeckle::mc

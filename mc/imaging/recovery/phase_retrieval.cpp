@@ -12,8 +12,8 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// Of the object's spectrum: the root of what the autocorrelation has, which falls to 0 smoothly
-/// before its last lag.
+/// Returns the amplitudes of the object's spectrum: the square root of the spectrum of the
+/// autocorrelation, which is first tapered smoothly to 0 at its last lags.
 std::vector<double> amplitudes_of(const LineSpectrum& spectra,
                                   std::span<const double> autocorrelation) {
   const std::size_t lags = autocorrelation.size(), size = spectra.size();
@@ -30,7 +30,7 @@ std::vector<double> amplitudes_of(const LineSpectrum& spectra,
   return amplitudes;
 }
 
-/// One start.
+/// Iterations of phase retrieval from one random start.
 class Phases {
  public:
   Phases(const LineSpectrum& spectra, const std::vector<double>& amplitudes, std::size_t lags,
@@ -59,7 +59,7 @@ class Phases {
   }
 
  private:
-  /// With the amplitudes that are known.
+  /// Returns the object after the amplitudes of its spectrum have been replaced by the known ones.
   std::vector<double> with_amplitudes() const {
     auto spectrum = spectra_.of(object_);
     for (std::size_t m = 0; m < spectrum.size(); ++m) {
@@ -69,18 +69,18 @@ class Phases {
     return spectra_.line(std::move(spectrum));
   }
   void step(bool hybrid) {
-    const auto asked = with_amplitudes();
-    const double largest =
-                     *std::max_element(asked.begin(), asked.begin() + static_cast<long>(lags_)),
+    const auto estimate = with_amplitudes();
+    const double largest = *std::max_element(estimate.begin(),
+                                             estimate.begin() + static_cast<long>(lags_)),
                  least = hybrid ? 0 : task_.sparsity * largest;
     double squares = 0;
-    for (std::size_t p = 0; p < asked.size(); ++p) {
-      const bool allowed = p < lags_ && asked[p] >= least;
-      if (!(p < lags_ && asked[p] >= 0)) squares += asked[p] * asked[p];
+    for (std::size_t p = 0; p < estimate.size(); ++p) {
+      const bool allowed = p < lags_ && estimate[p] >= least;
+      if (!(p < lags_ && estimate[p] >= 0)) squares += estimate[p] * estimate[p];
       if (allowed)
-        object_[p] = asked[p];
+        object_[p] = estimate[p];
       else
-        object_[p] = hybrid ? object_[p] - task_.feedback * asked[p] : 0;
+        object_[p] = hybrid ? object_[p] - task_.feedback * estimate[p] : 0;
     }
     residual_.push_back(all_ > 0 ? std::sqrt(squares / all_) : 0);
   }

@@ -6,28 +6,33 @@
 
 namespace flatspeckle::mc {
 
-/// How phases are looked for that belong to an autocorrelation.
+/// Settings of phase retrieval from an autocorrelation.
 struct PhaseTask {
-  std::int64_t starts = 20;       ///< from random phases; the best by its residual is taken
-  std::int64_t iterations = 400;  ///< of each: three quarters hybrid input-output, then error
-                                  ///< reduction
-  double feedback = 0.9;          ///< of hybrid input-output
-  double sparsity = 0.05;  ///< error reduction takes what is below this share of the largest for 0
+  /// Number of random starts; the result of smallest residual is returned.
+  std::int64_t starts = 20;
+  /// Iterations of each start. Three quarters are hybrid input-output, the rest error reduction.
+  std::int64_t iterations = 400;
+  double feedback = 0.9;   ///< feedback parameter of hybrid input-output
+  double sparsity = 0.05;  ///< error reduction sets values below this fraction of the largest to 0
   std::uint64_t seed = 1;
 };
 
-/// A positive object on a line, shifted and mirrored or not, as the frame blurs it.
+/// A positive object on a line, blurred by the width of a speckle grain. Its position is arbitrary,
+/// and it may be mirrored.
 struct PhasedPicture {
-  std::vector<double> picture;   ///< by pixel, the sum 1
-  std::vector<double> residual;  ///< rms of the spectrum's amplitude that positive objects within
-                                 ///< the lags lack, over its rms, after each iteration
+  std::vector<double> picture;  ///< value at each pixel; the sum is 1
+  /// At each iteration: rms of those values of the estimate that are negative or beyond the lags,
+  /// divided by the rms of the whole estimate.
+  std::vector<double> residual;
 };
 
-/// Of an autocorrelation by lag in pixels, whose object is shorter than the lags (Fienup 1982): a
-/// line has in general several objects for one autocorrelation, which the starts then find in turn.
+/// Retrieves an object from its autocorrelation, given by lag in pixels [fienup1982]. The object
+/// must be shorter than the number of lags. In one dimension several objects generally have the
+/// same autocorrelation, and different starts find different ones.
 PhasedPicture retrieved_phases(std::span<const double> autocorrelation, const PhaseTask& task);
 
-/// Correlation of two pictures about 0 at the best shift, mirrored or not.
+/// Returns the normalised sum of products of two pictures at the best shift, mirrored or not; 1 if
+/// they are proportional.
 double best_correlation(std::span<const double> truth, std::span<const double> picture);
 
 }  // namespace flatspeckle::mc

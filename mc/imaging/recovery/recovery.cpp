@@ -14,14 +14,14 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// Points at these lags with the brightness that is most likely.
+/// Points at the positions `marks`, with their most likely brightness.
 struct RulerFit {
-  std::vector<double> marks, brightness;  ///< marks in steps
+  std::vector<double> marks, brightness;  ///< marks in units of PairPeaks::step
   double explained = 0;
-  double gain = 0;  ///< twice the logarithm of the likelihood, over that of nothing
+  double gain = 0;  ///< twice the log likelihood, relative to that of an empty object
 };
 
-/// What is expected of a pair of points of mean brightness at each lag of the peaks.
+/// Returns the expected height of the peak of a pair of points with mean brightness, at each lag.
 std::vector<double> expected_heights(const PairPeaks& peaks, const SparseTask& task) {
   const double equal = peaks.alone / static_cast<double>(task.points);
   std::vector<double> expected(peaks.height.size());
@@ -31,9 +31,10 @@ std::vector<double> expected_heights(const PairPeaks& peaks, const SparseTask& t
   return expected;
 }
 
-constexpr double spread = 1.0 / 3;  ///< of the brightness, over its mean
+/// Standard deviation of the prior distribution of the brightness, divided by its mean.
+constexpr double spread = 1.0 / 3;
 
-/// By cubic interpolation (Catmull and Rom).
+/// Interpolates a line that is even about position 0, by cubics (Catmull and Rom).
 double value_at(const std::vector<double>& line, double place) {
   const auto last = static_cast<long>(line.size()) - 1;
   const double lag = std::abs(place), below = std::floor(lag), t = lag - below;
@@ -45,7 +46,8 @@ double value_at(const std::vector<double>& line, double place) {
   return b + t / 2 * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
 }
 
-/// Height of each pair and what points of mean brightness would have.
+/// Height of the peak of each pair of points, and its expected height for points of mean
+/// brightness.
 struct PeakPairs {
   std::size_t points;
   std::vector<double> height, expected;  ///< [i][j]
@@ -62,7 +64,7 @@ struct PeakPairs {
   }
 };
 
-/// The most likely brightness, one point after the other.
+/// Optimises the brightness b of one point after the other. variance: variance of the heights.
 void improve_brightness(const PeakPairs& pairs, double variance, std::vector<double>& b) {
   constexpr int sweeps = 30;
   const double of_prior = variance / (spread * spread);
@@ -78,7 +80,7 @@ void improve_brightness(const PeakPairs& pairs, double variance, std::vector<dou
     }
 }
 
-/// (2 h a - a^2) / s^2 over the pairs of point i.
+/// Returns the sum of (2 h a - a^2) / s^2 (sparse_search()) over the pairs of point i.
 double gain_of(const PeakPairs& pairs, const std::vector<double>& b, std::size_t i,
                double variance) {
   double gain = 0;
@@ -89,7 +91,7 @@ double gain_of(const PeakPairs& pairs, const std::vector<double>& b, std::size_t
   return gain;
 }
 
-/// Whether marks, and all distances of two, are so far from each other.
+/// Whether all marks, and all distances between two of them, differ by at least `apart`.
 bool are_distinct(const std::vector<double>& marks, double apart) {
   std::vector<double> distances{0};
   for (std::size_t i = 0; i < marks.size(); ++i)
@@ -99,8 +101,8 @@ bool are_distinct(const std::vector<double>& marks, double apart) {
   return std::adjacent_find(distances.begin(), distances.end(), nearer) == distances.end();
 }
 
-/// Each mark by quarters of a step, one at most, while that makes the object likelier, and leaves
-/// it distinct: else two pairs would have the same peak.
+/// Moves each mark by a quarter of a step, in each of several sweeps, if this increases the
+/// likelihood. All distances stay distinct, because otherwise two pairs would share a peak.
 void improve_marks(const PairPeaks& peaks, const std::vector<double>& expected, double apart,
                    double variance, const std::vector<double>& b, std::vector<double>& marks) {
   constexpr int sweeps = 4;
@@ -122,8 +124,8 @@ void improve_marks(const PairPeaks& peaks, const std::vector<double>& expected, 
     }
 }
 
-/// apart: with places about them that are most likely too, of which points and distances keep so
-/// many steps from each other.
+/// Fits the brightness of points at these marks. apart: if given, also optimises the marks; points,
+/// and distances between points, then differ by at least this number of steps.
 RulerFit fitted_ruler(const PairPeaks& peaks, const std::vector<double>& expected,
                       std::vector<double> marks, std::optional<double> apart = std::nullopt) {
   const double variance = std::max(peaks.noise * peaks.noise, 1e-12 * peaks.alone * peaks.alone);
@@ -150,13 +152,14 @@ RulerFit fitted_ruler(const PairPeaks& peaks, const std::vector<double>& expecte
   return fit;
 }
 
-/// Sorted positions in steps, the first at 0, and what their pairs sum up to.
+/// A partial object in the search: sorted positions of its points (`marks`) in units of
+/// PairPeaks::step, the first at 0, and the sum of the scores of its pairs.
 struct Ruler {
   std::vector<int> marks;
   double sum = 0;
 };
 
-/// A ruler and a further mark.
+/// A ruler extended by one mark. parent: index of the ruler without this mark.
 struct Longer {
   double sum;
   std::uint32_t parent;
@@ -165,7 +168,8 @@ struct Longer {
 
 class SparseSearch {
  public:
-  /// scores: of a pair by its lag.
+  /// scores: score of a pair at each lag. apart: least difference between two marks, and between
+  /// two distances. beam: number of rulers that are kept, per mark.
   SparseSearch(std::vector<double> scores, std::size_t points, int apart, std::size_t beam)
       : scores_(std::move(scores)),
         points_(points),
@@ -177,7 +181,7 @@ class SparseSearch {
     std::vector<Ruler> rulers{{{0}, 0}};
     while (rulers.front().marks.size() < points_) {
       longer_.clear();
-      // an object of n points comes from n shorter ones
+      // n objects with one point less can grow to the same object of n points
       const std::size_t kept = beam_ * (rulers.front().marks.size() + 1);
       for (std::uint32_t parent = 0; parent < rulers.size(); ++parent) {
         stop_if_interrupted();
@@ -192,13 +196,13 @@ class SparseSearch {
   }
 
  private:
-  /// By each mark that keeps all distances distinct.
+  /// Extends a ruler by one mark, in all ways that keep all distances distinct.
   void grow(const Ruler& ruler, std::uint32_t parent) {
     const int last = ruler.marks.back(), count = 2 * longest_ - last + 1;
     if (count <= 0) return;
     block(ruler);
     gains_.assign(static_cast<std::size_t>(count), ruler.sum);
-    for (const int other : ruler.marks)  // of marks from last - longest_ on
+    for (const int other : ruler.marks)  // index k is the new mark last - longest_ + k
       for (int k = 0; k < count; ++k)
         gains_[static_cast<std::size_t>(k)] +=
             scores_[static_cast<std::size_t>(std::abs(last - longest_ + k - other))];
@@ -207,7 +211,7 @@ class SparseSearch {
         longer_.push_back({gains_[static_cast<std::size_t>(k)], parent, last - longest_ + k});
   }
 
-  /// Marks whose distances would not be distinct.
+  /// Sets blocked_ for those positions of a new mark at which two distances would not be distinct.
   void block(const Ruler& ruler) {
     const int first = ruler.marks.back() - longest_, count = longest_ - first + 1;
     blocked_.assign(static_cast<std::size_t>(count), 0);
@@ -254,11 +258,12 @@ class SparseSearch {
     return longer;
   }
 
-  /// The largest sums, an object and its mirror image once.
+  /// Returns the rulers of largest sum; an object and its mirror image count once.
   std::vector<Ruler> best_of(const std::vector<Ruler>& shorter) const {
     std::vector<Ruler> rulers;
     for (const Longer& each : longer_) rulers.push_back(with(shorter[each.parent], each));
-    // the same object grown in another order differs by rounding
+    // Equal marks may be found in different orders, by which their sums differ in rounding.
+    // Sorted by marks first, such duplicates are adjacent.
     std::sort(rulers.begin(), rulers.end(), [](const Ruler& a, const Ruler& b) {
       return a.marks != b.marks ? a.marks < b.marks : a.sum > b.sum;
     });
@@ -278,11 +283,12 @@ class SparseSearch {
   int apart_, longest_;
   std::size_t beam_;
   std::vector<Longer> longer_;
-  std::vector<double> gains_;  ///< by mark, from the last - longest_ on
-  std::vector<char> blocked_;  ///< likewise
+  std::vector<double> gains_;  ///< sum of scores for each new mark, from last - longest_ on
+  std::vector<char> blocked_;  ///< whether each new mark is excluded, from last - longest_ on
 };
 
-/// What a pair of mean brightness adds to the likelihood, but for a factor.
+/// Returns the contribution of a pair of points of mean brightness to the log likelihood at each
+/// lag, up to a factor.
 std::vector<double> scores_of(const PairPeaks& peaks, const std::vector<double>& expected) {
   std::vector<double> scores(peaks.height.size());
   const double full = expected.empty() || !(expected[0] > 0) ? 1 : expected[0];
@@ -306,7 +312,7 @@ LineObject object_of(const RulerFit& fit, double step) {
 }  // namespace
 
 double memory_correlation(double distance, double memory_range) {
-  constexpr double at_half = 1.49143;  // (x / sinh x)^2 = 1/2
+  constexpr double at_half = 1.49143;  // solution of (x / sinh x)^2 = 1/2
   const double x = memory_range > 0 ? at_half * distance / memory_range : 0;
   return x < 1e-4 ? 1 : std::pow(x / std::sinh(x), 2);
 }
@@ -330,12 +336,14 @@ SparseFit sparse_search(const PairPeaks& peaks, const SparseTask& task) {
 }
 
 void add_keys(Keys& keys, DeconvolutionKeys& values) {
-  keys.add("deconvolution", values.method, "How frames are divided by the reference")
+  keys.add("deconvolution", values.method, "Method of deconvolution of frames by the reference")
       .one_of({"wiener", "richardson_lucy"});
   keys.add("regularisation", values.task.regularisation,
-           "wiener: power of what is no picture, over that of the reference's speckle")
+           "deconvolution = wiener: noise power divided by the power of the reference's speckle")
       .positive();
-  keys.add("iterations", values.task.iterations, "richardson_lucy: steps").from(1, 100000);
+  keys.add("iterations", values.task.iterations,
+           "deconvolution = richardson_lucy: number of iterations")
+      .from(1, 100000);
 }
 
 DeconvolutionTask deconvolution_task(const Keys& keys, const DeconvolutionKeys& values) {
@@ -351,16 +359,18 @@ DeconvolutionTask deconvolution_task(const Keys& keys, const DeconvolutionKeys& 
 
 void add_average_key(Keys& keys, std::int64_t& average) {
   keys.add("average", average,
-           "Frames of one object, each through another medium, whose autocorrelations are averaged "
-           "before the search")
+           "Number of frames of one object, each through another medium, whose autocorrelations "
+           "are averaged before the search")
       .positive();
 }
 
 void add_camera_keys(Keys& keys, CameraNoise& noise) {
   keys.add("photons", noise.photons,
-           "Of the camera: detected per pixel, mean of the light (default 0: no shot noise)")
+           "Mean number of photons of the light detected per pixel (default 0: no camera noise)")
       .not_negative();
-  keys.add("read_noise", noise.read_noise, "Standard deviation, photons").not_negative();
+  keys.add("read_noise", noise.read_noise,
+           "Standard deviation of the camera's read noise, in photons")
+      .not_negative();
 }
 
 void read_camera_keys(const Keys& keys, const CameraNoise& values, CameraNoise& noise) {

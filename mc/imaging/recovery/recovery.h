@@ -13,62 +13,64 @@
 
 namespace flatspeckle::mc {
 
-/// What is known of an object before the search.
+/// Prior information on an object for the search.
 struct SparseTask {
-  std::size_t points = 2;   ///< how many there are
-  double resolution = 1;    ///< pixels: nothing is nearer than this: of points, and of distances
-  std::size_t beam = 1000;  ///< partial objects that are kept
-  /// Distance in pixels at which the speckles of two points have the correlation C_I = 1/2, where
-  /// the search is to know it; 0: all points share theirs. C_I is that of a diffuse slab,
-  /// (x / sinh x)^2 with x = 1.491 distance / memory_range (conventions, C20).
+  std::size_t points = 2;   ///< number of points
+  double resolution = 1;    ///< least distance, and least difference of distances, in pixels
+  std::size_t beam = 1000;  ///< number of partial objects that are kept
+  /// Distance in pixels at which the speckles of two points have the correlation C_I = 1/2; the
+  /// search uses it to weight pairs. 0: the speckle of all points is the same. C_I is that of a
+  /// diffuse slab, (x / sinh x)^2 with x = 1.491 distance / memory_range (conventions, C20).
   double memory_range = 0;
 };
 
-/// C_I of two points.
+/// Returns C_I of two points at this distance.
 double memory_correlation(double distance, double memory_range);
 
-/// Positions in pixels, the first at 0, of the points whose distances fit the peaks best;
-/// brightness with a mean of 1. explained: sum over the pairs of the peak at their distance times
-/// what the brightness would give, over the square root of the sum of squares of either; 1 for a
-/// perfect fit.
+/// The object whose pair distances fit the peaks best: positions in pixels, the first at 0, and
+/// brightness with mean 1. explained: agreement of the measured peaks of all pairs with the peaks
+/// expected from the brightness. It is the sum of their products, divided by the square root of the
+/// product of their sums of squares; 1 for a perfect fit.
 struct SparseFit {
   LineObject object;
   double explained = 0;
 };
 
-/// A beam search: objects grow point by point, and those are kept whose pairs are the most likely;
-/// all distances must be distinct (a Golomb ruler), without which one line does not tell objects
-/// apart. An object and its mirror image are one. In white Gaussian noise of variance s^2 a pair of
-/// height h at a place where a is expected adds (2 h a - a^2) / (2 s^2) to the logarithm of the
-/// likelihood: for points that are equal and share their speckle that is the sum of the heights. Of
-/// the last that are kept, the most likely with a brightness of each point, whose prior is a normal
-/// distribution with a standard deviation of a third of its mean, and places between the steps.
-/// Nothing where none fits into the lags.
+/// Finds an object by beam search: objects grow point by point, and the most likely partial objects
+/// are kept. All distances must be distinct (a Golomb ruler); otherwise the autocorrelation of one
+/// line does not determine the object. An object and its mirror image count as one. In white
+/// Gaussian noise of variance s^2, a pair whose peak has the height h and the expected height a
+/// adds (2 h a - a^2) / (2 s^2) to the log likelihood. For equal points with the same speckle, the
+/// most likely object is thus the one with the largest sum of heights. For the objects that are
+/// kept at the end, the brightness of each point is fitted; its prior is a normal distribution with
+/// a standard deviation of a third of the mean. The positions of the best objects are refined to
+/// fractions of a step. Returns the most likely object, or an empty one if no object fits into the
+/// lags.
 SparseFit sparse_search(const PairPeaks& peaks, const SparseTask& task);
 
-/// How frames are divided by a reference, as keys have it.
+/// Keys of the deconvolution by a reference.
 struct DeconvolutionKeys {
   std::string method = "wiener";
   DeconvolutionTask task;
 };
 void add_keys(Keys& keys, DeconvolutionKeys& values);
-/// Reads what the method has use for.
+/// Reads the keys that the method uses.
 DeconvolutionTask deconvolution_task(const Keys& keys, const DeconvolutionKeys& values);
 
-/// average
+/// Adds the key average.
 void add_average_key(Keys& keys, std::int64_t& average);
 
-/// photons and read_noise.
+/// Adds the keys photons and read_noise.
 void add_camera_keys(Keys& keys, CameraNoise& noise);
 void read_camera_keys(const Keys& keys, const CameraNoise& values, CameraNoise& noise);
 
-/// What is looked for in a frame, and what is known of its camera.
+/// Settings for the recovery of an object from frames: noise of the camera, and the search.
 struct RecoveryTask {
   CameraNoise noise;
-  std::size_t lags = 0;          ///< pixels: longer distances are not looked for
-  std::size_t points = 0;        ///< that are looked for; 0: none
-  double resolution_grains = 1;  ///< least distance of points
-  double memory_range = 0;       ///< as that of SparseTask
+  std::size_t lags = 0;          ///< longest distance that is searched, in pixels
+  std::size_t points = 0;        ///< number of points to find; 0: no search
+  double resolution_grains = 1;  ///< least distance of points, in grains
+  double memory_range = 0;       ///< SparseTask::memory_range
 };
 
 struct Recovered {
@@ -76,7 +78,7 @@ struct Recovered {
   SparseFit fit;  ///< in pixels
 };
 
-/// Of frames of one object, whose autocorrelations are averaged.
+/// Recovers an object from several frames, whose autocorrelations are averaged.
 Recovered recovered(std::span<const std::vector<double>> frames, const RecoveryTask& task);
 
 }  // namespace flatspeckle::mc

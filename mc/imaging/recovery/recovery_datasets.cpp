@@ -5,33 +5,39 @@ namespace flatspeckle::mc {
 const DatasetTable recovery_table{
     .name = "recover",
     .rows = {
-        {"frame", Data::numbers, "", "1", "number of the frame, or of several by the key average"},
-        {"frame_name", Data::text, "frame", "", "its column, of several frames the first's"},
-        {"lag", Data::numbers, "", "1", "pixels"},
-        {"sought", Data::numbers, "", "1", "number of the point that was looked for"},
+        {"frame", Data::numbers, "", "1",
+         "number of the frame, or of the group of frames that the key average defines"},
+        {"frame_name", Data::text, "frame", "",
+         "column of the frame; for a group, column of its first frame"},
+        {"lag", Data::numbers, "", "1", "lag in pixels"},
+        {"sought", Data::numbers, "", "1", "number of the sought point"},
         {"autocorrelation", Data::real, "frame lag", "1",
-         "<dI dI'> / <I>^2 of the frame without its envelope"},
-        {"contrast", Data::real, "frame", "1", "standard deviation over mean, without envelope"},
-        {"grains", Data::real, "frame", "1", "independent speckle grains in the frame"},
+         "<dI dI'> / <I>^2 of the frame divided by its envelope"},
+        {"contrast", Data::real, "frame", "1",
+         "standard deviation over mean of the frame divided by its envelope"},
+        {"grains", Data::real, "frame", "1", "number of independent speckle grains in the frame"},
         {"noise", Data::real, "frame", "1", "standard deviation of the autocorrelation"},
-        {"found_x", Data::real, "frame sought", "1", "pixels from the first, mirrored or not"},
+        {"found_x", Data::real, "frame sought", "1",
+         "positions of the found points in pixels from the first, mirrored or not"},
         {"found_brightness", Data::real, "frame sought", "1",
-         "relative, mean 1; 0 where nothing was found"},
+         "brightness of the found points, mean 1; 0 if no point was found"},
         {"explained", Data::real, "frame", "1",
-         "how well the brightness fits the peaks of all pairs, at most 1"},
+         "agreement of the brightness with the peaks of all pairs, at most 1"},
         {"invariants/variance", Data::invariant, "frame", "1",
-         "difference between the autocorrelation at lag 0, camera noise included, and the variance "
-         "of the pixels, relative"},
-        {"shift", Data::scale, "", "1", "pixels from the reference"},
-        {"picture", Data::real, "frame shift", "1", "frames divided by their reference"},
-        {"iteration", Data::numbers, "", "1", "number of the step (richardson_lucy)"},
+         "relative difference between the autocorrelation at lag 0, camera noise included, and the "
+         "variance of the pixels"},
+        {"shift", Data::scale, "", "1", "shift from the reference in pixels"},
+        {"picture", Data::real, "frame shift", "1", "frames deconvolved by their reference"},
+        {"iteration", Data::numbers, "", "1", "number of the iteration (richardson_lucy)"},
         {"residual", Data::real, "frame iteration", "1",
-         "rms of what the frame differs by from picture and reference, over its mean"},
+         "rms difference between the frame and the reference convolved with the object, over the "
+         "mean"},
         {"phased_picture", Data::real, "frame lag", "1",
-         "object by phase retrieval, shifted and mirrored or not; the sum is 1"},
-        {"phase_iteration", Data::numbers, "", "1", "number of the step of phase retrieval"},
+         "object by phase retrieval, at an arbitrary shift, mirrored or not; the sum is 1"},
+        {"phase_iteration", Data::numbers, "", "1", "number of the iteration of phase retrieval"},
         {"phase_residual", Data::real, "frame phase_iteration", "1",
-         "rms of the amplitudes that positive objects within the lags lack, over theirs"}}};
+         "rms of the estimate where it is negative or beyond the lags, over the rms of the whole "
+         "estimate"}}};
 
 void write_recovery(ResultFile& file, const std::vector<std::string>& names,
                     const RecoveryTask& task, const std::vector<Recovered>& all) {

@@ -12,19 +12,19 @@ namespace flatspeckle::mc {
 
 extern const DatasetTable recovery_table;
 
-/// `count` values of each, zeros where it has fewer.
+/// Concatenates the values of all items, each padded with zeros to `count` values.
 template <class All, class Value>
 std::vector<double> of_each(const All& all, std::size_t count, const Value& value) {
-  std::vector<double> joined;
+  std::vector<double> all_values;
   for (const auto& one : all) {
     std::vector<double> values = value(one);
     values.resize(count);
-    joined.insert(joined.end(), values.begin(), values.end());
+    all_values.insert(all_values.end(), values.begin(), values.end());
   }
-  return joined;
+  return all_values;
 }
 
-/// What each frame tells without the search.
+/// Writes the statistics of each frame, which do not depend on a search.
 template <class All>
 void write_statistics(const ResultGroup& root, const All& all) {
   const std::size_t lags = all.front().statistics.autocorrelation.size();
@@ -35,7 +35,8 @@ void write_statistics(const ResultGroup& root, const All& all) {
   root.put("noise", column(all, [](const Recovered& one) { return one.statistics.noise; }));
 }
 
-/// What the search has found in each: points at 0 without brightness where that is nothing.
+/// Writes the points that the search found in each frame; points that were not found are at 0 with
+/// brightness 0.
 template <class All>
 void write_points(const ResultGroup& root, const All& all, std::size_t points,
                   double length_of_pixel) {
@@ -52,11 +53,12 @@ void write_points(const ResultGroup& root, const All& all, std::size_t points,
 void write_recovery(ResultFile& file, const std::vector<std::string>& names,
                     const RecoveryTask& task, const std::vector<Recovered>& all);
 
-/// Of frames that were divided by a reference, beside what write_recovery() has written.
+/// Writes pictures from frames deconvolved by a reference, in addition to the output of
+/// write_recovery().
 void write_deconvolved(ResultFile& file, const RecoveryTask& task,
                        const std::vector<Deconvolved>& all);
 
-/// Pictures by phase retrieval, beside what write_recovery() has written.
+/// Writes pictures by phase retrieval, in addition to the output of write_recovery().
 void write_phased(ResultFile& file, const RecoveryTask& task,
                   const std::vector<PhasedPicture>& all);
 

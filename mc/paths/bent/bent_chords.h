@@ -9,7 +9,8 @@
 
 namespace flatspeckle::mc {
 
-/// The parts of a parabola x + v s + f s^2/2, 0 <= s <= end, that lie in a domain, in order.
+/// Parts of a parabolic ray x + v s + f s^2/2, 0 <= s <= end, that lie in a domain, in the order of
+/// s.
 class BentChords {
  public:
   struct Chord {
@@ -28,7 +29,7 @@ class BentChords {
     double from = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       const double to = roots_[i], middle = std::min((from + to) / 2, from + 1);
-      if (to > from && domain.contains(x + middle * v + middle * middle / 2 * f)) join(from, to);
+      if (to > from && domain.contains(x + middle * v + middle * middle / 2 * f)) append(from, to);
       from = to;
     }
   }
@@ -38,7 +39,8 @@ class BentChords {
     for (const Chord& chord : *this) sum += chord.leave - chord.enter;
     return sum;
   }
-  /// Where so much has been inside; beyond `end` where there is not as much.
+  /// Returns the s up to which the ray has covered a length `inside` (in s) in the domain; a value
+  /// beyond `end` if all its parts in the domain together are shorter.
   double at(double inside) const {
     for (const Chord& chord : *this) {
       if (inside <= chord.leave - chord.enter) return chord.enter + inside;
@@ -50,15 +52,15 @@ class BentChords {
   const Chord* end() const { return chords_.data() + chord_count_; }
 
  private:
-  /// Of c + b s + a s^2/2 = 0, free of cancellation.
+  /// Adds the roots s of c + b s + a s^2/2 = 0 between 0 and `end`, computed without cancellation.
   void add_roots(double c, double b, double a, double end) {
     const double square = b * b - 2 * a * c;
     if (square < 0) return;
     const double q = -(b + std::copysign(std::sqrt(square), b));
     for (const double root : {q / a, 2 * c / q})
-      if (root > 0 && root < end) roots_[count_++] = root;  // neither NaN nor infinite
+      if (root > 0 && root < end) roots_[count_++] = root;  // excludes NaN and infinity
   }
-  void join(double from, double to) {
+  void append(double from, double to) {
     if (chord_count_ > 0 && chords_[chord_count_ - 1].leave == from)
       chords_[chord_count_ - 1].leave = to;
     else

@@ -22,7 +22,7 @@ std::size_t cells_along(double extent, double wavelength) {
       std::ceil(std::max(fewest, cells_per_wavelength * extent / wavelength)));
 }
 
-/// In place, of rows of `wide` values.
+/// Fourier-transforms a grid of `high` rows of `wide` values in place.
 void transform(std::vector<Complex>& grid, std::size_t wide, std::size_t high,
                LineTransform::Direction direction) {
   const LineTransform along(wide, direction), across(high, direction);
@@ -39,7 +39,7 @@ Complex hankel_order_0(double x) {
   return {::j0(x), ::y0(x)};
 }
 
-/// Dedekind's eta(i y).
+/// Returns Dedekind's eta function at i y.
 double eta(double y) {
   using std::numbers::pi;
   double product = std::exp(-pi * y / 12);
@@ -57,7 +57,7 @@ double norm_of(const std::vector<Complex>& a) {
   return std::sqrt(hermitian_product(a, a).real());
 }
 
-/// BiCGSTAB (van der Vorst 1992) for A x = b from x = b.
+/// Solves A x = b by BiCGSTAB [vandervorst1992], beginning with x = b.
 template <typename Apply>
 std::vector<Complex> solved_by_iteration(const Apply& apply, const std::vector<Complex>& b) {
   constexpr int most_steps = 2000;
@@ -83,14 +83,14 @@ std::vector<Complex> solved_by_iteration(const Apply& apply, const std::vector<C
     rho = next;
     for (std::size_t i = 0; i < b.size(); ++i) p[i] = r[i] + beta * (p[i] - omega * v[i]);
   }
-  throw std::runtime_error("the mean field of the homogenised box was not found by iteration");
+  throw std::runtime_error("mean field of the homogenised box: the iteration did not converge");
 }
 
-/// A medium whose mean field is refracted: of index n = 1 + k_shift/k, with attenuation in sigma as
-/// in other media of an index (C31), K^2 = k^2 n^2 + i k mu_t. Plane waves come into a slab by
-/// Snell and Fresnel, to leading order in the reflection; into a box as the field of the
-/// homogenised box. Flights between scatterers are straight and end at the
-/// edge.
+/// Medium whose mean field is refracted by the effective index n = 1 + k_shift/k. Attenuation is
+/// exponential in sigma, as in media with an index field (C31), so that K^2 = k^2 n^2 + i k mu_t.
+/// In a slab a plane wave is refracted by the laws of Snell and Fresnel, to leading order in the
+/// reflection; in a box the mean field is computed by HomogenisedBox. Free flights between
+/// scatterers are straight and end at the edge of the medium.
 class MeanFieldMedium : public GradedMedium {
  public:
   explicit MeanFieldMedium(const Scene& scene)
@@ -101,7 +101,7 @@ class MeanFieldMedium : public GradedMedium {
 
   double square(Vec2) const override { return index_ * index_; }
   double inside(Vec2 x, Vec2 w) const override { return domain_.distance_to_edge(x, w) / index_; }
-  std::optional<RayPlace> flown(Vec2 x, Vec2 w, double sigma) const override;
+  std::optional<RayPlace> after_flight(Vec2 x, Vec2 w, double sigma) const override;
 
  private:
   std::shared_ptr<const Wavefront> wave_from_point(Vec2 source) const override;
@@ -111,7 +111,7 @@ class MeanFieldMedium : public GradedMedium {
   double k_, mu_t_, index_;
 };
 
-/// Snell and Fresnel at the face that it enters by.
+/// Plane wave refracted by the laws of Snell and Fresnel at the face through which it enters.
 class RefractedWave : public Wavefront {
  public:
   RefractedWave(const Domain& slab, double index, double angle)
@@ -121,23 +121,24 @@ class RefractedWave : public Wavefront {
         square_(index * index - sine_ * sine_) {
     if (!(square_ > 0))
       throw InputError("light or view of angle", angle,
-                       "is reflected at the face as a whole, by the index of the mean field");
+                       "is totally reflected at the face, by the index of the mean field");
   }
 
   std::optional<Arrival> at(Vec2 x) const override {
-    const double deep = std::sqrt(square_), way = std::abs(x.z - face_),
+    const double deep = std::sqrt(square_), distance = std::abs(x.z - face_),
                  n = std::hypot(deep, sine_);
     return Arrival{1 / n * Vec2{sine_, std::copysign(deep, cosine_)},
-                   sine_ * x.x + cosine_ * face_ + deep * way,
-                   2 * std::abs(cosine_) / (std::abs(cosine_) + deep), way / deep, 0};
+                   sine_ * x.x + cosine_ * face_ + deep * distance,
+                   2 * std::abs(cosine_) / (std::abs(cosine_) + deep), distance / deep, 0};
   }
 
  private:
   double sine_, cosine_, face_, square_;
 };
 
-/// The field of a homogenised box: its part beside the plane wave by cubic convolution. It arrives
-/// along the gradient of its phase.
+/// Field of a plane wave in a homogenised box. The ratio of the field to the incident plane wave
+/// (the envelope) is interpolated by cubic convolution. The direction of arrival is the gradient of
+/// the phase of the field.
 class BoxWave : public Wavefront {
  public:
   BoxWave(const HomogenisedBox& box, const Domain& domain, double k, double angle)
@@ -157,8 +158,8 @@ class BoxWave : public Wavefront {
   std::optional<Arrival> at(Vec2 x) const override {
     const auto here = envelope_at((x.x + half_) / cell_.x - 0.5, x.z / cell_.z - 0.5);
     if (here.value == 0.0) return Arrival{w_, 0, 0, 0, 0};
-    const auto along = [&](Complex slope, double cell) {
-      return std::imag(slope / here.value) / (k_ * cell);
+    const auto along = [&](Complex derivative, double cell) {
+      return std::imag(derivative / here.value) / (k_ * cell);
     };
     const Vec2 v = w_ + Vec2{along(here.by_x, cell_.x), along(here.by_z, cell_.z)};
     return Arrival{1 / length(v) * v, dot(w_, x) + std::arg(here.value) / k_, std::abs(here.value),
@@ -167,7 +168,8 @@ class BoxWave : public Wavefront {
 
  private:
   struct Envelope {
-    Complex value{}, by_x{}, by_z{};  ///< slopes per cell
+    /// Value of the envelope, and its changes per cell along x and z
+    Complex value{}, by_x{}, by_z{};
   };
   using Four = std::array<double, 4>;
 
@@ -175,7 +177,8 @@ class BoxWave : public Wavefront {
     const auto i = static_cast<std::ptrdiff_t>(std::floor(along)),
                j = static_cast<std::ptrdiff_t>(std::floor(deep));
     const double s = along - static_cast<double>(i), t = deep - static_cast<double>(j);
-    const Four a = weights(s), b = weights(t), da = slopes(s), db = slopes(t);
+    const Four a = weights(s), b = weights(t), da = derivative_weights(s),
+               db = derivative_weights(t);
     Envelope sum;
     for (std::size_t n = 0; n < 4; ++n)
       for (std::size_t m = 0; m < 4; ++m) {
@@ -193,7 +196,7 @@ class BoxWave : public Wavefront {
     return {-t * u * u / 2, (2 - 5 * t * t + 3 * t * t * t) / 2,
             (2 - 5 * u * u + 3 * u * u * u) / 2, -t * t * u / 2};
   }
-  static Four slopes(double t) {
+  static Four derivative_weights(double t) {
     const double u = 1 - t;
     return {u * (2 * t - u) / 2, t * (9 * t - 10) / 2, u * (10 - 9 * u) / 2, t * (t - 2 * u) / 2};
   }
@@ -209,13 +212,13 @@ class BoxWave : public Wavefront {
   std::vector<Complex> envelope_;
 };
 
-std::optional<RayPlace> MeanFieldMedium::flown(Vec2 x, Vec2 w, double sigma) const {
+std::optional<RayPlace> MeanFieldMedium::after_flight(Vec2 x, Vec2 w, double sigma) const {
   if (!(sigma < inside(x, w))) return std::nullopt;
   return RayPlace{x + index_ * sigma * w, w};
 }
 
 std::shared_ptr<const Wavefront> MeanFieldMedium::wave_from_point(Vec2) const {
-  throw InputError("index_field", "mean_field", "is of plane waves and far views");
+  throw InputError("index_field", "mean_field", "requires plane waves and far views");
 }
 
 std::shared_ptr<const Wavefront> MeanFieldMedium::wave_from_afar(double angle) const {
@@ -233,7 +236,7 @@ HomogenisedBox::HomogenisedBox(const Domain& box, double k, Complex inside)
   const double wavelength = 2 * std::numbers::pi / k, per = cells_per_wavelength / wavelength;
   if (box.area() * per * per > most_cells)
     throw InputError("index_field", "mean_field",
-                     "takes boxes of up to 40000 square wavelengths; a wider one is a slab");
+                     "requires a box of at most 40000 square wavelengths; take a slab instead");
   columns_ = cells_along(box.width, wavelength);
   rows_ = cells_along(box.depth, wavelength);
   dx_ = box.width / static_cast<double>(columns_);
@@ -248,8 +251,9 @@ Vec2 HomogenisedBox::centre(std::size_t column, std::size_t row) const {
           (static_cast<double>(row) + 0.5) * dz_};
 }
 
-/// Midpoint rule on a lattice. The cell of the logarithm itself counts
-/// ln(dx / (2 pi eta(i dz/dx)^2)) (Kronecker's limit; Duan and Rokhlin 2009 for squares).
+/// Computes the spectrum of the Green function by the midpoint rule on the lattice of cells. In the
+/// cell at r = 0 the logarithm ln r of the Green function is replaced by ln(dx / (2 pi eta(i
+/// dz/dx)^2)) (Kronecker's limit formula; Duan and Rokhlin [duan2009] for square cells).
 void HomogenisedBox::find_spectrum() {
   using std::numbers::pi;
   const double log_of_cell = std::log(dx_ / (2 * pi * std::pow(eta(dz_ / dx_), 2)));
@@ -268,7 +272,7 @@ void HomogenisedBox::find_spectrum() {
   for (Complex& value : spectrum_) value /= static_cast<double>(wide_ * high_);
 }
 
-/// (1 - contrast G) field
+/// Returns (1 - (K^2 - k^2) G) field, where G is the convolution with the Green function.
 std::vector<Complex> HomogenisedBox::applied(const std::vector<Complex>& field) const {
   std::vector<Complex> grid(wide_ * high_);
   for (std::size_t row = 0; row < rows_; ++row)
@@ -316,7 +320,7 @@ std::shared_ptr<const GradedMedium> graded_medium(const Scene& scene) {
     case IndexField::Kind::mean_field:
       return std::make_shared<const MeanFieldMedium>(scene);
     case IndexField::Kind::homogeneous:
-      throw InputError("index_field", field.describe(), "is not of light paths");
+      throw InputError("index_field", field.describe(), "is not supported by light paths");
     default:
       return stepped_medium(scene);
   }

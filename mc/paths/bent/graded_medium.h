@@ -12,11 +12,13 @@
 
 namespace flatspeckle::mc {
 
-/// The field in a box of wavenumber K, in surroundings of wavenumber k, of a unit plane wave: the
-/// Lippmann-Schwinger equation on square-like cells, convolved by FFT and iterated (BiCGSTAB).
+/// Computes the field of a unit plane wave in a homogeneous box of wavenumber K in surroundings of
+/// wavenumber k. Solves the Lippmann-Schwinger equation on nearly square cells, by FFT convolution
+/// and BiCGSTAB iteration.
 class HomogenisedBox {
  public:
-  /// Throws InputError for a box of more cells than memory and time allow.
+  /// inside: the wavenumber K in the box, complex if it absorbs. Throws InputError for a box with
+  /// more cells than memory and time allow.
   HomogenisedBox(const Domain& box, double k, Complex inside);
 
   std::size_t columns() const { return columns_; }
@@ -24,7 +26,7 @@ class HomogenisedBox {
   Vec2 cell() const { return {dx_, dz_}; }
   Vec2 centre(std::size_t column, std::size_t row) const;
 
-  /// [row][column], at the centres of the cells.
+  /// Returns the field [row][column] at the centres of the cells.
   std::vector<Complex> field(double angle) const;
 
  private:
@@ -36,7 +38,8 @@ class HomogenisedBox {
   Complex contrast_;  ///< K^2 - k^2
   std::size_t columns_, rows_, wide_, high_;
   double dx_, dz_;
-  std::vector<Complex> spectrum_;  ///< of the Green function, times the cell
+  /// Fourier transform of the Green function times the area of a cell
+  std::vector<Complex> spectrum_;
 };
 
 /// A place on a ray and its unit direction there.
@@ -44,24 +47,26 @@ struct RayPlace {
   Vec2 x, w;
 };
 
-/// The one curve that joins two points before any caustic (conventions, C32).
+/// The only ray that connects two points without touching a caustic (conventions, C32).
 struct RayCurve {
-  Vec2 leave, arrive;  ///< its unit directions at both ends
-  double path;         ///< S, int n ds
-  double spread;       ///< J
-  double inside;       ///< sigma of the part in the domain
+  Vec2 leave, arrive;  ///< unit directions of the ray at both ends
+  double path;         ///< optical path S = int n ds
+  double spread;       ///< geometric spreading J (C32)
+  double inside;       ///< growth of sigma (C30) along the part of the ray in the domain
 };
 
-/// How a wave arrives at a place.
+/// The ray by which a wave arrives at a place.
 struct Arrival {
-  Vec2 w;            ///< unit direction
-  double path;       ///< its phase is k times this
-  double amplitude;  ///< of a unit plane wave; of a point source J^(-1/2)
-  double inside;     ///< sigma in the domain on the way
-  double launch;     ///< the ray: x where it crosses the face, or its angle at the source
+  Vec2 w;            ///< unit direction of the ray at this place
+  double path;       ///< optical path; the phase of the wave is k times this
+  double amplitude;  ///< amplitude of a unit plane wave, or J^(-1/2) for a point source
+  double inside;     ///< growth of sigma along the part of the ray in the domain
+  /// Launch parameter of the ray. Plane wave: x where the ray crosses the entry face. Point source:
+  /// angle of the ray at the source
+  double launch;
 };
 
-/// A wave and its one ray to every place.
+/// A wave with exactly one ray to every place.
 class Wavefront {
  public:
   virtual ~Wavefront() = default;
@@ -69,21 +74,24 @@ class Wavefront {
 };
 
 /// Rays through the index field of a scene, in the parameter sigma in which attenuation is
-/// exponential (conventions, C30 and C31). Light that goes far from the domain does not come back.
+/// exponential (conventions, C30 and C31). Light that travels far from the domain is assumed not to
+/// return.
 class GradedMedium {
  public:
   virtual ~GradedMedium() = default;
 
   virtual double square(Vec2 x) const = 0;  ///< n^2
-  /// sigma in the domain along a ray.
+  /// Returns the growth of sigma along all parts in the domain of the ray from x along w.
   virtual double inside(Vec2 x, Vec2 w) const = 0;
-  /// Where a ray has spent so much sigma in the domain; none where it leaves before.
-  virtual std::optional<RayPlace> flown(Vec2 x, Vec2 w, double sigma) const = 0;
+  /// Returns the place at which the ray from x along w has covered `sigma` in the domain; nullopt
+  /// if the ray leaves the domain before.
+  virtual std::optional<RayPlace> after_flight(Vec2 x, Vec2 w, double sigma) const = 0;
 
-  // Made once; they live as long as this.
+  // Each wave is made when it is first requested, and kept as long as the medium.
   std::shared_ptr<const Wavefront> from_point(Vec2 source) const;
-  /// A plane wave in index 1 outside of the face that it enters by, z = 0 or z = depth; what is
-  /// between changes so gradually that nothing is reflected.
+  /// Returns the wave that is plane outside the face through which it enters, z = 0 or z = depth,
+  /// where the index is 1. The index is assumed to change so gradually at the face that nothing is
+  /// reflected.
   std::shared_ptr<const Wavefront> from_afar(double angle) const;
 
  private:
@@ -95,16 +103,18 @@ class GradedMedium {
   mutable std::map<double, std::shared_ptr<const Wavefront>> from_afar_;
 };
 
-/// Of a scene whose index varies. Throws InputError.
+/// Makes the medium of a scene whose index varies. Throws InputError for unsupported fields.
 std::shared_ptr<const GradedMedium> graded_medium(const Scene& scene);
 
-/// Index fields of grin in the plane y = 0, parabolic, blobs, ultrasound and grid, by steps along
-/// rays. Waves of ends are tables over the box; a point in it, or close by, finds the ray to each
-/// place anew.
+/// Makes the medium of a grin index field in the plane y = 0 (parabolic, blobs, ultrasound or
+/// grid). Rays are integrated in steps. The waves of endpoints are tabulated over the box, except
+/// for a point in the box or close to it: then each call of Wavefront::at() searches for the ray to
+/// the place.
 std::shared_ptr<const GradedMedium> stepped_medium(const Scene& scene);
 
-/// Throws InputError that says where, unless the wave of a light, or that from a view, has one ray
-/// to every place of the domain and no caustic there.
+/// Throws InputError if a place of the domain is not reached by exactly one ray, without a caustic,
+/// from a light or view. wave: the wave of this light or view. whose: its name in the message,
+/// which also contains the place.
 void require_one_ray(const Scene& scene, const Wavefront& wave, const std::string& whose);
 
 }  // namespace flatspeckle::mc

@@ -11,7 +11,8 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// Where a ray touches the caustic of all rays through its beginning.
+/// Returns the sigma at which a ray with initial velocity v touches the caustic of all rays from
+/// the same start.
 double until_caustic(Vec2 v, Vec2 force) {
   const double against = -dot(force, v);
   return against > 0 ? dot(v, v) / against : std::numeric_limits<double>::max();
@@ -33,7 +34,7 @@ class LinearPoint : public Wavefront {
   Vec2 source_;
 };
 
-/// A plane wave where n^2 depends on z alone: v_x = sin(angle) everywhere.
+/// A plane wave in a medium whose n^2 depends only on z, so that v_x = sin(angle) everywhere.
 class StratifiedWave : public Wavefront {
  public:
   StratifiedWave(const LinearMedium& medium, double angle)
@@ -48,9 +49,9 @@ class StratifiedWave : public Wavefront {
 
   std::optional<Arrival> at(Vec2 x) const override {
     const double before = std::sqrt(vertical_square(face_)), here = std::sqrt(vertical_square(x.z)),
-                 way = std::abs(x.z - face_), sigma = 2 * way / (before + here);
+                 distance = std::abs(x.z - face_), sigma = 2 * distance / (before + here);
     const double through =  // int v_z dz
-        2.0 / 3 * way * (before * before + before * here + here * here) / (before + here);
+        2.0 / 3 * distance * (before * before + before * here + here * here) / (before + here);
     const Vec2 v{sine_, std::copysign(here, cosine_)};
     const double n = length(v);
     return Arrival{1 / n * v, sine_ * x.x + cosine_ * face_ + through,
@@ -61,10 +62,10 @@ class StratifiedWave : public Wavefront {
  private:
   double vertical_square(double z) const { return medium_.square({0, z}) - sine_ * sine_; }
   [[noreturn]] void refuse_turning(double angle) const {
-    const double z = (sine_ * sine_ - medium_.square({0, 0})) / medium_.slope();
-    throw InputError(
-        "light or view of angle", angle,
-        "turns round at z = " + number_text(z) + ", where n^2 = sin^2: a caustic of the medium");
+    const double z = (sine_ * sine_ - medium_.square({0, 0})) / medium_.derivative_along_z();
+    throw InputError("light or view of angle", angle,
+                     "turns round at z = " + number_text(z) +
+                         ", where n = |sin(angle)|: a caustic in the medium");
   }
 
   const LinearMedium& medium_;
@@ -81,7 +82,8 @@ double LinearMedium::inside_until(Vec2 x, Vec2 v, double sigma) const {
   return BentChords(domain_, x, v, force_, sigma).length();
 }
 
-/// What leaves a slab does not come back: outside the index is that of the face.
+/// In a slab the ray ends where it leaves the slab. It does not return, because the index outside
+/// is constant and equal to the index at the face.
 double LinearMedium::end_of(Vec2 x, Vec2 v) const {
   const double caustic = until_caustic(v, force_);
   if (domain_.kind == Domain::Kind::box) return caustic;
@@ -94,7 +96,7 @@ double LinearMedium::inside(Vec2 x, Vec2 w) const {
   return inside_until(x, v, end_of(x, v));
 }
 
-std::optional<RayPlace> LinearMedium::flown(Vec2 x, Vec2 w, double sigma) const {
+std::optional<RayPlace> LinearMedium::after_flight(Vec2 x, Vec2 w, double sigma) const {
   const Vec2 v = velocity(x, w);
   const double end = end_of(x, v), s = BentChords(domain_, x, v, force_, end).at(sigma);
   if (!(s < end)) return std::nullopt;
@@ -103,12 +105,12 @@ std::optional<RayPlace> LinearMedium::flown(Vec2 x, Vec2 w, double sigma) const 
 }
 
 std::optional<RayCurve> LinearMedium::curve(Vec2 from, Vec2 to) const {
-  const Vec2 way = to - from;
-  const double r2 = dot(way, way), a2 = dot(field_.slope, field_.slope);
+  const Vec2 offset = to - from;
+  const double r2 = dot(offset, offset), a2 = dot(field_.gradient, field_.gradient);
   const double mean = (square(from) + square(to)) / 2, root = mean * mean - a2 * r2 / 4;
   if (!(root > 0)) return std::nullopt;
   const double sigma = std::sqrt(2 * r2 / (mean + std::sqrt(root)));
-  const Vec2 half = sigma / 2 * force_, straight = 1 / sigma * way, v = straight - half,
+  const Vec2 half = sigma / 2 * force_, straight = 1 / sigma * offset, v = straight - half,
              later = straight + half;
   return RayCurve{1 / length(v) * v, 1 / length(later) * later,
                   sigma * (mean - dot(force_, force_) * sigma * sigma / 6), sigma * dot(v, later),
@@ -120,9 +122,9 @@ std::shared_ptr<const Wavefront> LinearMedium::wave_from_point(Vec2 source) cons
 }
 
 std::shared_ptr<const Wavefront> LinearMedium::wave_from_afar(double angle) const {
-  if (field_.slope.x != 0)
-    throw InputError("index_slope", field_.slope.x,
-                     "plane waves and far views need a slope along z alone");
+  if (field_.gradient.x != 0)
+    throw InputError("index_slope", field_.gradient.x,
+                     "plane waves and far views require a slope along z alone");
   return std::make_shared<StratifiedWave>(*this, angle);
 }
 

@@ -20,15 +20,16 @@ namespace {
 
 using Four = std::array<double, 4>;
 
-/// Of values and slopes at 0 and 1 (Hermite): v0, v1, s0, s1.
+/// Returns the weights of cubic Hermite interpolation at t: two for the values at 0 and 1, then two
+/// for the derivatives at 0 and 1.
 Four hermite(double t) {
   const double u = 1 - t;
   return {u * u * (1 + 2 * t), t * t * (3 - 2 * t), t * u * u, -t * t * u};
 }
-Four hermite_slope(double t) {
+Four hermite_derivative(double t) {
   return {-6 * t * (1 - t), 6 * t * (1 - t), (1 - t) * (1 - 3 * t), t * (3 * t - 2)};
 }
-/// Of values at -1, 0, 1 and 2 (cubic convolution).
+/// Returns the weights of cubic convolution at t, for the values at -1, 0, 1 and 2.
 Four convolution(double t) {
   const double u = 1 - t;
   return {-t * u * u / 2, (2 - 5 * t * t + 3 * t * t * t) / 2, (2 - 5 * u * u + 3 * u * u * u) / 2,
@@ -46,18 +47,21 @@ grin::Vec3 in_space(Vec2 x) {
   return {x.x, 0, x.z};
 }
 
-/// A wave tabulated over a box: its eikonal by bicubic Hermite interpolation of values and
-/// directions, its amplitude by cubic convolution.
+/// A wave tabulated over a box. The eikonal (optical path) is interpolated from its values and
+/// gradients by bicubic Hermite polynomials, the amplitude by cubic convolution.
 class WaveTable : public Wavefront {
  public:
-  /// What a place of the table holds. at(x, guess): the arrival there, and n; guess is that of a
-  /// place beside it. Throws InputError where a place has none.
+  /// Node of the table: the arrival at a place, and the index n at this place.
   struct Node {
     Arrival arrival;
     double index;
   };
+  /// Computes the node at x; nullopt if no ray reaches it. guess: the node of a neighbouring place,
+  /// or null.
   using At = std::function<std::optional<Node>(Vec2 x, const Node* guess)>;
-  /// spreads: from a point, so that the amplitude falls about as path^(-1/2).
+  /// spreads: whether the wave comes from a point, so that its amplitude falls approximately as
+  /// path^(-1/2). whose: the light or view, for messages. Throws InputError for a node that no ray
+  /// reaches.
   WaveTable(const Domain& box, double spacing, bool spreads, const At& at, const std::string& whose)
       : box_(box),
         spreads_(spreads),
@@ -73,10 +77,10 @@ class WaveTable : public Wavefront {
         const Node* guess = j > 0 ? &row[i] : i > 0 ? &row[i - 1] : nullptr;
         const auto node = at(x, guess);
         if (!node)
-          throw InputError("index_field: light of " + whose + " does not come to (" +
+          throw InputError("index_field: light of " + whose + " does not reach (" +
                            number_text(x.x) + ", " + number_text(x.z) +
-                           ") by one ray: a caustic is before it; take a weaker field, a smaller "
-                           "box or other ends");
+                           ") by exactly one ray, because of a caustic; take a weaker field, a "
+                           "smaller box or other endpoints");
         row[i] = *node;
         const auto& [w, path, amplitude, inside, launch] = node->arrival;
         const double chord = box.contains(x) ? box.distance_to_edge(x, -w) : 0;
@@ -94,8 +98,8 @@ class WaveTable : public Wavefront {
     };
     const std::size_t i = cell(along, columns_), j = cell(deep, rows_);
     const double s = along - static_cast<double>(i), t = deep - static_cast<double>(j);
-    const Four a = hermite(s), b = hermite(t), da = hermite_slope(s), db = hermite_slope(t),
-               p = convolution(s), q = convolution(t);
+    const Four a = hermite(s), b = hermite(t), da = hermite_derivative(s),
+               db = hermite_derivative(t), p = convolution(s), q = convolution(t);
     Arrival found{{}, 0, 0, 0, 0};
     Vec2 v{0, 0};
     for (std::size_t m = 0; m < 2; ++m)
@@ -130,7 +134,8 @@ class WaveTable : public Wavefront {
   };
   const Entry& entry(std::size_t i, std::size_t j) const { return entries_[j * columns_ + i]; }
 
-  /// By differences of by_x along z; at the outermost rows that of the next is as good.
+  /// Computes the mixed second derivative by_both from differences of by_x along z. The outermost
+  /// rows take the values of the rows next to them.
   void find_mixed_derivatives() {
     for (std::size_t j = 0; j < rows_; ++j)
       for (std::size_t i = 0; i < columns_; ++i) {
@@ -144,17 +149,20 @@ class WaveTable : public Wavefront {
   bool spreads_;
   Vec2 origin_;
   double dx_, dz_;
-  std::size_t columns_, rows_;  ///< one more than the box on each side
+  /// Number of nodes along x and z; one node on each side lies outside the box
+  std::size_t columns_, rows_;
   std::vector<Entry> entries_;
 };
 
-/// n^2, and n grad n, which bends rays, of a field in the plane.
+/// Square n^2 of the index at a place in the plane y = 0, and the force n grad n, which bends rays
+/// (C30).
 struct Bend {
   double square;
   Vec2 force;
 };
-/// The same and the force's derivatives.
-struct BentBend : Bend {
+/// A Bend with the derivatives of its force: xx and xz of force.x with respect to x and z, zz of
+/// force.z with respect to z.
+struct BendDerivatives : Bend {
   double xx, xz, zz;
 };
 
@@ -163,17 +171,18 @@ struct BentRay {
   Vec2 x, v;
 };
 
-/// A ray, its optical path, and how it moves as its direction turns where it begins.
+/// A ray, its optical path, and the derivatives of its place and velocity with respect to the
+/// initial angle.
 struct RayTube : BentRay {
-  Vec2 y, w;  ///< derivatives of x and v by that angle
+  Vec2 y, w;  ///< derivatives of x and v with respect to the initial angle
   double path = 0;
 
   static RayTube from(Vec2 x, Vec2 v) { return {{x, v}, {}, {v.z, -v.x}, 0}; }
-  /// J (C32); its sign changes at caustics.
+  /// Returns the geometric spreading J (C32), whose sign changes at caustics.
   double spread() const { return y.x * v.z - y.z * v.x; }
 };
 
-/// Nystrom's method of fourth order.
+/// Advances a ray by a step h in sigma, by the fourth-order method of Nystrom.
 template <typename BendAt>
 BentRay stepped(const BentRay& ray, double h, const BendAt& bend) {
   const auto [x, v] = ray;
@@ -182,18 +191,19 @@ BentRay stepped(const BentRay& ray, double h, const BendAt& bend) {
   return {x + h * v + h * h / 6 * (a + 2 * b), v + h / 6 * (a + 4 * b + c)};
 }
 
-/// The same of a tube: the derivative of the step itself, and Simpson's rule of the path.
-template <typename BentBendAt>
-RayTube stepped(const RayTube& tube, double h, const BentBendAt& bend) {
-  const auto turned = [](const BentBend& at, Vec2 y) {
+/// Advances a ray tube by a step h. The derivatives y and w follow from differentiating the step of
+/// the ray, the optical path from Simpson's rule.
+template <typename BendDerivativesAt>
+RayTube stepped(const RayTube& tube, double h, const BendDerivativesAt& bend) {
+  const auto turned = [](const BendDerivatives& at, Vec2 y) {
     return Vec2{at.xx * y.x + at.xz * y.z, at.xz * y.x + at.zz * y.z};
   };
   const Vec2 x = tube.x, v = tube.v, y = tube.y, w = tube.w;
-  const BentBend first = bend(x);
+  const BendDerivatives first = bend(x);
   const Vec2 a = first.force, ya = turned(first, y);
-  const BentBend second = bend(x + h / 2 * v + h * h / 8 * a);
+  const BendDerivatives second = bend(x + h / 2 * v + h * h / 8 * a);
   const Vec2 b = second.force, yb = turned(second, y + h / 2 * w + h * h / 8 * ya);
-  const BentBend third = bend(x + h * v + h * h / 2 * b);
+  const BendDerivatives third = bend(x + h * v + h * h / 2 * b);
   const Vec2 c = third.force, yc = turned(third, y + h * w + h * h / 2 * yb);
   RayTube next;
   next.x = x + h * v + h * h / 6 * (a + 2 * b);
@@ -204,14 +214,16 @@ RayTube stepped(const RayTube& tube, double h, const BentBendAt& bend) {
   return next;
 }
 
-/// A point in the medium or near it: every ray anew.
 template <class Field>
 class SteppedMedium;
 
+/// Wave of a point source in the medium or near it. Each call of at() searches for the ray to the
+/// place.
 template <class Field>
-class SoughtWave : public Wavefront {
+class SearchedWave : public Wavefront {
  public:
-  SoughtWave(const SteppedMedium<Field>& medium, Vec2 source) : medium_(medium), source_(source) {}
+  SearchedWave(const SteppedMedium<Field>& medium, Vec2 source)
+      : medium_(medium), source_(source) {}
 
   std::optional<Arrival> at(Vec2 x) const override {
     const auto node = medium_.arrival(source_, x, std::nullopt);
@@ -229,8 +241,8 @@ double distance_to(const Domain& box, Vec2 x) {
                     std::max({0.0, -x.z, x.z - box.depth}));
 }
 
-/// Any index field of grin in the plane y = 0, by steps along rays. Waves of ends are tables over
-/// the box; a point in it, or close by, finds the ray to each place anew.
+/// Medium of any grin index field in the plane y = 0, in which rays are integrated in steps
+/// (stepped_medium()).
 template <class Field>
 class SteppedMedium : public GradedMedium {
  public:
@@ -267,7 +279,7 @@ class SteppedMedium : public GradedMedium {
     return sum;
   }
 
-  std::optional<RayPlace> flown(Vec2 x, Vec2 w, double sigma) const override {
+  std::optional<RayPlace> after_flight(Vec2 x, Vec2 w, double sigma) const override {
     const auto bend_at = [this](Vec2 place) { return bend(place); };
     BentRay ray = begun(x, w);
     for (int step = 0; step < most_steps && in_window(ray.x); ++step) {
@@ -283,7 +295,8 @@ class SteppedMedium : public GradedMedium {
     return std::nullopt;
   }
 
-  /// The ray from a source to a place; guess: of its launch.
+  /// Finds the ray from a source to a place. guess: an estimate of the angle of the ray at the
+  /// source.
   std::optional<WaveTable::Node> arrival(Vec2 source, Vec2 x, std::optional<double> guess) const {
     const Vec2 chord = x - source;
     const double middle = angle_of(Vec2{0, domain_.depth / 2} - source), r = length(chord);
@@ -313,7 +326,7 @@ class SteppedMedium : public GradedMedium {
     const double away = distance_to(domain_, source);
     const double spacing = std::min(spacing_, away / 6);
     if (away < 2 * spacing_ || away < 0.5)
-      return std::make_shared<SoughtWave<Field>>(*this, source);
+      return std::make_shared<SearchedWave<Field>>(*this, source);
     return std::make_shared<WaveTable>(
         domain_, spacing, true,
         [&](Vec2 x, const WaveTable::Node* guess) {
@@ -335,7 +348,7 @@ class SteppedMedium : public GradedMedium {
     return {n * n, {n * gradient[0], n * gradient[2]}};
   }
 
-  BentBend bent_bend(Vec2 x) const {
+  BendDerivatives bend_derivatives(Vec2 x) const {
     const auto [excess, g, h] = field_.hessian(in_space(x));
     const double n = 1 + excess;
     return {{n * n, {n * g[0], n * g[2]}},
@@ -348,27 +361,29 @@ class SteppedMedium : public GradedMedium {
   bool in_window(Vec2 x) const {
     return x.x >= low_.x && x.x <= high_.x && x.z >= low_.z && x.z <= high_.z;
   }
-  /// sigma of a step that is in the domain, as a parabola.
+  /// Returns the parts in the domain of an integration step, in which the ray is approximated by a
+  /// parabola.
   BentChords chords(const BentRay& from, const BentRay& to, double h) const {
     return {domain_, from.x, from.v, 2 / (h * h) * (to.x - from.x - h * from.v), h};
   }
 
-  struct End {
+  struct TubeEnd {
     RayTube tube;
     double inside;
   };
-  /// Along a ray to where `left`, which is positive before, is 0; none beyond a caustic, if that
-  /// counts, or out of the window.
+  /// Follows the ray from x along w until left(ray), which is positive up to there, becomes 0.
+  /// Returns nullopt if the ray leaves the window or, if to_caustic is true, reaches a caustic
+  /// first.
   template <typename Left>
-  std::optional<End> followed(Vec2 x, Vec2 w, bool to_caustic, const Left& left) const {
-    const auto bend_at = [this](Vec2 place) { return bent_bend(place); };
-    End end{RayTube::from(x, begun(x, w).v), 0};
+  std::optional<TubeEnd> followed(Vec2 x, Vec2 w, bool to_caustic, const Left& left) const {
+    const auto bend_at = [this](Vec2 place) { return bend_derivatives(place); };
+    TubeEnd end{RayTube::from(x, begun(x, w).v), 0};
     double before = left(end.tube);
     if (!(before > 0)) return end;
     for (int step = 0; step < most_steps && in_window(end.tube.x); ++step) {
       RayTube next = stepped(end.tube, step_, bend_at);
       double h = step_, after = left(next);
-      if (after <= 0) {  // false position with bisection where it stalls
+      if (after <= 0) {  // false position, with a bisection in every third step
         double low = 0, high = h, at_low = before, at_high = after;
         for (int turn = 0; turn < 60 && std::abs(after) > 1e-13 * (1 + before); ++turn) {
           h = turn % 3 == 2 ? (low + high) / 2 : low + (high - low) * at_low / (at_low - at_high);
@@ -389,33 +404,35 @@ class SteppedMedium : public GradedMedium {
     return std::nullopt;
   }
 
-  /// By the ray from x to the face, against the light, or along it where x is before the face.
+  /// Finds the arrival of a plane wave at x, by the ray from x back to the entry face. If x lies in
+  /// front of the face, the ray is followed forward to the face.
   std::optional<WaveTable::Node> plane_arrival(double angle, Vec2 x,
                                                const WaveTable::Node* guess) const {
     const double sine = std::sin(angle), cosine = std::cos(angle),
                  face = cosine > 0 ? 0 : domain_.depth, deep = (x.z - face) * cosine;
-    const double way = deep >= 0 ? -1 : 1;  // times the light's direction
+    const double sign =
+        deep >= 0 ? -1 : 1;  // 1: the ray is followed along the light; -1: against it
     const double n2 = square(x);
     Vec2 w = guess ? guess->arrival.w
                    : Vec2{sine, std::copysign(std::sqrt(std::max(n2 - sine * sine, 1e-4)), cosine)};
-    double turned = angle_of(way * w);
+    double turned = angle_of(sign * w);
     constexpr int most_turns = 20;
     constexpr double largest_turn = 0.3;
     for (int turn = 0; turn < most_turns; ++turn) {
       const auto end = followed(x, direction(turned), false, [&](const BentRay& ray) {
-        return (ray.x.z - face) * cosine * -way;
+        return (ray.x.z - face) * cosine * -sign;
       });
       if (!end) return std::nullopt;
       const RayTube& tube = end->tube;
-      const double miss = tube.v.x - way * sine,
-                   slope = tube.w.x - bend(tube.x).force.x / tube.v.z * tube.y.z;
-      if (!(slope * tube.v.z > 0)) return std::nullopt;
+      const double miss = tube.v.x - sign * sine,
+                   derivative = tube.w.x - bend(tube.x).force.x / tube.v.z * tube.y.z;
+      if (!(derivative * tube.v.z > 0)) return std::nullopt;
       if (std::abs(miss) < 1e-11)
         return WaveTable::Node{
-            {way * direction(turned), sine * tube.x.x + cosine * face - way * tube.path,
-             std::sqrt(std::abs(cosine / slope)), way < 0 ? end->inside : 0, tube.x.x},
+            {sign * direction(turned), sine * tube.x.x + cosine * face - sign * tube.path,
+             std::sqrt(std::abs(cosine / derivative)), sign < 0 ? end->inside : 0, tube.x.x},
             std::sqrt(n2)};
-      turned -= std::clamp(miss / slope, -largest_turn, largest_turn);
+      turned -= std::clamp(miss / derivative, -largest_turn, largest_turn);
     }
     return std::nullopt;
   }
@@ -423,7 +440,7 @@ class SteppedMedium : public GradedMedium {
   Domain domain_;
   Field field_;
   double step_, spacing_;
-  Vec2 low_, high_;  ///< of the window
+  Vec2 low_, high_;  ///< opposite corners of the window in which rays are followed
 };
 
 template <class Field>
@@ -439,7 +456,9 @@ grin::GaussianBlobs blobs_of(const IndexField& field) {
 }
 
 grin::StandingWave sound_of(const Scene& scene) {
-  constexpr double longest_table = 1e3;  // in k rho; beyond it the wave is slow, not wrong
+  // Largest argument k r of the Bessel function in the table of the standing wave; beyond the
+  // table, evaluation is slow but correct
+  constexpr double longest_table = 1e3;
   const IndexField& field = *scene.index;
   const double reach = 4 * (scene.domain.width + scene.domain.depth);
   return {field.origin - 1, field.sound_amplitude, 0, field.sound_wavenumber,

@@ -10,7 +10,7 @@
 #include "core/numbers/phasor.h"
 #include "core/result/result_group.h"
 #include "mc/paths/estimators/covariance_estimator.h"
-#include "mc/paths/estimators/path_ends.h"
+#include "mc/paths/estimators/path_endpoints.h"
 #include "mc/paths/estimators/single_scattering.h"
 #include "mc/theory/diffusion.h"
 
@@ -18,10 +18,11 @@ namespace flatspeckle::mc {
 
 void check_delays(const Scene& scene, const std::vector<double>& delays) {
   if (!scene.medium.structure.independent())
-    throw InputError("delays: scatterers at correlated positions do not move independently");
+    throw InputError(
+        "delays: requires independent positions of the scatterers, without a structure factor");
   for (const double delay : delays)
     if (!(delay >= 0 && delay <= 1e100))
-      throw InputError("delays", delay, "must not be negative, nor above 1e100");
+      throw InputError("delays", delay, "must be from 0 to 1e100");
 }
 
 const DatasetTable delays_table{
@@ -64,7 +65,8 @@ void write_delays(ResultFile& file, const Scene& scene, const std::vector<double
 }
 
 double diffusion_delay_correlation(const BulkMedium& medium, double thickness, double delay) {
-  // kappa^2 = mu_a dimension / l*, and what adds to it acts like the square of a tilt's wavenumber
+  // kappa^2 = mu_a dimension / l* (C20). A term added to kappa^2 acts like the square of the
+  // wavenumber of a tilt.
   const double loss = 2 * delay * (1 - medium.g) * medium.mu_s;
   const double q = std::sqrt(medium.dimension * loss / medium.transport_mean_free_path());
   return diffusion_field_correlation(medium, thickness, q);
@@ -74,9 +76,10 @@ namespace {
 
 using Values = std::vector<Complex>;
 
-/// Sum of 1 - cos over the inner scatterers of a path.
+/// Sum of 1 - cos(scattering angle) over the inner scatterers of a path (all but the first and
+/// last).
 struct TurnTally {
-  using Factor = double;  ///< what motion leaves of a covariance
+  using Factor = double;  ///< factor by which motion reduces a covariance
   double turn = 0;
 
   void flight(Vec2, const SpaceDirection&, double) {}
@@ -85,7 +88,9 @@ struct TurnTally {
   }
 };
 
-/// The same times the diffusion there, and sum of (from - to).velocity.
+/// Two sums over the inner scatterers of a path. `turn` is the sum of (1 - cos(scattering angle))
+/// times the local diffusion. `slip` is the sum of (from - to).velocity, where from and to are the
+/// directions before and after scattering.
 struct FlowTally {
   using Factor = Complex;
   const LocalMotion* motion = nullptr;
@@ -98,19 +103,21 @@ struct FlowTally {
   }
 };
 
-/// A e of some ends, what a turn towards each adds to a path's tally and how it decays,
-/// [delay][end].
+/// Data of a list of endpoints: for each endpoint the product A e of C14 (amplitude and endpoint
+/// factor) and the tally of the scattering towards it; and the decay factors that follow from the
+/// tallies, [delay][endpoint].
 template <typename Tally>
 struct Decaying {
   Values value;
   std::vector<Tally> tally;
   std::vector<typename Tally::Factor> decay;
 
-  Decaying(std::size_t ends, std::size_t delays, const Tally& none)
-      : value(ends), tally(ends, none), decay(ends * delays) {}
+  Decaying(std::size_t endpoints, std::size_t delays, const Tally& none)
+      : value(endpoints), tally(endpoints, none), decay(endpoints * delays) {}
 };
 
-/// exp(-2 turn t - i k slip t) for every delay t, [delay][tally].
+/// Computes the decay factors exp(-2 turn t - i k slip t) for every delay t and tally,
+/// [delay][tally].
 class Decay {
  public:
   Decay(std::span<const double> delays, double k, std::size_t most)
@@ -140,9 +147,10 @@ class Decay {
   std::vector<double> exponent_, phase_;
 };
 
-/// Adds weight |f|^2 of every channel, then weight f(0) conj(f(t)) for every delay, of which
-/// without flow only the real part is not 0 in the mean. C14's F and R turn by other angles at the
-/// path's ends, so each has its own decay.
+/// Adds weight |f|^2 of the field f of every channel, then weight f(0) conj(f(t)) for every delay
+/// t. Without flow only the real part is computed, because the imaginary part has mean 0. F and R
+/// of C14 have different scattering angles at the first and last scatterer, so each has its own
+/// decay.
 template <typename Tally>
 class DelayScorer : public TallyScorer<Tally> {
   using Factor = typename Tally::Factor;
@@ -155,14 +163,17 @@ class DelayScorer : public TallyScorer<Tally> {
         walks_(walks),
         delays_(delays),
         sums_(sums),
-        ends_(walks, [&](std::size_t ends) { return Decaying<Tally>(ends, delays.size(), none); }),
+        endpoints_(
+            walks,
+            [&](std::size_t endpoints) { return Decaying<Tally>(endpoints, delays.size(), none); }),
         inner_(1, delays.size(), none),
-        decay_(delays, walks.scene().k, std::max(ends_.lights().size(), ends_.views().size())) {}
+        decay_(delays, walks.scene().k,
+               std::max(endpoints_.lights().size(), endpoints_.views().size())) {}
 
-  /// B = 1 at x.
+  /// Scores the path of one scatterer at x.
   void single(Vec2 x, double weight) override {
-    EndFactors &lights = ends_.lights(), &views = ends_.views();
-    auto &light = ends_.light_last, &view = ends_.view_last;
+    EndpointFactors &lights = endpoints_.lights(), &views = endpoints_.views();
+    auto &light = endpoints_.light_last, &view = endpoints_.view_last;
     lights.attenuate(x, light.value);
     views.attenuate(x, view.value);
     for (std::size_t c = 0; c < channels_.size(); ++c) {
@@ -178,12 +189,12 @@ class DelayScorer : public TallyScorer<Tally> {
   }
 
   void multiple(const Path& path) override {
-    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival,
-                            Decaying<Tally>& out) {
-      ends.attenuate(x, out.value);
-      walks_.towards(x, arrival, ends.directions(), out.value);
-      for (std::size_t j = 0; j < ends.size(); ++j)
-        out.tally[j] = turned(x, arrival, ends.direction(j));
+    endpoints_.find(path, [this](EndpointFactors& endpoints, Vec2 x, const SpaceDirection& arrival,
+                                 Decaying<Tally>& out) {
+      endpoints.attenuate(x, out.value);
+      walks_.towards(x, arrival, endpoints.directions(), out.value);
+      for (std::size_t j = 0; j < endpoints.size(); ++j)
+        out.tally[j] = turned(x, arrival, endpoints.direction(j));
       decay_.find(out.tally, out.decay);
     });
     find_inner(this->tally());
@@ -191,7 +202,7 @@ class DelayScorer : public TallyScorer<Tally> {
   }
 
  private:
-  /// What one scatterer adds.
+  /// Returns the tally of a single scattering at x.
   Tally turned(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) const {
     Tally tally = this->none();
     tally.scattering(x, from, to);
@@ -203,7 +214,7 @@ class DelayScorer : public TallyScorer<Tally> {
     decay_.find(inner_.tally, inner_.decay);
   }
 
-  /// weight f conj(term), or its real part where that is all that counts.
+  /// Returns weight field conj(term), or its real part if Factor is real (no flow).
   static Factor with_field(double weight, Complex field, Complex term) {
     const Complex both = weight * product_with_conjugate(field, term);
     if constexpr (std::is_same_v<Factor, double>)
@@ -213,13 +224,13 @@ class DelayScorer : public TallyScorer<Tally> {
   }
 
   void score(std::size_t c, double weight) {
-    const auto &light_first = ends_.light_first, &light_last = ends_.light_last,
-               &view_first = ends_.view_first, &view_last = ends_.view_last;
+    const auto &light_first = endpoints_.light_first, &light_last = endpoints_.light_last,
+               &view_first = endpoints_.view_first, &view_last = endpoints_.view_last;
     const std::size_t lights = light_first.value.size(), views = view_first.value.size();
     const auto [i, v] = channels_[c];
     const Complex forward = product(light_first.value[i], view_last.value[v]);
     Complex backward = 0;
-    if (ends_.reversed()) backward = product(light_last.value[i], view_first.value[v]);
+    if (endpoints_.reversed()) backward = product(light_last.value[i], view_first.value[v]);
     const Complex field = forward + backward;
     const Factor with_forward = with_field(weight, field, forward),
                  with_backward = with_field(weight, field, backward);
@@ -227,7 +238,8 @@ class DelayScorer : public TallyScorer<Tally> {
     for (std::size_t t = 0; t < delays_.size(); ++t) {
       const std::size_t light = t * lights + i, view = t * views + v;
       Factor sum = with_forward * light_first.decay[light] * view_last.decay[view];
-      if (ends_.reversed()) sum += with_backward * light_last.decay[light] * view_first.decay[view];
+      if (endpoints_.reversed())
+        sum += with_backward * light_last.decay[light] * view_first.decay[view];
       sums_[(1 + t) * channels_.size() + c] += inner_.decay[t] * sum;
     }
   }
@@ -236,13 +248,13 @@ class DelayScorer : public TallyScorer<Tally> {
   const PathWalks& walks_;
   std::span<const double> delays_;
   std::span<Complex> sums_;
-  PathEnds<Decaying<Tally>> ends_;
-  Decaying<Tally> inner_;  ///< of the inner scatterers, or the only one
+  PathEndpoints<Decaying<Tally>> endpoints_;
+  Decaying<Tally> inner_;  ///< decay by the inner scatterers of a path, or by the only one
   Decay decay_;
 };
 
-/// Of paths of one scatterer, in a medium that is the same everywhere; shear is a slope of the
-/// phase along z.
+/// Returns the contribution of paths of one scatterer to the quantities of delay_job(), in closed
+/// form, for a homogeneous medium. A shear flow gives the phase a gradient along z.
 Values single_covariances(const PathWalks& walks, const std::vector<double>& delays,
                           const Motion& motion) {
   const Scene& scene = walks.scene();
@@ -253,12 +265,13 @@ Values single_covariances(const PathWalks& walks, const std::vector<double>& del
       const auto [light, view] = scene.request.channels[c];
       const Vec2 from = direction(scene.request.lights[light].angle),
                  to = direction(scene.request.views[view].angle), turn = from - to;
-      const double slope = -scene.k * delay * turn.x * motion.shear;
-      const Complex value = slope == 0
-                                ? all[c]
-                                : scene.medium.mu_s * std::norm(walks.amplitude({}, from, to)) *
-                                      attenuated_wave_integral(scene.domain, scene.medium.mu_t,
-                                                               {0, slope}, {-from, to, -from, to});
+      const double phase_gradient = -scene.k * delay * turn.x * motion.shear;
+      const Complex value =
+          phase_gradient == 0
+              ? all[c]
+              : scene.medium.mu_s * std::norm(walks.amplitude({}, from, to)) *
+                    attenuated_wave_integral(scene.domain, scene.medium.mu_t, {0, phase_gradient},
+                                             {-from, to, -from, to});
       all.push_back(value *
                     std::polar(std::exp(-2 * delay * motion.diffusion * dot(turn, turn) / 2),
                                -scene.k * delay * dot(turn, motion.velocity)));
@@ -272,7 +285,7 @@ Values single_covariances(const PathWalks& walks, const std::vector<double>& del
 PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
                   std::uint64_t seed, const Motion& motion) {
   if (scene.request.kind != CovarianceRequest::Kind::intensity)
-    throw InputError("delays: needs covariance = intensity");
+    throw InputError("delays: requires covariance = intensity");
   check_delays(scene, delays);
   const auto scorer = [=, local = LocalMotion(scene, motion), flows = !motion.only_diffuses(scene)](
                           const PathWalks& walks,

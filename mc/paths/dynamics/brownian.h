@@ -12,27 +12,30 @@
 
 namespace flatspeckle::mc {
 
-/// Throws InputError for a structure factor, and for negative delays.
+/// Throws InputError for scatterers with a structure factor, and for negative delays.
 void check_delays(const Scene& scene, const std::vector<double>& delays);
 
 extern const DatasetTable delays_table;
-/// With diffusion theory for light through a slab, where scatterers only diffuse. The request's
-/// axes must have been written.
+/// Writes the covariances and correlations after each delay and, for light transmitted through a
+/// slab whose scatterers only diffuse, the correlations of diffusion theory. The axes of the
+/// request must have been written before.
 void write_delays(ResultFile& file, const Scene& scene, const std::vector<double>& delays,
                   const ChangeEstimates& found, const Motion& motion = {});
 
-/// Diffusion theory of the correlation in transmission through a slab: motion is absorption 2 t (1
-/// - g) mu_s, which is added to mu_a in the kappa^2 of C20. A limit for thick slabs and small t.
+/// Returns the field correlation, after a delay t = k^2 D tau, of light transmitted through a slab,
+/// by diffusion theory. The motion acts as an absorption 2 t (1 - g) mu_s, which is added to mu_a
+/// in kappa^2 of C20. The result is the limit for thick slabs and small t.
 double diffusion_delay_correlation(const BulkMedium& medium, double thickness, double delay);
 
-/// Fields of moving scatterers at two times (diffusing-wave spectroscopy; Pine et al. 1988). A
-/// displacement's variance is 2 D tau along each axis, so that a scatterer that turns light by
-/// theta multiplies a path's covariance by exp(-2 t (1 - cos theta)), t = k^2 D tau: the delays.
-/// The scatterers move independently and little against a mean free path. Where they flow with a
-/// velocity u, turning light from w to w' multiplies by exp(-i k (w - w').u t) as well. The job's
-/// quantities are the intensity and the covariances of the fields at time 0 and after each delay,
-/// which are real without flow. For an intensity request. Throws InputError for another, and for
-/// negative delays.
+/// Makes a job for the fields of moving scatterers at two times (diffusing-wave spectroscopy
+/// [pine1988], [maret1987]). A displacement during a time tau has variance 2 D tau along each axis.
+/// Scattering by an angle theta therefore multiplies the covariance of a path by exp(-2 t (1 - cos
+/// theta)), where t = k^2 D tau is the delay. The scatterers move independently, and over distances
+/// that are small compared with a mean free path. If they flow with a velocity u, scattering from
+/// direction w to w' also multiplies the covariance by exp(-i k (w - w').u t). The quantities are
+/// the intensity, then for each delay the covariance of the fields at time 0 and after the delay,
+/// which is real without flow. Throws InputError for requests other than intensity and for negative
+/// delays.
 PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double>& delays,
                   std::uint64_t seed, const Motion& motion = {});
 

@@ -15,11 +15,11 @@ namespace flatspeckle::mc {
 
 const DatasetTable frequency_table{
     "frequency shifts",
-    {{"frequency_shift", Data::scale, "", "1", "of the second field, relative"},
+    {{"frequency_shift", Data::scale, "", "1", "relative frequency shift of the second field"},
      {"frequency_covariance", Data::complex_estimate, "frequency_shift LIGHT VIEW", "COVARIANCE",
-      "covariance of the field with that at the shifted frequency"},
+      "covariance of the field with the field at the shifted frequency"},
      {"frequency_correlation", Data::complex_estimate, "frequency_shift LIGHT VIEW", "1",
-      "the same over the intensity"},
+      "frequency_covariance over the intensity"},
      {"frequency_diffusion_theory", Data::real, "frequency_shift", "1",
       "|frequency_correlation| of transmitted light in diffusion theory"},
      {"frequency_tilt_covariance", Data::complex_estimate, "frequency_shift tilt VIEW",
@@ -57,7 +57,7 @@ namespace {
 
 using Values = std::vector<Complex>;
 
-/// Length of the flights between scatterers.
+/// Total length of the flights between scatterers.
 struct LengthTally {
   double length = 0;
 
@@ -71,7 +71,8 @@ std::vector<Scene> shifted_scenes(const Scene& scene, const std::vector<double>&
   return scenes;
 }
 
-/// Adds weight f_a conj(f_b) per entry, then with f_b at each shifted frequency.
+/// Adds weight f_a conj(f_b) for every entry; then, for each shifted frequency, weight f_a
+/// conj(f_b) with f_b at that frequency, for the first changing_entries() entries.
 class FrequencyScorer : public TallyScorer<LengthTally> {
  public:
   FrequencyScorer(const PathWalks& walks, const std::vector<Scene>& shifted,
@@ -85,7 +86,7 @@ class FrequencyScorer : public TallyScorer<LengthTally> {
       others_.push_back({PathFields(walks, other, true), walks.scene().k - other.k});
   }
 
-  /// B = 1 at x.
+  /// Scores the path of one scatterer at x.
   void single(Vec2 x, double weight) override {
     score(weight, 0, [&](PathFields& fields) { return fields.single(x); });
   }
@@ -96,7 +97,7 @@ class FrequencyScorer : public TallyScorer<LengthTally> {
  private:
   struct Other {
     PathFields fields;
-    double lag;  ///< k1 - k2
+    double lag;  ///< k1 - k2: wavenumber of the first field minus that of the second
   };
 
   template <typename FieldOf>
@@ -121,7 +122,8 @@ class FrequencyScorer : public TallyScorer<LengthTally> {
   std::vector<Other> others_;
 };
 
-/// Of paths of one scatterer.
+/// Returns the contribution of paths of one scatterer to the quantities of frequency_job(), in
+/// closed form.
 Values single_covariances(const PathWalks& walks, const std::vector<Scene>& shifted) {
   const Scene& scene = walks.scene();
   Values all = single_scattering(scene, walks);

@@ -13,24 +13,29 @@
 namespace flatspeckle::mc {
 
 extern const DatasetTable frequency_table;
-/// Into a group (empty: the root); of one field, with diffusion theory for light through a slab.
-/// The request's axes and that of the shifts must have been written.
+/// Writes the covariances and correlations for each frequency shift into a group of the file
+/// (empty: the root) and, for an intensity request with light transmitted through a homogeneous
+/// slab, the correlations of diffusion theory. The axes of the request and of the shifts must have
+/// been written before.
 void write_frequency_shifts(ResultFile& file, const std::string& group, const Scene& scene,
                             const std::vector<double>& shifts, const ChangeEstimates& found);
 void write_shift_axis(ResultFile& file, const std::vector<double>& shifts);
 
-/// Diffusion theory of the magnitude of the correlation in transmission through a slab: a
-/// difference of wavenumbers is absorption i (k2 - k1), which is added to mu_a in the kappa^2 of
-/// C20. A limit for thick slabs.
+/// Returns the magnitude of the correlation of fields transmitted through a slab at wavenumbers k1
+/// and k2 = k1 (1 + shift), by diffusion theory. The difference of the wavenumbers acts as an
+/// absorption i (k2 - k1), which is added to mu_a in kappa^2 of C20. The result is the limit for
+/// thick slabs.
 double diffusion_frequency_correlation(const Scene& slab, double shift);
 
-/// Fields at two frequencies by walks (conventions, C39): the inner flights of a path turn the
-/// phase of its covariance by (k1 - k2) times their length, its ends have each its own k. The job's
-/// quantities are the covariance, then that with the fields at each shifted frequency, 0 where
-/// entries do not change. The shifts have been checked (check_frequency_shifts()).
+/// Makes a job that samples walks for fields at two frequencies (conventions, C39). The free
+/// flights between the scatterers of a path rotate the phase of its covariance by (k1 - k2) times
+/// their total length, and the endpoint factors of each field contain the wavenumber of that field.
+/// The quantities are the covariance, then for each shift the covariance of the first field with
+/// the second field at the shifted frequency. The latter is 0 for entries without a shifted second
+/// field (changing_entries()). The shifts must have been checked (check_frequency_shifts()).
 PathJob frequency_job(const Scene& scene, const Plan& plan, const std::vector<double>& shifts,
                       std::uint64_t seed);
-/// The scene's plan, with phases.
+/// Makes the plan for frequency_job(), as make_plan() does, but always with phases.
 Plan frequency_plan(const Scene& scene, ReversedPaths reversed);
 
 }  // namespace flatspeckle::mc

@@ -9,14 +9,15 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// int_0^length exp(rate t) dt
+/// Returns int_0^length exp(rate t) dt.
 Complex exponential_integral(Complex rate, double length) {
   const Complex z = rate * length;
   if (std::abs(z) < 1e-4) return length * (1.0 + z / 2.0 + z * z / 6.0);
   return (std::exp(z) - 1.0) / rate;
 }
 
-/// Eight-point Gauss-Legendre over panels of at most a radian or so.
+/// Integrates f by eight-point Gauss-Legendre quadrature over equal panels. Their number is
+/// `radians`, rounded up, plus one.
 template <typename F>
 Complex integrate(F f, double from, double to, double radians) {
   static constexpr std::array<double, 4> node = {0.1834346424956498, 0.5255324099163290,
@@ -34,36 +35,38 @@ Complex integrate(F f, double from, double to, double radians) {
   return half * sum;
 }
 
-constexpr double no_side = 1e300;
-constexpr double parallel = 1e-12;  ///< to an edge, which is then no_side met
+constexpr double no_side = 1e300;   ///< distance to an edge that a ray never reaches
+constexpr double parallel = 1e-12;  ///< cosine below which a ray is parallel to an edge
 
-/// Distance to the edge along a unit vector: the lesser of a function of z (to a face) and one of x
-/// (to a side).
-struct Leg {
+/// Ray segment from a place (x, z) along the unit vector u to the edge of the domain. Its length is
+/// the smaller one of to_face(z), the distance to a face, and to_side(x), the distance to a side.
+struct Segment {
   Vec2 u;
-  double face, side;  ///< the z and x they end on
+  double face, side;  ///< z of the face and x of the side
 
-  Leg(const Domain& domain, Vec2 w)
+  Segment(const Domain& domain, Vec2 w)
       : u(w), face(w.z > 0 ? domain.depth : 0), side(std::copysign(domain.width / 2, w.x)) {}
 
   double to_face(double z) const { return std::abs(u.z) < parallel ? no_side : (face - z) / u.z; }
   double to_side(double x) const { return std::abs(u.x) < parallel ? no_side : (side - x) / u.x; }
-  /// Where both are equal, above or below the medium too.
+  /// Returns the z at which to_face(z) = to_side(x). This z may lie outside the medium.
   double turn(double x) const { return face - u.z * to_side(x); }
 };
 
-/// The integral along z at one x. The exponent is linear between the legs' turns.
-Complex depth_column(const Domain& domain, Complex mu_t, double kappa_z, std::span<const Leg> legs,
-                     double x) {
-  constexpr std::size_t most_legs = 4;
-  std::array<double, 2 + most_legs> cut{};
+/// Computes the integral over z of attenuated_wave_integral() at one x. The exponent of the
+/// integrand is a linear function of z between the values of turn() of the segments.
+Complex depth_column(const Domain& domain, Complex mu_t, double kappa_z,
+                     std::span<const Segment> segments, double x) {
+  constexpr std::size_t most_segments = 4;
+  std::array<double, 2 + most_segments> cut{};
   cut[1] = domain.depth;
-  for (std::size_t j = 0; j < legs.size(); ++j)
-    cut[2 + j] = std::clamp(legs[j].turn(x), 0.0, domain.depth);
+  for (std::size_t j = 0; j < segments.size(); ++j)
+    cut[2 + j] = std::clamp(segments[j].turn(x), 0.0, domain.depth);
   std::sort(cut.begin(), cut.end());
   const auto exponent = [&](double z) {
     double length = 0;
-    for (const Leg& leg : legs) length += std::min(leg.to_face(z), leg.to_side(x));
+    for (const Segment& segment : segments)
+      length += std::min(segment.to_face(z), segment.to_side(x));
     return Complex(-mu_t.real() * length / 2, kappa_z * z - mu_t.imag() * length / 2);
   };
   Complex sum = 0, at_start = exponent(0);
@@ -71,7 +74,7 @@ Complex depth_column(const Domain& domain, Complex mu_t, double kappa_z, std::sp
     const double thickness = cut[i + 1] - cut[i];
     if (thickness == 0) continue;
     const Complex at_end = exponent(cut[i + 1]);
-    // From the less attenuated end, so that nothing overflows.
+    // The integral starts at the less attenuated end, so that nothing overflows.
     const Complex rate = (at_end - at_start) / thickness;
     sum += rate.real() > 0 ? std::exp(at_end) * exponential_integral(-rate, thickness)
                            : std::exp(at_start) * exponential_integral(rate, thickness);
@@ -80,17 +83,22 @@ Complex depth_column(const Domain& domain, Complex mu_t, double kappa_z, std::sp
   return sum;
 }
 
-/// Where the integrand across may have a kink: a turn enters or leaves the medium, or two cross.
-std::vector<double> kinks(const Domain& domain, std::span<const Leg> legs) {
+/// Returns the x at which the integral over z may have a kink as a function of x, and both sides of
+/// the box. Kinks are where the turn() of a segment enters or leaves the medium, or where the
+/// turn() of two segments cross.
+std::vector<double> kinks(const Domain& domain, std::span<const Segment> segments) {
   const double half = domain.width / 2;
   std::vector<double> found = {-half, half};
-  const auto add = [&](double slope, double value) {  // value + slope x = 0
-    if (slope == 0) return;
-    if (const double x = -value / slope; std::abs(x) < half) found.push_back(x);
+  // Adds the x at which value + gradient x = 0
+  const auto add = [&](double gradient, double value) {
+    if (gradient == 0) return;
+    if (const double x = -value / gradient; std::abs(x) < half) found.push_back(x);
   };
-  std::vector<std::array<double, 2>> turns;  // slope and value at 0
-  for (const Leg& leg : legs)
-    if (std::abs(leg.u.x) >= parallel) turns.push_back({leg.u.z / leg.u.x, leg.turn(0)});
+  // For each segment: the derivative of turn() with respect to x, and turn() at x = 0
+  std::vector<std::array<double, 2>> turns;
+  for (const Segment& segment : segments)
+    if (std::abs(segment.u.x) >= parallel)
+      turns.push_back({segment.u.z / segment.u.x, segment.turn(0)});
   for (std::size_t a = 0; a < turns.size(); ++a) {
     add(turns[a][0], turns[a][1]);
     add(turns[a][0], turns[a][1] - domain.depth);
@@ -100,20 +108,21 @@ std::vector<double> kinks(const Domain& domain, std::span<const Leg> legs) {
   return found;
 }
 
-/// Panels for integrate(), by how much the exponent may change between two neighbouring kinks.
-double radians(const Domain& domain, Complex mu_t, Vec2 kappa, std::span<const Leg> legs,
+/// Returns the argument `radians` of integrate(): a bound of the change of the exponent between two
+/// neighbouring kinks (`from` and `to`), divided by three.
+double radians(const Domain& domain, Complex mu_t, Vec2 kappa, std::span<const Segment> segments,
                double from, double to) {
   double sum = std::abs(kappa.x) * (to - from);
-  for (const Leg& leg : legs) {
-    if (std::abs(leg.u.x) < parallel) continue;
-    const double moved = std::abs(std::clamp(leg.turn(to), 0.0, domain.depth) -
-                                  std::clamp(leg.turn(from), 0.0, domain.depth));
+  for (const Segment& segment : segments) {
+    if (std::abs(segment.u.x) < parallel) continue;
+    const double moved = std::abs(std::clamp(segment.turn(to), 0.0, domain.depth) -
+                                  std::clamp(segment.turn(from), 0.0, domain.depth));
     const double longest =
-        std::min((to - from) / std::abs(leg.u.x),
-                 std::abs(leg.u.z) < parallel ? no_side : domain.depth / std::abs(leg.u.z));
+        std::min((to - from) / std::abs(segment.u.x),
+                 std::abs(segment.u.z) < parallel ? no_side : domain.depth / std::abs(segment.u.z));
     sum += std::abs(kappa.z) * moved + std::abs(mu_t) * longest / 2;
   }
-  return sum / 3;  // eight nodes are enough for that much at once
+  return sum / 3;  // eight nodes resolve three radians
 }
 
 }  // namespace
@@ -122,18 +131,18 @@ Complex attenuated_wave_integral(const Domain& domain, Complex mu_t, Vec2 kappa,
                                  const std::vector<Vec2>& towards) {
   Domain box = domain;
   if (domain.kind == Domain::Kind::slab) box.width = no_side;
-  std::vector<Leg> legs;
-  for (const Vec2 w : towards) legs.emplace_back(box, w);
-  if (domain.kind == Domain::Kind::slab) return depth_column(box, mu_t, kappa.z, legs, 0);
-  const auto cut = kinks(box, legs);
+  std::vector<Segment> segments;
+  for (const Vec2 w : towards) segments.emplace_back(box, w);
+  if (domain.kind == Domain::Kind::slab) return depth_column(box, mu_t, kappa.z, segments, 0);
+  const auto cut = kinks(box, segments);
   Complex sum = 0;
   for (std::size_t i = 0; i + 1 < cut.size(); ++i) {
     const auto integrand = [&](double x) {
-      return std::polar(1.0, kappa.x * x) * depth_column(box, mu_t, kappa.z, legs, x);
+      return std::polar(1.0, kappa.x * x) * depth_column(box, mu_t, kappa.z, segments, x);
     };
     if (cut[i + 1] > cut[i])
       sum += integrate(integrand, cut[i], cut[i + 1],
-                       radians(box, mu_t, kappa, legs, cut[i], cut[i + 1]));
+                       radians(box, mu_t, kappa, segments, cut[i], cut[i + 1]));
   }
   return sum;
 }

@@ -7,21 +7,22 @@
 
 namespace flatspeckle::mc {
 
-/// A box of scatterers with a T-matrix in plane waves, seen in far views: then the mean field has a
-/// closed form here.
+/// Whether coherent_field() applies to a scene: a box of scatterers with a T-matrix, with plane
+/// waves and far views.
 bool has_coherent_field(const Scene& scene);
 
-/// Mean far field per channel (C15): every scatterer radiates A under the coherent wave that has
-/// travelled the length d inside the medium with k_eff instead of k,
+/// Returns the mean far field per channel (C15). Every scatterer scatters the coherent wave, with
+/// amplitude A from the direction w_i of the light to the direction w_v of the view. The coherent
+/// wave has travelled a length d inside the medium, with wavenumber k_eff instead of k:
 ///   rho A(i->v) int dx exp(i k (w_i - w_v).x + i (k_eff - k) d(x, -w_i)).
-/// Neglects reflection and diffraction at the box's edges, like all of the Monte Carlo method.
+/// Neglects reflection and diffraction at the edges of the box, like the whole Monte Carlo method.
 std::vector<Complex> coherent_field(const Scene& scene);
 
-/// int dx exp(i kappa.x - mu_t/2 sum_j d(x, u_j)) over a box, or over the depth of a slab at x = 0,
-/// where d is the distance to the edge along a unit vector, of which there are at most four: exact
-/// in depth, by Gauss-Legendre quadrature across, cut where the integrand has kinks. Relative to
-/// the area about 1e-9. mu_t is complex where the wavenumber in the medium is another: -2 i
-/// k_shift.
+/// Computes int dx exp(i kappa.x - mu_t/2 sum_j d(x, u_j)) over a box, or over the depth of a slab
+/// at x = 0. Here d(x, u_j) is the distance from x to the edge along the unit vector u_j =
+/// towards[j], of which there are at most four. The integral is exact in z; in x it is computed by
+/// Gauss-Legendre quadrature between the kinks of the integrand. The error is about 1e-9 times the
+/// area. If the wavenumber in the medium is k + k_shift, the caller adds -2 i k_shift to mu_t.
 Complex attenuated_wave_integral(const Domain& domain, Complex mu_t, Vec2 kappa,
                                  const std::vector<Vec2>& towards);
 

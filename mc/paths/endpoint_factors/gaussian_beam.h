@@ -7,8 +7,9 @@
 
 namespace flatspeckle::mc {
 
-/// A paraxial Gaussian beam in flatland, u = sqrt(q0/q) exp(i k s + i k t^2 / (2 q)) with q = s - i
-/// z_R, q0 = -i z_R, z_R = k waist^2 / 2; s along the axis and t across it, from the focus.
+/// A paraxial Gaussian beam in 2D with the field u = sqrt(q0/q) exp(i k s + i k t^2 / (2 q)) with q
+/// = s - i z_R, q0 = -i z_R, z_R = k waist^2 / 2. The coordinates s along the axis and t across it
+/// are measured from the focus.
 class GaussianBeam {
  public:
   GaussianBeam(const Light& light, double k)
@@ -24,13 +25,14 @@ class GaussianBeam {
   double along(Vec2 x) const { return dot(x - focus_, axis_); }
   double across(Vec2 x) const { return dot(x - focus_, across_axis()); }
 
-  /// Where |u| has fallen to 1/e, at a distance from the focus.
+  /// Returns the distance from the axis at which |u| is 1/e of its value on the axis, at the
+  /// coordinate s along the axis.
   double width(double s) const { return waist_ * std::hypot(1, s / rayleigh_); }
 
-  /// Unit vector along the wavenumber at x, the gradient of the phase.
+  /// Returns the unit vector along the gradient of the phase at x, the local wave vector.
   Vec2 ray(Vec2 x) const {
-    const double s = along(x), slope = across(x) * s / (s * s + rayleigh_ * rayleigh_);
-    return 1 / std::hypot(1, slope) * (axis_ + slope * across_axis());
+    const double s = along(x), tangent = across(x) * s / (s * s + rayleigh_ * rayleigh_);
+    return 1 / std::hypot(1, tangent) * (axis_ + tangent * across_axis());
   }
 
   Complex field(Vec2 x) const {

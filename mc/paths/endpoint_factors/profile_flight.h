@@ -6,7 +6,8 @@
 
 namespace flatspeckle::mc {
 
-/// A flight through a medium that varies, no longer than `longest`.
+/// A free flight from x along w through a medium that varies, under the condition that it is no
+/// longer than `longest`.
 class ProfileFlight {
  public:
   ProfileFlight(const MediumProfile& profile, Vec2 x, Vec2 w, double longest)
@@ -16,12 +17,13 @@ class ProfileFlight {
         longest_(longest),
         probability_(-std::expm1(-profile.optical_depth(x, w, longest))) {}
 
-  /// Of ending in a collision; all that follows is on that condition.
+  /// Probability of a collision within `longest`. sample() and density() are conditional on this
+  /// collision.
   double probability() const { return probability_; }
   double sample(double u) const {
     return profile_.reach(x_, w_, -std::log1p(-u * probability_), longest_);
   }
-  /// 0 where nothing is met on the way.
+  /// Density of the length of the flight; 0 if there is no extinction along the ray.
   double density(double distance) const {
     if (probability_ == 0) return 0;
     return profile_.mu_t(x_ + distance * w_) * std::exp(-profile_.optical_depth(x_, w_, distance)) /

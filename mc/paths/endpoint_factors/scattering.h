@@ -16,7 +16,7 @@
 
 namespace flatspeckle::mc {
 
-/// A list of unit vectors and their angles (C2), in arrays that vectorise.
+/// A list of unit vectors and their angles (C2), stored by component for vectorised loops.
 struct Directions {
   std::vector<double> x, z, angle;
 
@@ -28,24 +28,26 @@ struct Directions {
   }
 };
 
-/// 1 - cos of the angle between unit vectors, without cancellation.
+/// Returns 1 - cos of the angle between unit vectors, without cancellation.
 inline double one_minus_cosine(Vec2 from, Vec2 to) {
   const Vec2 step = to - from;
   return dot(step, step) / 2;
 }
 
-/// w turned from +z towards +x by the angle of the unit vector `turn`.
+/// Rotates w from +z towards +x by the angle of the unit vector `turn`.
 inline Vec2 turned(Vec2 w, Vec2 turn) {
   return {w.x * turn.z + w.z * turn.x, w.z * turn.z - w.x * turn.x};
 }
 
-/// The direction at twice the angle of (a, b), both measured from the second axis.
+/// Returns the unit vector at twice the angle of the vector (a, b). Both angles are measured from
+/// the second axis.
 inline Vec2 doubled_angle(double a, double b) {
   const double per_square = 1 / (a * a + b * b);
   return {2 * a * b * per_square, (b * b - a * a) * per_square};
 }
 
-/// Uniform in the unit disk without its centre; its angle needs no trigonometry.
+/// Samples a point of the unit disk uniformly, except its centre. The angle of the point is then a
+/// uniform angle, found without trigonometric functions.
 inline Vec2 sample_disk(RandomStream& random) {
   while (true) {
     const Vec2 point{2 * random.uniform() - 1, 2 * random.uniform() - 1};
@@ -53,10 +55,11 @@ inline Vec2 sample_disk(RandomStream& random) {
   }
 }
 
-/// What happens at a scatterer, in the three forms that a plan picks from. amplitude() is A of C14
-/// divided by sqrt(sigma_s), so that |amplitude|^2 is the phase function; towards() multiplies
-/// out[j] by the amplitude from one direction to each of many; sample() draws a new direction from
-/// the phase function. In space there is a fourth (space_scattering.h), with directions of its own.
+/// Three forms of scattering, of which Plan::phase selects one. amplitude() is A of C14 divided by
+/// sqrt(sigma_s), so that |amplitude|^2 is the phase function; towards() multiplies out[j] by the
+/// amplitude for scattering from `from` to to[j]; sample() draws a new direction from the phase
+/// function. The fourth form, SpaceScattering (space_scattering.h), is for 3D and has its own type
+/// of direction.
 
 struct IsotropicScattering {
   using Direction = Vec2;
@@ -83,7 +86,8 @@ struct HenyeyGreensteinScattering {
   }
   double amplitude(Vec2 from, Vec2 to) const { return std::sqrt(density(from, to)); }
   void towards(Vec2 from, const Directions& to, std::span<Complex> out) const {
-    constexpr std::size_t most = 128;  // amplitudes alone are a loop of vectors
+    // Amplitudes are computed in a separate loop, which the compiler can vectorise
+    constexpr std::size_t most = 128;
     std::array<double, most> amplitudes;
     for (std::size_t begin = 0; begin < out.size(); begin += most) {
       const std::size_t count = std::min(most, out.size() - begin);
@@ -91,15 +95,16 @@ struct HenyeyGreensteinScattering {
       for (std::size_t j = 0; j < count; ++j) out[begin + j] *= amplitudes[j];
     }
   }
-  /// tan(theta/2) = (1-g)/(1+g) tan(half) of a uniform half angle (C22).
+  /// Samples theta by tan(theta/2) = (1-g)/(1+g) tan(a), with a uniform angle a (C22).
   Vec2 sample(Vec2 from, RandomStream& random) const {
     const Vec2 uniform = sample_disk(random);
     return turned(from, doubled_angle((1 - phase.g) * uniform.x, (1 + phase.g) * uniform.z));
   }
 };
 
-/// The complex amplitude of a circular scatterer, with the structure factor of its medium (C16), or
-/// the root of a phase function of the bulk, tabulated and linear between the nodes.
+/// Scattering by a tabulated amplitude, linear between the nodes: the complex amplitude of a
+/// circular scatterer with the structure factor of its medium (C16), or the square root of a bulk
+/// phase function.
 class TabulatedScattering {
  public:
   using Direction = Vec2;
@@ -125,7 +130,7 @@ class TabulatedScattering {
     return std::atan2(from.z * to.x - from.x * to.z, dot(from, to));
   }
 
-  /// Angles up to some turns.
+  /// Returns the interpolated amplitude at an angle of up to a few turns.
   Complex at(double angle) const {
     const double turns = std::abs(angle) / (2 * std::numbers::pi);
     const int nearest = (static_cast<int>(2 * turns) + 1) / 2;
@@ -137,7 +142,8 @@ class TabulatedScattering {
   }
 
   std::size_t intervals_;
-  std::vector<Complex> amplitude_;  ///< at angles 0 .. pi; even in the angle
+  /// Values at angles from 0 to pi; the amplitude is even in the angle
+  std::vector<Complex> amplitude_;
   grin::TabulatedPhaseFunction phase_;
 };
 

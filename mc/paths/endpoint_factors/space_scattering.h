@@ -9,9 +9,9 @@
 
 namespace flatspeckle::mc {
 
-/// A unit vector of space, y across the plane of incidence; of light in the plane y = 0. Lights and
-/// views lie in that plane, so that of a place in a slab x and z are all that matters, and of a
-/// flight its part in the plane.
+/// A unit vector in 3D, with y normal to the plane of incidence. Lights and views lie in the plane
+/// y = 0. In a slab, only the x and z of positions and the x and z components of flights are
+/// therefore computed.
 struct SpaceDirection {
   double x = 0, y = 0, z = 1;
 
@@ -32,7 +32,7 @@ inline double one_minus_cosine(const SpaceDirection& from, const SpaceDirection&
   return step.y == 0 ? one_minus_cosine(Vec2(from), Vec2(to)) : dot(step, step) / 2;
 }
 
-/// Scattering (scattering.h) of scalar waves in space (conventions, C41).
+/// Scattering (scattering.h) of scalar waves in 3D (conventions, C41).
 class SpaceScattering {
  public:
   using Direction = SpaceDirection;

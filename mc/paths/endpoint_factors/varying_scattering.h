@@ -9,7 +9,7 @@
 
 namespace flatspeckle::mc {
 
-/// Scattering in any of the forms of scattering.h.
+/// Scattering in any of the three forms of scattering.h, selected at run time.
 class AnyScattering {
  public:
   using Direction = Vec2;
@@ -34,12 +34,12 @@ class AnyScattering {
   Form form_;
 };
 
-/// That of a medium that varies: each material has its own.
+/// Scattering in a medium that varies: each material has its own form.
 class VaryingScattering {
  public:
   using Direction = Vec2;
 
-  /// forms: of the profile's materials.
+  /// forms: one for each material of the profile, in the same order.
   VaryingScattering(const MediumProfile& profile, std::vector<AnyScattering> forms)
       : profile_(profile), forms_(std::move(forms)) {}
 
@@ -50,7 +50,7 @@ class VaryingScattering {
   std::vector<AnyScattering> forms_;
 };
 
-/// What scatters at a place: the same everywhere, unless the medium varies.
+/// Returns the scattering at a place: the same object everywhere unless the medium varies.
 template <typename Scattering>
 const Scattering& local(const Scattering& scattering, Vec2) {
   return scattering;

@@ -16,7 +16,7 @@ PathJob path_job(const ScoredPaths& paths, const Scene& scene, const Plan& plan,
   const auto walks = path_walks(scene, plan, seed);
   const bool has_closed_form = paths.single && !scene.profile;
   if (!plan.sampled_single && !has_closed_form)
-    throw std::logic_error("a plan that leaves paths of one scatterer to a closed form: has none");
+    throw std::logic_error("path_job: the plan requires a closed form for paths of one scatterer");
   return path_job(scene, plan, paths.quantities,
                   walks && !plan.sampled_single ? paths.single(*walks) : std::vector<Complex>(),
                   [walks, scorer = paths.scorer](std::uint64_t number, std::span<Complex> sums) {
@@ -51,7 +51,7 @@ PathJob path_job(const Scene& scene, const Plan& plan, std::size_t quantities,
 
 namespace {
 
-/// Gives the field of every channel to an accumulator.
+/// Passes the field of every channel to an accumulator.
 class FieldScorer : public PathScorer {
  public:
   FieldScorer(const PathWalks& walks, Accumulator& accumulator)
@@ -99,7 +99,7 @@ FieldJob covariance_job(const Scene& scene, const Plan& plan, std::uint64_t seed
     single = single_scattering(scene, *walks);
   if (!plan.rank_k)
     return path_job(scene, plan, 1, single, into<EntryAccumulator>(scene.request, batches)).field;
-  blas_single_thread();  // before threads compete for its memory
+  blas_single_thread();  // must come before several threads request memory from BLAS
   return path_job(scene, plan, 1, single, into<RankKAccumulator>(scene.request, batches)).field;
 }
 

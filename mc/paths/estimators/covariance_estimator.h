@@ -15,32 +15,38 @@
 
 namespace flatspeckle::mc {
 
-/// How walks make estimates, per entry of the request: of the covariance, then of other quantities.
+/// Quantities that walks estimate for every entry of the request. The first one is the covariance.
 struct ScoredPaths {
   std::size_t quantities = 1;
-  /// Makes a batch's scorer, which adds to zeroed sums, [quantity][entry].
+  /// Makes the scorer of a batch. It adds its results to the sums, [quantity][entry], which are 0
+  /// at the beginning of the batch.
   std::function<std::unique_ptr<PathScorer>(const PathWalks&, std::span<Complex> sums)> scorer;
-  /// Those of paths of one scatterer in closed form, [quantity][entry]; none where walks always
-  /// sample them.
+  /// Returns the contribution of paths of one scatterer to the quantities in closed form,
+  /// [quantity][entry]. An empty function if there is no closed form; walks must then sample these
+  /// paths.
   std::function<std::vector<Complex>(const PathWalks&)> single{};
 };
 
-/// Throws InputError where light is bent: only fields and covariances are estimated there. Throws
-/// std::logic_error for a plan that leaves paths of one scatterer to a closed form that is missing.
+/// Makes a job that scores the paths of walks. Throws InputError if rays are curved; curved rays
+/// are implemented only for fields and covariances. Throws std::logic_error if the plan requires a
+/// closed form for paths of one scatterer and there is none.
 PathJob path_job(const ScoredPaths& paths, const Scene& scene, const Plan& plan,
                  std::uint64_t seed);
 
-/// single: empty where walks sample paths of one scatterer.
+/// Makes a job from its batches. single: contribution of paths of one scatterer in closed form,
+/// [quantity][entry]; empty if walks sample these paths.
 PathJob path_job(const Scene& scene, const Plan& plan, std::size_t quantities,
                  const std::vector<Complex>& single, const SummedBatches& batches);
 
-/// The Monte Carlo estimator of a scene's covariance as numbered batches of light paths
-/// (conventions, C13-C18). The covariance is absolute: that of C4 amplitudes for unit plane waves,
-/// on a slab per unit illuminated length. The mean field is that of coherent_field.h.
+/// Function that samples batch `number` of light paths and adds their fields to an accumulator.
 using PathBatches = std::function<void(std::uint64_t number, Accumulator&)>;
-/// Numbered batches of plan.paths_per_batch paths, handed to an accumulator.
+/// Makes batches of plan.paths_per_batch paths.
 PathBatches path_batches(const Scene& scene, const Plan& plan, std::uint64_t seed);
 
+/// Makes the Monte Carlo estimator of a scene's covariance from numbered batches of light paths
+/// (conventions, C13-C18). The covariance is absolute: it is the covariance of the amplitudes of C4
+/// for plane waves of unit amplitude. For slabs it is divided by the illuminated length. The mean
+/// field of the job is coherent_field().
 FieldJob covariance_job(const Scene& scene, const Plan& plan, std::uint64_t seed);
 
 }  // namespace flatspeckle::mc

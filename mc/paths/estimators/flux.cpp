@@ -19,9 +19,9 @@ namespace {
 
 constexpr std::uint64_t walks_per_batch = 200;
 
-/// Walks light through a medium that varies, as FluxWalk does through one that is the same
-/// everywhere: from the first collision on, which is forced, to where it ends. Plain flights;
-/// absorption by weight, with roulette.
+/// Samples walks of light through a medium that varies, as FluxWalk does in a homogeneous medium.
+/// The first collision is forced to lie in the medium. Flights are not biased; absorption reduces
+/// the weight, with Russian roulette.
 class VaryingFluxWalk {
  public:
   VaryingFluxWalk(const Scene& scene, const VaryingScattering& scattering, const LightEntry& entry,
@@ -33,7 +33,8 @@ class VaryingFluxWalk {
         random_(random),
         tally_(scene.domain, sums) {}
 
-  /// u: uniform in (0, 1), picks the depth of the first collision.
+  /// Samples one walk. u: number in (0, 1), uniformly distributed, that selects the depth of the
+  /// first collision.
   void walk(double u) {
     const Vec2 start = entry_.sample(random_);
     Vec2 w = entry_.light();
@@ -51,10 +52,10 @@ class VaryingFluxWalk {
   }
 
  private:
-  /// False if nothing is left.
+  /// Absorbs a fraction of the power; returns false if the walk is terminated.
   bool collide(Vec2 x, double& power) {
-    constexpr std::uint64_t between_looks = 4096;
-    if (++collisions_ % between_looks == 0) stop_if_interrupted();
+    constexpr std::uint64_t between_checks = 4096;
+    if (++collisions_ % between_checks == 0) stop_if_interrupted();
     const double albedo = profile_.albedo(x);
     tally_.absorb(power * (1 - albedo));
     power *= albedo;
@@ -77,7 +78,8 @@ class VaryingFluxWalk {
 template <typename Walk, typename Scattering>
 SummedBatches walks(const std::shared_ptr<const Scene>& scene, const Scattering& scattering,
                     double kappa, std::uint64_t seed) {
-  // Inlined as a whole, whatever else the file has: calls, and walks in memory, would cost 10 %.
+  // The attribute `flatten` inlines all calls, whatever else the file contains. Without it,
+  // function calls and walk data kept in memory instead of registers would cost 10 % of the time.
   return [=](std::uint64_t number, std::span<Complex> sums) __attribute__((flatten)) {
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), number);
     const auto lights = scene->request.lights.angles();
@@ -85,14 +87,14 @@ SummedBatches walks(const std::shared_ptr<const Scene>& scene, const Scattering&
     for (std::size_t light = 0; light < lights.size(); ++light) {
       const LightEntry entry(scene->domain, lights[light], kappa);
       Walk walk(*scene, scattering, entry, random, sums.subspan(light * size, size));
-      // stratified depths of the first collision: errors a tenth smaller
+      // The depths of the first collision are stratified, which reduces errors by a tenth.
       for (std::uint64_t path = 0; path < walks_per_batch; ++path)
         walk.walk((static_cast<double>(path) + random.uniform()) / walks_per_batch);
     }
   };
 }
 
-/// Nothing scatters: what collides is absorbed.
+/// Makes the batches for a medium that does not scatter, where all light that collides is absorbed.
 SummedBatches absorption(const std::shared_ptr<const Scene>& scene) {
   return [scene](std::uint64_t, std::span<Complex> sums) {
     const auto lights = scene->request.lights.angles();
@@ -128,15 +130,15 @@ std::string describe(const Scene& scene, double kappa) {
   return text.str();
 }
 
-/// The largest relative error of the shares; infinite where no path has come to one that light
-/// can come to.
+/// Returns the largest relative error of the shares of all lights. It is infinite if no path has
+/// contributed to a share that cannot be 0.
 double worst_relative_error(const FluxJob& job, const Scene& scene, double kappa,
                             const GroupedSums& sums) {
-  constexpr double deepest = 700;  // decay lengths: beyond them light is 0 in double precision
+  constexpr double deepest = 700;  // in decay lengths; light from beyond is 0 in double precision
   const FluxEstimates flux = flux_estimates(job, sums);
   const bool scatters = scene.medium.mu_s > 0;
   double worst = 0;
-  const auto look_at = [&](const Estimate& share, bool is_open) {
+  const auto add_share = [&](const Estimate& share, bool is_open) {
     for (std::size_t light = 0; light < job.lights; ++light) {
       const double value = std::abs(share.value[light]);
       if (value > 0)
@@ -145,10 +147,10 @@ double worst_relative_error(const FluxJob& job, const Scene& scene, double kappa
         worst = std::numeric_limits<double>::infinity();
     }
   };
-  look_at(flux.reflectance, scatters);
-  look_at(flux.transmittance, scatters && kappa * scene.domain.depth < deepest);
-  look_at(flux.side_loss, scatters && scene.domain.kind == Domain::Kind::box);
-  look_at(flux.absorptance, false);
+  add_share(flux.reflectance, scatters);
+  add_share(flux.transmittance, scatters && kappa * scene.domain.depth < deepest);
+  add_share(flux.side_loss, scatters && scene.domain.kind == Domain::Kind::box);
+  add_share(flux.absorptance, false);
   return worst;
 }
 

@@ -6,9 +6,9 @@
 
 namespace flatspeckle::mc {
 
-/// For the lights of the scene's request; its views do not matter. angle_bins: equal bins of the
-/// exit angle (C2) over (-pi, pi]. The relative error of a run is the largest one of any light's
-/// shares.
+/// Makes the flux job for the lights of the scene's request; the views of the request are not used.
+/// angle_bins: number of equal bins of the exit angle (C2) over (-pi, pi]. The relative error of a
+/// run is the largest relative error of any share of any light.
 FluxJob flux_job(const Scene& scene, std::size_t angle_bins, std::uint64_t seed);
 
 }  // namespace flatspeckle::mc

@@ -15,13 +15,14 @@
 
 namespace flatspeckle::mc {
 
-/// Where light ends, by share and exit angle: the sums of one light.
+/// Adds up the power of the walks of one light: for each FluxShare and for each bin of the exit
+/// angle.
 class FluxTally {
  public:
   FluxTally(const Domain& domain, std::span<Complex> sums) : domain_(domain), sums_(sums) {}
 
   void absorb(double power) const { sums_[absorbed] += power; }
-  /// At the edge.
+  /// Adds the power of light that leaves the medium along w at the place x of its edge.
   void leave(Vec2 x, Vec2 w, double power) const {
     constexpr double rounding = 1e-12;
     const double to_side = domain_.width / 2 - std::abs(x.x);
@@ -39,11 +40,11 @@ class FluxTally {
   std::span<Complex> sums_;
 };
 
-/// Where a light comes in, and how light that got deep is favoured. The importance of a place grows
-/// as exp(kappa depth), kappa the rate at which diffuse light dies out, from the depth on to which
-/// only a small share of the light comes: the number of walkers first falls, then stays, and deep
-/// walks cost about as much as shallow ones. Depth is counted from the face or side through which
-/// most light enters.
+/// Where a light enters the medium, and the importance as a function of depth. Beyond a depth that
+/// only a small fraction of the light reaches, the importance grows as exp(kappa depth), where
+/// kappa is the decay rate of diffuse light. The number of walkers falls up to that depth and stays
+/// constant beyond it, so all depths cost about the same. Depth is the distance from the face or
+/// side through which most light enters.
 class LightEntry {
  public:
   LightEntry(const Domain& domain, double light, double kappa)
@@ -55,29 +56,33 @@ class LightEntry {
     inward_ = through_face ? Vec2{0, std::copysign(1.0, light_.z)}
                            : Vec2{std::copysign(1.0, light_.x), 0};
     start_ = inward_.z > 0 ? 0 : -(through_face ? domain.depth : domain.width / 2);
-    constexpr double worthwhile = 2;  // measured, as the onset
-    if (kappa * thickness > worthwhile) kappa_ = kappa;
+    constexpr double least_decay_lengths = 2;  // measured value, as is the onset below
+    if (kappa * thickness > least_decay_lengths) kappa_ = kappa;
     onset_ = std::log(std::max(4.0, kappa_ * thickness / 4));
   }
 
   Vec2 light() const { return light_; }
-  bool favours_deep() const { return kappa_ > 0; }
+  bool has_importance() const { return kappa_ > 0; }
 
-  /// A point of the outline, uniform across the light; of a slab one stands for all.
+  /// Samples the point where light enters the medium, uniformly over its cross-section. In a slab
+  /// one point represents all.
   Vec2 sample(RandomStream& random) const { return aperture_.at(is_slab_ ? 0 : random.uniform()); }
 
   double depth(Vec2 x) const { return dot(inward_, x) - start_; }
   double cosine(Vec2 w) const { return dot(inward_, w); }
 
   double importance(Vec2 x) const {
-    if (!favours_deep()) return 1;
-    constexpr double largest = 600;  // exp of it is finite
+    if (!has_importance()) return 1;
+    constexpr double largest = 600;  // logarithm whose exp is finite
     return std::exp(std::clamp(kappa_ * depth(x) - onset_, 0.0, largest));
   }
 
-  /// The factor of mu_t with which the weight after a flight, times the importance there, depends
-  /// on the direction alone (Dwivedi 1982).
-  double stretch(Vec2 w, double mu_t) const { return std::max(0.0, 1 - kappa_ / mu_t * cosine(w)); }
+  /// Returns the factor by which the exponential transform (Dwivedi [dwivedi1982]) multiplies mu_t.
+  /// With this factor, the product of weight and importance after a flight depends only on the
+  /// direction of the flight.
+  double mu_t_factor(Vec2 w, double mu_t) const {
+    return std::max(0.0, 1 - kappa_ / mu_t * cosine(w));
+  }
 
  private:
   bool is_slab_;
@@ -86,9 +91,10 @@ class LightEntry {
   double kappa_ = 0, onset_, start_;
 };
 
-/// Walks light through a medium from its first collision on and counts where it ends. The ballistic
-/// part is left to a closed form. Escapes are counted where they happen: scoring the chance of
-/// escape at every collision, or forcing collisions, cost more than it gained.
+/// Samples walks of light through a medium from the first collision on, and tallies where they end.
+/// The ballistic part has a closed form. Escapes are tallied when they happen: measurements showed
+/// that scoring the escape probability at every collision, or forcing collisions, costs more than
+/// it gains.
 template <typename Scattering>
 class FluxWalk {
  public:
@@ -105,26 +111,28 @@ class FluxWalk {
         tally_(scene.domain, sums),
         sums_(sums) {}
 
-  /// u: uniform in (0, 1), picks the depth of the first collision.
+  /// Samples one walk. u: number in (0, 1), uniformly distributed, that selects the depth of the
+  /// first collision.
   void walk(double u) {
     const Vec2 start = entry_.sample(random_), w = entry_.light();
     const double chord = domain_.distance_to_edge(start, w);
     const grin::BoundedFlight plain{mu_t_, chord};
-    const grin::BoundedFlight stretched{mu_t_ * entry_.stretch(w, mu_t_), chord};
-    const double flight = u < stretched_share ? stretched.sample(u / stretched_share)
-                                              : plain.sample((u - stretched_share) / plain_share);
+    const grin::BoundedFlight biased{mu_t_ * entry_.mu_t_factor(w, mu_t_), chord};
+    const double flight = u < biased_fraction
+                              ? biased.sample(u / biased_fraction)
+                              : plain.sample((u - biased_fraction) / plain_fraction);
     const double density = plain.density(flight);
-    const double mixture = plain_share * density + stretched_share * stretched.density(flight);
+    const double mixture = plain_fraction * density + biased_fraction * biased.density(flight);
     power_ = -std::expm1(-mu_t_ * chord);
     const Particle first{start + flight * w, w, density / mixture};
-    drift_ = -first.weight * outlook(first);
+    martingale_ = -first.weight * expected_depth(first);
     collide(first);
     while (!flying_.empty()) {
       Particle particle = flying_.back();
       flying_.pop_back();
       if (fly(particle)) collide(particle);
     }
-    if (domain_.kind == Domain::Kind::slab && !entry_.favours_deep()) balance();
+    if (domain_.kind == Domain::Kind::slab && !entry_.has_importance()) apply_control_variate();
   }
 
  private:
@@ -133,14 +141,15 @@ class FluxWalk {
     double weight;
   };
 
-  /// Flights are plain or stretched, half and half: weights at most double, and flights that reach
-  /// deep are not left to chance.
-  static constexpr double plain_share = 0.5, stretched_share = 1 - plain_share;
+  /// Half of the flights are unbiased (plain) and half are biased. A flight therefore at most
+  /// doubles the weight, and deep flights are frequent.
+  static constexpr double plain_fraction = 0.5, biased_fraction = 1 - plain_fraction;
 
-  /// Absorption by weight; roulette and splitting keep the weight near 1 / importance.
+  /// Absorbs a fraction of the weight. Russian roulette and splitting keep the weight near 1 /
+  /// importance.
   void collide(Particle particle) {
     tally_.absorb(power_ * particle.weight * (1 - albedo_));
-    drift_ += particle.weight * outlook(particle);
+    martingale_ += particle.weight * expected_depth(particle);
     particle.weight *= albedo_;
     const double expected = particle.weight * entry_.importance(particle.x);
     int copies = 1;
@@ -152,26 +161,27 @@ class FluxWalk {
       copies = static_cast<int>(std::min(expected, most_copies));
       particle.weight /= copies;
     }
-    drift_ -= copies * particle.weight * outlook(particle);
+    martingale_ -= copies * particle.weight * expected_depth(particle);
     for (int i = 0; i < copies; ++i)
       flying_.push_back({particle.x, scattering_.sample(particle.w, random_), particle.weight});
   }
 
-  /// To the next collision; false if that would be outside.
+  /// Moves a particle to its next collision; returns false if the particle leaves the medium
+  /// before.
   bool fly(Particle& particle) {
-    constexpr std::uint64_t between_looks = 4096;
-    if (++flights_ % between_looks == 0) stop_if_interrupted();
-    const double stretch = entry_.stretch(particle.w, mu_t_);
+    constexpr std::uint64_t between_checks = 4096;
+    if (++flights_ % between_checks == 0) stop_if_interrupted();
+    const double factor = entry_.mu_t_factor(particle.w, mu_t_);
     const double edge = domain_.distance_to_edge(particle.x, particle.w);
     const double u = random_.uniform();
-    const double flight = u < stretched_share
-                              ? -std::log(u / stretched_share) / (mu_t_ * stretch)
-                              : -std::log((u - stretched_share) / plain_share) / mu_t_;
+    const double flight = u < biased_fraction
+                              ? -std::log(u / biased_fraction) / (mu_t_ * factor)
+                              : -std::log((u - biased_fraction) / plain_fraction) / mu_t_;
     const bool inside = flight < edge;
     const double distance = inside ? flight : edge;
-    if (stretch != 1)
-      particle.weight /= plain_share + stretched_share * (inside ? stretch : 1) *
-                                           std::exp(mu_t_ * (1 - stretch) * distance);
+    if (factor != 1)
+      particle.weight /= plain_fraction + biased_fraction * (inside ? factor : 1) *
+                                              std::exp(mu_t_ * (1 - factor) * distance);
     particle.x = particle.x + distance * particle.w;
     if (!inside) leave(particle);
     return inside;
@@ -179,23 +189,25 @@ class FluxWalk {
 
   void leave(const Particle& particle) {
     tally_.leave(particle.x, particle.w, power_ * particle.weight);
-    drift_ += particle.weight * (entry_.depth(particle.x) + reach_ * entry_.cosine(particle.w));
+    martingale_ +=
+        particle.weight * (entry_.depth(particle.x) + reach_ * entry_.cosine(particle.w));
   }
 
-  /// How deep what arrives in a collision would get in the end, in a medium without edges and
-  /// absorption. Its mean at the next collision is its value at this one, for any past: weight
-  /// times its steps, summed over a walk (drift_), has mean 0. Beyond an edge the mean is all that
-  /// is asked for, so light that leaves ends at edge + reach cos.
-  double outlook(const Particle& arriving) const {
+  /// Returns the expected final depth of light that arrives at a collision, in a medium without
+  /// edges and absorption. It is a martingale: whatever the previous path, its mean at the next
+  /// collision equals its value at this collision. The sum over a walk of weight times the changes
+  /// of this depth (martingale_) therefore has mean 0. For light that leaves the medium, the value
+  /// at the next collision is replaced by its mean, the depth of the exit point + reach_ cos.
+  double expected_depth(const Particle& arriving) const {
     return entry_.depth(arriving.x) + g_ * reach_ * entry_.cosine(arriving.w);
   }
 
-  /// The drift as a control variate: light that left through the far face has drifted by about the
-  /// depth, light that came back by about nothing. In a lossless slab of optical depth 100 this is
-  /// worth 3000 times as many walks.
-  void balance() {
-    constexpr double extrapolation = 0.818;  // C20, of both faces
-    const double share = power_ * drift_ / (domain_.depth + 2 * extrapolation * reach_);
+  /// Applies the martingale as a control variate: martingale_ is close to the depth of the slab for
+  /// light that left through the far face, and close to 0 for light that returned. In a lossless
+  /// slab of optical depth 100 this reduces the variance as much as 3000 times as many walks would.
+  void apply_control_variate() {
+    constexpr double extrapolation = 0.818;  // in units of reach_ (C20), at each face
+    const double share = power_ * martingale_ / (domain_.depth + 2 * extrapolation * reach_);
     sums_[transmitted] -= share;
     sums_[reflected] += share;
   }
@@ -208,8 +220,8 @@ class FluxWalk {
   RandomStream& random_;
   FluxTally tally_;
   std::span<Complex> sums_;
-  double power_ = 0;  ///< share of the light along this ray that collides
-  double drift_ = 0;
+  double power_ = 0;  ///< fraction of the light on the incident ray that collides
+  double martingale_ = 0;
   std::vector<Particle> flying_;
   std::uint64_t flights_ = 0;
 };

@@ -7,13 +7,14 @@
 
 #include "core/run/runner.h"
 #include "mc/jobs/flux_job.h"
-#include "mc/paths/estimators/path_ends.h"
+#include "mc/paths/estimators/path_endpoints.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
-/// Around the medium; turned in each batch, so that no peak lies between them in the mean.
+/// Number of views around the medium. They are rotated from batch to batch, so that on average no
+/// peak of the scattered light is missed between them.
 constexpr int view_count = 64;
 constexpr double view_step = 2 * std::numbers::pi / view_count;
 
@@ -30,17 +31,19 @@ struct ScattererCount {
   void scattering(Vec2, const SpaceDirection&, const SpaceDirection&) { ++inner; }
 };
 
-/// Across the light, what of it meets the medium.
-double met_power(const Scene& scene) {
+/// Returns the width of the medium perpendicular to the light.
+double cross_section(const Scene& scene) {
   const LightAperture aperture(scene.domain, direction(scene.request.lights.front().angle));
   return aperture.face() + aperture.side();
 }
 
 enum PowerSum : std::size_t { by_first, by_second, by_later, power_sums };
 
-/// Adds the power of paths at their last scatterers, over what the ray to the first one loses in
-/// the medium: the same for all first scatterers. |A|^2 is a density over directions: all that
-/// arrives there and is not absorbed is the light's factor times the weight.
+/// Adds the power of paths at their last scatterers, divided by the power that the incident ray
+/// through the first scatterer loses in the medium. For paths of one scatterer this quotient is the
+/// same wherever the scatterer lies. Because |A|^2 is a density over directions, the power that
+/// arrives at a scatterer and is not absorbed is the squared endpoint factor of the light times the
+/// weight.
 class PowerScorer : public TallyScorer<ScattererCount> {
  public:
   PowerScorer(const PathWalks& walks, const Scene& turned, std::span<Complex> sums)
@@ -48,24 +51,26 @@ class PowerScorer : public TallyScorer<ScattererCount> {
         walks_(walks),
         scene_(walks.scene()),
         extinction_(scene_),
-        ends_(walks, turned, false, [](std::size_t ends) { return std::vector<Complex>(ends); }),
+        endpoints_(walks, turned, false,
+                   [](std::size_t endpoints) { return std::vector<Complex>(endpoints); }),
         light_(direction(scene_.request.lights.front().angle)),
-        met_(met_power(scene_)),
+        cross_section_(cross_section(scene_)),
         sums_(sums) {}
 
   void single(Vec2 x, double weight) override {
-    ends_.lights().attenuate(x, ends_.light_last);
-    sums_[by_first] += weight * share_of(ends_.light_last.front(), x) / albedo(x);
+    endpoints_.lights().attenuate(x, endpoints_.light_last);
+    sums_[by_first] += weight * share_of(endpoints_.light_last.front(), x) / albedo(x);
   }
 
   void multiple(const Path& path) override {
-    ends_.find(path, [this](EndFactors& ends, Vec2 x, const SpaceDirection& arrival, auto& out) {
-      ends.attenuate(x, out);
-      walks_.towards(x, arrival, ends.directions(), out);
-    });
-    const double scattered = path.weight * share_of(ends_.light_first.front(), path.first),
+    endpoints_.find(
+        path, [this](EndpointFactors& endpoints, Vec2 x, const SpaceDirection& arrival, auto& out) {
+          endpoints.attenuate(x, out);
+          walks_.towards(x, arrival, endpoints.directions(), out);
+        });
+    const double scattered = path.weight * share_of(endpoints_.light_first.front(), path.first),
                  received = scattered / albedo(path.last),
-                 leaves = share_that_leaves(ends_.view_last);
+                 leaves = escaping_fraction(endpoints_.view_last);
     if (tally().inner == 0)
       sums_[by_second] += received / albedo(path.first) / stays_inside(path.first, path.start);
     else
@@ -76,9 +81,9 @@ class PowerScorer : public TallyScorer<ScattererCount> {
  private:
   double share_of(Complex factor, Vec2 first) const {
     const double back = scene_.domain.distance_to_edge(first, -light_);
-    return std::norm(factor) / (met_ * stays_inside(first - back * light_, light_));
+    return std::norm(factor) / (cross_section_ * stays_inside(first - back * light_, light_));
   }
-  static double share_that_leaves(const std::vector<Complex>& views) {
+  static double escaping_fraction(const std::vector<Complex>& views) {
     double sum = 0;
     for (const Complex view : views) sum += std::norm(view);
     return view_step * sum;
@@ -93,14 +98,15 @@ class PowerScorer : public TallyScorer<ScattererCount> {
   const PathWalks& walks_;
   const Scene& scene_;
   const Extinction extinction_;
-  PathEnds<std::vector<Complex>> ends_;
+  PathEndpoints<std::vector<Complex>> endpoints_;
   Vec2 light_;
-  double met_;
+  double cross_section_;
   std::span<Complex> sums_;
 };
 
 BatchJob power_job(const std::shared_ptr<const PathWalks>& walks) {
-  constexpr std::uint64_t apart = std::uint64_t{1} << 61;  // from batches of other uses of a seed
+  // First batch number, so large that no other use of a seed has the same batch numbers
+  constexpr std::uint64_t apart = std::uint64_t{1} << 61;
   BatchJob job;
   job.size = power_sums;
   job.samples_per_batch = static_cast<double>(walks->plan().paths_per_batch);
@@ -114,7 +120,8 @@ BatchJob power_job(const std::shared_ptr<const PathWalks>& walks) {
   return job;
 }
 
-/// A material that absorbs all: no path has its last scatterer there.
+/// Whether a material absorbs without scattering. No path has a scatterer in it, so the power that
+/// it absorbs would be missing.
 bool has_absorber(const Scene& scene) {
   return scene.profile && std::ranges::any_of(scene.profile->materials(), [](const Material& one) {
            return one.medium.mu_t > 0 && one.medium.mu_s == 0;

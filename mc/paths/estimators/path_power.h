@@ -8,22 +8,30 @@
 
 namespace flatspeckle::mc {
 
-/// Whether the paths of a scene carry the power that a plane wave loses, over that power: along
-/// each of its rays, which leaves little variance. Limits are 1e-3 and five standard errors.
+/// Result of a check that the paths of a scene carry the power that a plane wave loses in the
+/// medium. The power of a path is divided by the power that the medium takes from the incident ray
+/// on which the path begins; the quotient has little variance. The members are deviations from
+/// expected values, with limits of 1e-3 plus five standard errors.
 struct PathPower {
-  Invariant first;   ///< what first scatterers receive of what a ray loses, by paths of one
-  Invariant second;  ///< the same by paths of two, over the probability of their flights
-  /// In the plane: what later scatterers receive, less what neither leaves the medium from those
-  /// before nor is absorbed there. Sampling adds about 0.5 / sqrt(paths) to it.
+  /// Paths of one scatterer: power that reaches the scatterer, divided by the power that the
+  /// incident ray through it loses in the medium. Expected value: 1.
+  Invariant first;
+  /// Paths of two scatterers: the same ratio for the second scatterer, divided by the probability
+  /// that the flight from the first scatterer ends in the medium. Expected value: 1.
+  Invariant second;
+  /// Power that reaches the third and later scatterers, minus the power that the second and later
+  /// scatterers scatter and that does not leave the medium. Expected value: 0. Computed only in 2D.
+  /// The sampling error is about 0.5 / sqrt(paths).
   Invariant later;
 };
 
-/// Walks from the first plane wave of a scene, as covariances and fields are made of, with views
-/// all around. Null where there is no plane wave, nothing scatters, a material absorbs all, or rays
-/// bend.
+/// Makes walks, like those for covariances and fields, from the first plane wave of a scene, with
+/// views in all directions. Returns null if there is no plane wave, nothing scatters, a material
+/// only absorbs, or rays are curved.
 std::shared_ptr<const PathWalks> power_walks(const Scene& scene, std::uint64_t seed);
 
-/// By so many paths of these walks; 20000 determine `first` and `second` to about a thousandth.
+/// Samples at least the given number of paths and checks them. With 20000 paths the errors of
+/// `first` and `second` are about 1e-3.
 PathPower path_power(const std::shared_ptr<const PathWalks>& walks, std::uint64_t paths);
 
 }  // namespace flatspeckle::mc

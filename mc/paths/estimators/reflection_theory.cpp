@@ -32,15 +32,17 @@ class ReflectedLight {
     });
   }
 
-  /// Covariance of the fields of two, up to what they share; q: of their lights and views.
+  /// Returns the covariance of the fields of two reflections, up to a factor that is common to all
+  /// pairs. q: transverse wavenumber of the tilt between them.
   Complex covariance(const Reflection& a, const Reflection& b, double q) const {
-    // half the sum of 1/cos: amplitudes decay half as fast as power
+    // Half the sum of 1/cos, because amplitudes decay half as fast as power.
     const double in = (1 / a.light.z + 1 / b.light.z) / 2, out = -(1 / a.view.z + 1 / b.view.z) / 2;
     return once(a, b, in + out) + diffuse(in, out, q);
   }
 
  private:
-  /// mu_s A A'* int exp(-z (mu_t slant - i phase)) dz.
+  /// Returns the covariance of light scattered once: mu_s A A'* int exp(-z (mu_t slant - i phase))
+  /// dz.
   Complex once(const Reflection& a, const Reflection& b, double slant) const {
     const double phase = k_ * (a.light.z - a.view.z - b.light.z + b.view.z);
     const Complex decay(medium_.mu_t * slant, -phase);
@@ -48,27 +50,32 @@ class ReflectedLight {
            (1.0 - std::exp(-decay * depth_)) / decay;
   }
 
-  /// Sources of mu_s (1 - g), the Green function of diffusion, and as much sent out over 2 pi.
+  /// Returns the covariance of diffuse light: the integral of the product of the source strength
+  /// mu_s (1 - g), the Green function of diffusion, and the emission strength mu_s (1 - g) / (2
+  /// pi).
   double diffuse(double in, double out, double q) const {
     const double length = medium_.transport_mean_free_path(),
                  reduced = medium_.mu_s * (1 - medium_.g),
                  deepest = std::min(depth_, 40 * length / std::max(in + out, 2.0));
     const QuadratureRule outer = gauss_legendre(40), inner = gauss_legendre(24);
-    double integral = 0;  // the deeper end first, either of the two
+    // The outer integral is over the depth of the deeper one of the first and last scatterers, the
+    // inner integral over the depth of the other one.
+    double integral = 0;
     for (std::size_t i = 0; i < outer.node.size(); ++i) {
       const double far = deepest * outer.node[i] * outer.node[i],
                    step = 2 * deepest * outer.node[i] * outer.weight[i];
       for (std::size_t j = 0; j < inner.node.size(); ++j) {
         const double near = far * inner.node[j];
-        const double ends = std::exp(-(in * near + out * far) / length) +
-                            std::exp(-(out * near + in * far) / length);
-        integral += step * far * inner.weight[j] * ends * green(near, far, q);
+        const double attenuation = std::exp(-(in * near + out * far) / length) +
+                                   std::exp(-(out * near + in * far) / length);
+        integral += step * far * inner.weight[j] * attenuation * green(near, far, q);
       }
     }
     return reduced * reduced * integral / (length * std::numbers::pi);
   }
 
-  /// Of u'' = Q^2 u, 0 beyond the faces by the extrapolation length; near <= far.
+  /// Returns the Green function of u'' = Q^2 u that is 0 at the extrapolation length outside each
+  /// face, for the depths near <= far.
   double green(double near, double far, double q) const {
     const double beyond = extrapolation_length(medium_),
                  length = medium_.transport_mean_free_path(), mu_a = medium_.mu_t - medium_.mu_s;
@@ -88,7 +95,7 @@ Reflection reflection(const CovarianceRequest& request, std::uint32_t channel) {
   return {direction(request.lights[c.light].angle), direction(request.views[c.view].angle)};
 }
 
-/// Tilts with matched views of plane waves on a slab in the plane.
+/// Whether a request has tilts with matched views, for plane waves on a homogeneous 2D slab.
 bool is_matched(const Scene& scene) {
   return scene.request.kind == CovarianceRequest::Kind::memory_effect &&
          scene.domain.kind == Domain::Kind::slab && !scene.profile && scene.medium.dimension == 2;
@@ -118,7 +125,7 @@ std::vector<double> reflected_correlation_theory(const Scene& scene) {
 const DatasetTable reflection_theory_table{
     "reflection theory",
     {{"reflection_theory", Data::real, "tilt", "1",
-      "C_E of the reflected, matched views: light scattered once and diffuse light"}}};
+      "theoretical C_E of the reflected, matched views: light scattered once and diffuse light"}}};
 
 void write_reflection_theory(ResultFile& file, const Scene& scene) {
   const auto theory = reflected_correlation_theory(scene);

@@ -11,13 +11,13 @@
 
 namespace flatspeckle::mc {
 
-/// A plane wave seen in a far view, at a wavenumber; unit vectors.
+/// A plane wave along `light`, detected in the far view along `view`, at the wavenumber k.
 struct FarField {
   double k = 0;
   Vec2 light, view;
 
   FarField() = default;
-  /// Of a channel of the scene.
+  /// Makes the field of a channel of the scene.
   FarField(const Scene& scene, std::size_t channel) : k(scene.k) {
     const Channel c = scene.request.channels[channel];
     light = direction(scene.request.lights[c.light].angle);
@@ -25,12 +25,13 @@ struct FarField {
   }
 };
 
-/// The part B = 1 of the covariance of two fields (conventions, C14).
+/// Returns the contribution of paths of one scatterer to the covariance of two fields (B = 1 in
+/// conventions, C14).
 inline Complex single_scattering(const Scene& scene, const PathWalks& walks, const FarField& a,
                                  const FarField& b) {
   const Complex amplitudes = product_with_conjugate(walks.amplitude({}, a.light, a.view),
                                                     walks.amplitude({}, b.light, b.view));
-  // Exactly 0 of equal fields.
+  // This form makes kappa exactly 0 if both fields are equal.
   const Vec2 kappa =
       a.k * ((a.light - b.light) - (a.view - b.view)) + (a.k - b.k) * (b.light - b.view);
   return scene.medium.mu_s * amplitudes *
@@ -38,15 +39,16 @@ inline Complex single_scattering(const Scene& scene, const PathWalks& walks, con
                                   {-a.light, a.view, -b.light, b.view});
 }
 
-/// Calls f with the number of each entry, in parallel where there are many: of some ten
-/// microseconds to a millisecond each.
+/// Calls f with the number of each entry, in parallel if there are many entries. One call is
+/// assumed to take from ten microseconds to a millisecond.
 template <typename F>
 void for_entries(std::size_t entries, F f) {
   constexpr std::size_t many = 100;
   parallel_for(entries, entries > many, f);
 }
 
-/// The same per entry of the request: far lights and views only. What no path has to sample.
+/// Returns the contribution of paths of one scatterer to each entry of the request, so that walks
+/// need not sample these paths. All lights and views must be far.
 inline std::vector<Complex> single_scattering(const Scene& scene, const PathWalks& walks) {
   const auto& request = scene.request;
   std::vector<Complex> entries(request.entries.size());

@@ -9,24 +9,24 @@
 #include "flatland/scene/scene.h"
 #include "mc/jobs/bulk_parameter.h"
 #include "mc/paths/estimators/covariance_estimator.h"
-#include "mc/paths/estimators/slope_sums.h"
+#include "mc/paths/estimators/derivative_sums.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
-/// More than these have no derivatives.
+/// Largest number of layers of a medium with derivatives.
 constexpr std::size_t most_layers_with_derivatives = 8;
 
 /// A number for each layer.
 using PerLayer = std::array<double, most_layers_with_derivatives>;
 
-/// What the logarithm of a path's integrand depends on, layer by layer: prod mu_s over its
-/// scatterers, exp(-mu_t length) of its flights, and its phase functions.
+/// Tally of what determines the integrand of a path in each layer: the number of scatterers (each a
+/// factor mu_s), the length of the flights (a factor exp(-mu_t length)), and the phase functions.
 struct LayerTally {
   const Layers* layers = nullptr;
   PerLayer scatterers{}, length{};
-  PerLayer phase_slope{};  ///< sum of d log p / d g over the inner scatterers
+  PerLayer phase_derivative{};  ///< sum of d log p / d g over the inner scatterers
 
   void flight(Vec2 x, const SpaceDirection& to, double r) {
     const Vec2 w = to;
@@ -35,8 +35,8 @@ struct LayerTally {
   }
   void scattering(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) {
     const std::size_t layer = layers->material_at(x);
-    phase_slope[layer] +=
-        henyey_greenstein_slope(layers->materials()[layer].medium.g, one_minus_cosine(from, to));
+    phase_derivative[layer] += henyey_greenstein_derivative(layers->materials()[layer].medium.g,
+                                                            one_minus_cosine(from, to));
   }
 };
 
@@ -45,73 +45,78 @@ struct LayerParameter {
   BulkParameter parameter;
 };
 
-/// A e of every end and its logarithmic derivatives, [end][parameter].
-struct LayerEnds {
+/// The product A e of C14 (amplitude and endpoint factor) for every endpoint, and the logarithmic
+/// derivatives of this product, [endpoint][parameter].
+struct LayerEndpoints {
   std::vector<Complex> value;
-  std::vector<double> slope;
+  std::vector<double> log_derivatives;
 };
 
-/// As GradientTerms, of layers seen from far.
-class LayerTerms : public SlopeSums {
+/// The class Terms of DerivativeScorer for layered media and far endpoints.
+class LayerTerms : public DerivativeSums {
  public:
   using Tally = LayerTally;
-  using Ends = LayerEnds;
+  using Endpoints = LayerEndpoints;
 
   LayerTerms(const PathWalks& walks, const Layers& layers,
              std::span<const LayerParameter> parameters, std::span<Complex> sums)
-      : SlopeSums(walks.scene().request.channels.size(), walks.scene().request.entries,
-                  parameters.size(), sums),
+      : DerivativeSums(walks.scene().request.channels.size(), walks.scene().request.entries,
+                       parameters.size(), sums),
         domain_(walks.scene().domain),
         layers_(layers),
         parameters_(parameters),
-        path_slopes_(parameters.size()) {}
+        path_derivatives_(parameters.size()) {}
 
-  LayerEnds ends(std::size_t count) const {
+  LayerEndpoints endpoints(std::size_t count) const {
     return {std::vector<Complex>(count), std::vector<double>(count * parameters_.size())};
   }
 
-  void attenuate(EndFactors& ends, Vec2 x, LayerEnds& out) const {
-    ends.attenuate(x, out.value);
-    for (std::size_t j = 0; j < ends.size(); ++j) {
-      const Vec2 w = ends.direction(j);
+  void attenuate(EndpointFactors& endpoints, Vec2 x, LayerEndpoints& out) const {
+    endpoints.attenuate(x, out.value);
+    for (std::size_t j = 0; j < endpoints.size(); ++j) {
+      const Vec2 w = endpoints.direction(j);
       PerLayer length{};
       layers_.each_part(x, w, domain_.distance_to_edge(x, w),
                         [&](std::size_t layer, double part) { length[layer] += part; });
       for (std::size_t p = 0; p < parameters_.size(); ++p) {
         const auto [layer, parameter] = parameters_[p];
-        out.slope[j * parameters_.size() + p] =
+        out.log_derivatives[j * parameters_.size() + p] =
             parameter == BulkParameter::mu_t ? -length[layer] / 2 : 0;
       }
     }
   }
 
-  /// By g.
-  void turn(const EndFactors& ends, Vec2 x, const SpaceDirection& arrival, LayerEnds& out) const {
+  /// Adds the derivatives with respect to g of scattering at x towards the endpoints.
+  void turn(const EndpointFactors& endpoints, Vec2 x, const SpaceDirection& arrival,
+            LayerEndpoints& out) const {
     const std::size_t here = layers_.material_at(x);
     for (std::size_t p = 0; p < parameters_.size(); ++p) {
       const auto [layer, parameter] = parameters_[p];
       if (layer != here || parameter != BulkParameter::g) continue;
-      for (std::size_t j = 0; j < ends.size(); ++j)
-        out.slope[j * parameters_.size() + p] +=
-            henyey_greenstein_slope(layers_.materials()[layer].medium.g,
-                                    one_minus_cosine(arrival, SpaceDirection(ends.direction(j)))) /
+      for (std::size_t j = 0; j < endpoints.size(); ++j)
+        out.log_derivatives[j * parameters_.size() + p] +=
+            henyey_greenstein_derivative(
+                layers_.materials()[layer].medium.g,
+                one_minus_cosine(arrival, SpaceDirection(endpoints.direction(j)))) /
             2;
     }
   }
 
-  /// Half of what a path with its first scatterer has, as of each of two fields.
+  /// Returns half of the logarithmic derivatives of a path, including its first scatterer: each of
+  /// the two fields of a covariance entry contributes one half.
   const std::vector<double>& inner(const LayerTally& tally, Vec2 first) {
     for (std::size_t p = 0; p < parameters_.size(); ++p) {
       const auto [layer, parameter] = parameters_[p];
       const BulkMedium& medium = layers_.materials()[layer].medium;
       const double scatterers =
           tally.scatterers[layer] + (layer == layers_.material_at(first) ? 1 : 0);
-      double slope = tally.phase_slope[layer];
-      if (parameter == BulkParameter::mu_t) slope = scatterers / medium.mu_t - tally.length[layer];
-      if (parameter == BulkParameter::albedo) slope = scatterers / medium.albedo;
-      path_slopes_[p] = slope / 2;
+      double log_derivative = tally.phase_derivative[layer];
+      if (parameter == BulkParameter::mu_t)
+        log_derivative = scatterers / medium.mu_t - tally.length[layer];
+      if (parameter == BulkParameter::albedo) log_derivative = scatterers / medium.albedo;
+      path_derivatives_[p] = log_derivative / 2;
     }
-    return path_slopes_;
+    return path_derivatives_;
   }
   const std::vector<double>& one(Vec2 x, Vec2 from, Vec2 to) {
     LayerTally tally{&layers_};
@@ -120,17 +125,19 @@ class LayerTerms : public SlopeSums {
   }
 
   void add_term(std::size_t c, Complex term, const std::vector<double>& inner,
-                const LayerEnds& lights, std::size_t i, const LayerEnds& views, std::size_t v) {
+                const LayerEndpoints& lights, std::size_t i, const LayerEndpoints& views,
+                std::size_t v) {
     const std::size_t count = parameters_.size();
-    const double *light = &lights.slope[i * count], *view = &views.slope[v * count];
-    SlopeSums::add_term(c, term, [&](std::size_t p) { return inner[p] + light[p] + view[p]; });
+    const double *light = &lights.log_derivatives[i * count],
+                 *view = &views.log_derivatives[v * count];
+    DerivativeSums::add_term(c, term, [&](std::size_t p) { return inner[p] + light[p] + view[p]; });
   }
 
  private:
   Domain domain_;
   const Layers& layers_;
   std::span<const LayerParameter> parameters_;
-  std::vector<double> path_slopes_;
+  std::vector<double> path_derivatives_;
 };
 
 using Values = std::vector<Complex>;
@@ -152,10 +159,10 @@ std::vector<LayerParameter> layer_parameters(const Scene& scene) {
 void check_layer_gradient(const Scene& scene) {
   if (layers_of(scene) == nullptr) throw InputError("gradient: density maps have no derivatives");
   if (scene.profile->materials().size() > most_layers_with_derivatives)
-    throw InputError("gradient: is of at most " + std::to_string(most_layers_with_derivatives) +
+    throw InputError("gradient: requires at most " + std::to_string(most_layers_with_derivatives) +
                      " layers");
-  if (has_near_ends(scene.request))
-    throw InputError("gradient: layers need plane waves and far views");
+  if (has_near_endpoints(scene.request))
+    throw InputError("gradient: layers require plane waves and far views");
   for (const Material& material : scene.profile->materials())
     if (material.medium.albedo == 0)
       throw InputError("gradient: a layer that does not scatter has no derivatives");
@@ -167,7 +174,7 @@ GradientJob layer_gradient_job(const Scene& scene, const Plan& plan, std::uint64
   const ScoredPaths paths{
       1 + parameters.size(), [parameters](const PathWalks& walks, std::span<Complex> sums) {
         const Layers& layers = *layers_of(walks.scene());
-        return std::make_unique<SlopeScorer<LayerTerms>>(
+        return std::make_unique<DerivativeScorer<LayerTerms>>(
             walks, LayerTally{&layers}, LayerTerms(walks, layers, parameters, sums));
       }};
   GradientJob job{path_job(paths, scene, plan, seed), {}, {}};

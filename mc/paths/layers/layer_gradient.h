@@ -4,12 +4,13 @@
 
 namespace flatspeckle::mc {
 
-/// Throws InputError for what no derivatives by layers are of: another medium, too many layers, near
-/// ends.
+/// Throws InputError for scenes for which layer_gradient_job() is not implemented: media that are
+/// not layered, more than eight layers, layers that do not scatter, or near endpoints.
 void check_layer_gradient(const Scene& scene);
 
-/// As gradient_job(), of a medium of layers: by mu_t, g and albedo of each where these describe the
-/// scatterers as a bulk, "mu_t of layer 1" the first.
+/// Makes a job like gradient_job() for a layered medium. The parameters are mu_t, g and albedo of
+/// each layer, if they are among the bulk_parameters() of the scene. The first parameter is named
+/// "mu_t of layer 1".
 GradientJob layer_gradient_job(const Scene& scene, const Plan& plan, std::uint64_t seed);
 
 }  // namespace flatspeckle::mc

@@ -15,15 +15,19 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// Siegert's relation is asked of covariances of so many views at the most, and of so many paths:
-/// their noise adds its square, about 1e-3, to the curve.
+/// Limits for Siegert's relation: the largest number of views, and the number of paths from which
+/// the covariance is estimated. The squared relative error of that covariance, about 1e-3, biases
+/// the autocorrelation.
 constexpr std::size_t most_siegert_views = 512;
 constexpr std::uint64_t siegert_paths = 20000;
 
-/// Few and long: the runs have a fixed length, and a batch costs a pass over the covariance.
+/// Number of batches of a run for the covariance, and largest number of paths in a batch. Batches
+/// are few and long, because the runs have a fixed length and every batch costs a pass over the
+/// covariance.
 constexpr std::uint64_t covariance_batches = 128, most_per_batch = 100000;
 
-/// One run after the other, and what they cost.
+/// Performs the runs of draw_fields() (survey, covariance, fields) one after another, and adds up
+/// their times.
 class FieldDrawing {
  public:
   FieldDrawing(const Scene& scene, const DrawingSettings& settings)
@@ -58,7 +62,8 @@ class FieldDrawing {
     return equal_step(scene_.request.views) && scene_.request.views.size() <= most_siegert_views;
   }
 
-  /// Of all views under these lights, the first of which is the scene's first.
+  /// Estimates the covariance of all views under `lights`. The first one must be the first light of
+  /// the scene.
   std::pair<FieldJob, RunState> covariance(const Lights& lights, std::uint64_t paths) {
     Scene scene = scene_;
     scene.request = full_request(lights, scene_.request.views);
@@ -84,7 +89,8 @@ class FieldDrawing {
     return fields_from_covariance(CovarianceFactor(channels, lower), settings_.seed);
   }
 
-  /// A batch is a field; its sums are the intensities that it was drawn with.
+  /// Makes a job in which every batch draws a field. The sums are the intensities with which the
+  /// fields are drawn (FieldDraw).
   BatchJob field_job(const FieldDraw& draw, std::uint64_t fields) {
     const std::size_t channels = scene_.request.channels.size();
     drawn_.field.resize(fields * channels);
@@ -114,7 +120,7 @@ DrawnFields draw_fields(const Scene& scene, const FieldDemand& demand,
 
 const DatasetTable field_table{
     .name = "field",
-    .rows = {{"realization", Data::numbers, "", "1", "number of the field"},
+    .rows = {{"realization", Data::numbers, "", "1", "index of the field"},
              {"tilt", Data::real, "light_angle", "rad", "rotation of the light"},
              {"tilt_q", Data::real, "light_angle", "1/length", "transverse wavenumber of the tilt"},
              {"field", Data::complex, "realization light_angle VIEW", "FIELD",
@@ -127,9 +133,9 @@ const DatasetTable field_table{
              {"circularity", Data::complex_estimate, "", "1", "<u u> / <I> over all channels"},
              {"intensity_bin", Data::scale, "", "1",
               "lower edge of a bin of intensity over its mean; the last bin is open"},
-             {"histogram", Data::estimate, "intensity_bin", "1", "values in the bin"},
+             {"histogram", Data::estimate, "intensity_bin", "1", "number of values in the bin"},
              {"histogram_expected", Data::real, "intensity_bin", "1",
-              "values in the bin by the exponential law"},
+              "number of values in the bin expected by the exponential law"},
              {"view_lag", Data::scale, "", "LAG",
               "difference of the sines of two views, or distance of two sensors"},
              {"intensity_autocorrelation", Data::estimate, "view_lag", "1",
@@ -138,15 +144,17 @@ const DatasetTable field_table{
               "full width of intensity_autocorrelation at half its maximum: the size of a speckle"},
              {"siegert", Data::estimate, "view_lag", "1",
               "|<u u'*>|^2 / (<I> <I'>) over the same views, from light paths"}},
-    .attributes = {{"field", "method", "text",
-                    "paths or covariance: what the fields were drawn from"},
-                   {"field", "paths_per_field", "uint64", "by paths"},
-                   {"field", "excess_kurtosis", "float64",
-                    "by paths: E|u|^4/(E|u|^2)^2 - 2 to expect"},
-                   {"field", "covariance_paths", "uint64", "from the covariance: paths in it"},
-                   {"field", "paths_cost", "float64", "complex multiply-adds by paths"},
-                   {"field", "covariance_cost", "float64",
-                    "the same from the covariance, where it fits into memory"}},
+    .attributes =
+        {{"field", "method", "text", "paths or covariance: what the fields were drawn from"},
+         {"field", "paths_per_field", "uint64", "light paths of each field, if drawn from paths"},
+         {"field", "excess_kurtosis", "float64",
+          "expected E|u|^4/(E|u|^2)^2 - 2, if drawn from paths"},
+         {"field", "covariance_paths", "uint64", "light paths of the covariance, if drawn from it"},
+         {"field", "paths_cost", "float64",
+          "cost of drawing all fields from paths, in complex multiply-adds"},
+         {"field", "covariance_cost", "float64",
+          "cost of drawing all fields from the covariance, in complex multiply-adds, if it fits "
+          "into memory"}},
     .roles = {{"LAG", {"1", "length"}}}};
 
 namespace {
@@ -171,7 +179,7 @@ void write_field_axes(ResultFile& file, const Scene& scene, const std::vector<do
   root.put("tilt_q", q);
 }
 
-/// In chunks of about a mebibyte.
+/// Writes the fields in chunks of about a mebibyte.
 void write_field(ResultFile& file, const Scene& scene, const DrawnFields& drawn) {
   const std::size_t lights = scene.request.lights.size(), views = scene.request.views.size(),
                     channels = lights * views, realizations = drawn.field.size() / channels;
@@ -202,8 +210,8 @@ void write_plan(const ResultGroup& root, const DrawingPlan& plan) {
     root.attribute("field", "covariance_cost", plan.covariance_cost);
 }
 
-/// Counts, in bins [intensity_bin, intensity_bin + 1/4) of |u|^2 / <|u|^2>; the last one is open.
-/// Their errors are at least that of one count.
+/// Writes the counts of |u|^2 / <|u|^2> in the bins [intensity_bin, intensity_bin + 1/4); the last
+/// bin has no upper edge. The errors are at least one count.
 void write_histogram(const ResultGroup& root, const FieldStatistics& statistics) {
   const double values = statistics.values();
   Estimate counts = statistics.histogram();

@@ -13,39 +13,45 @@
 
 namespace flatspeckle::mc {
 
-/// Fields that were drawn, [realization][light][view], and what they are to be compared with.
+/// Sampled speckle fields, [realization][light][view], and reference values for their statistics.
 struct DrawnFields {
   DrawingPlan plan;
   std::vector<Complex> field;
-  Estimate intensity;  ///< E|u|^2 per channel, from light paths: without the noise of speckle
-  Estimate siegert;    ///< what the autocorrelation should be, where it is formed
-  double wall_s = 0, cpu_s = 0;  ///< of all runs
+  /// E|u|^2 of the field u in each channel, estimated from light paths and so without the noise of
+  /// speckle
+  Estimate intensity;
+  /// Expected autocorrelation of the intensity (siegert_relation()); empty if it does not apply
+  Estimate siegert;
+  double wall_s = 0, cpu_s = 0;  ///< total times of all runs
 };
 
-/// How many lights' paths, on how many threads.
+/// Settings of the runs that draw fields.
 struct DrawingSettings {
   ReversedPaths reversed = ReversedPaths::automatic;
   std::uint64_t seed = 1;
   int threads = 1;
 };
 
-/// Surveys the scene's paths, chooses how to draw, tells `planned`, and draws. Throws Interrupted
-/// once a signal has come (catch_interrupts).
+/// Measures the statistics of the light paths of the scene in a pilot run (PathSurvey), selects a
+/// method, calls `planned` with the plan, and draws the fields. Throws Interrupted after a signal
+/// (catch_interrupts).
 DrawnFields draw_fields(const Scene& scene, const FieldDemand& demand,
                         const DrawingSettings& settings,
                         const std::function<void(const DrawingPlan&)>& planned);
 
 extern const DatasetTable field_table;
 
-/// Statistics of all fields (field_statistics.h). No autocorrelation where views are not equally
-/// spaced.
+/// Statistics of all fields (field_statistics.h). If views are not equally spaced,
+/// `autocorrelation` is empty and there is no grain width.
 struct FieldSummary {
   Estimate mean_contrast, circularity, autocorrelation;
-  std::optional<Estimate> grain_width;  ///< in sines, or lengths
+  /// Width of a speckle grain, as a difference of sines of angles (far views) or as a length (near
+  /// sensors)
+  std::optional<Estimate> grain_width;
 };
 
-/// Writes axes, fields and their statistics. tilts: rotations of the light that make the light
-/// axis, or none.
+/// Writes axes, fields and their statistics. tilts: rotation of each light, in the order of the
+/// axis light_angle, or empty.
 FieldSummary write_fields(ResultFile& file, const Scene& scene, const std::vector<double>& tilts,
                           const DrawnFields& drawn);
 

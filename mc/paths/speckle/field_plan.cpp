@@ -15,11 +15,13 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// Below every other use of a seed's light paths: batches that no field has as its number.
+/// Number of the first batch of the pilot run (the survey). It is larger than the number of any
+/// field, so that the pilot run shares no random numbers with other uses of the seed.
 constexpr std::uint64_t first_survey_batch = std::uint64_t{1} << 62;
 constexpr std::uint64_t survey_paths_per_batch = 64;
 
-/// Sums per channel of a batch: its intensity and the sum of the squares of its contributions'.
+/// Sums over the contributions of a batch, for each channel: of their intensities, and of their
+/// squared intensities.
 class SurveyAccumulator : public Accumulator {
  public:
   explicit SurveyAccumulator(std::size_t channels) : intensity_(channels), squares_(channels) {}
@@ -33,7 +35,9 @@ class SurveyAccumulator : public Accumulator {
     }
   }
 
-  /// [channel] intensity and its square (of the batch), [channel] squares; contributions.
+  /// Adds the batch to the sums. These are, for each channel, the intensity of the batch (real
+  /// part) and the square of this intensity (imaginary part); then, for each channel, the sum of
+  /// the squared intensities of the contributions; then the number of contributions.
   void finish(std::span<Complex> sums) const {
     const std::size_t n = intensity_.size();
     for (std::size_t c = 0; c < n; ++c) {
@@ -64,19 +68,22 @@ std::uint64_t rounded_up(double number, double least) {
   return static_cast<std::uint64_t>(std::ceil(std::max(number, least)));
 }
 
-/// About twenty copies of the sums are held while they are estimated, as full_request has it.
+/// Whether a full covariance fits into memory. Its estimation requires memory for about twenty
+/// copies of the lower triangle, as full_request() also assumes.
 bool covariance_fits(double channels) {
   return 10.0 * sizeof(Complex) * channels * channels < 0.8 * usable_memory();
 }
 
-/// In complex multiply-adds of a plain loop: of a path's step, that of walking it and of each end
-/// factor is about that of ten; zherk and Cholesky do theirs four times as fast, and products with
-/// a factor too large for the caches twice as fast (measured).
+/// Sets the costs, in units of one complex multiply-add in a plain loop (measured). A step of a
+/// path costs about ten units, and so does each endpoint factor. The operations of zherk and
+/// Cholesky are four times as fast as the loop. Products with a Cholesky factor, which is too large
+/// for the caches, are twice as fast as the loop.
 void set_costs(DrawingPlan& plan, const Scene& scene, double contributions, double fields) {
   constexpr double end_factor = 10, blas_speed = 4, product_speed = 2;
   const auto n = static_cast<double>(scene.request.channels.size());
-  const auto ends = static_cast<double>(scene.request.lights.size() + scene.request.views.size());
-  const double path = contributions * (end_factor * (1 + ends) + n);
+  const auto endpoints =
+      static_cast<double>(scene.request.lights.size() + scene.request.views.size());
+  const double path = contributions * (end_factor * (1 + endpoints) + n);
   plan.paths_cost = fields * static_cast<double>(plan.paths_per_field) * (path + contributions * n);
   plan.covariance_cost = static_cast<double>(plan.covariance_paths) *
                              (path + contributions * n * n / (2 * blas_speed)) +
@@ -122,7 +129,8 @@ PathSurvey read_survey(const GroupedSums& sums) {
     const double unit = intensity * intensity;
     const double spread = variance / paths_per_batch / unit;
     survey.spread.push_back(spread);
-    // Given the contributions I_j, E|u|^4 over their phases is 2 (sum I_j)^2 - sum I_j^2.
+    // For given intensities I_j of the contributions, E|u|^4 over random phases is 2 (sum I_j)^2 -
+    // sum I_j^2.
     survey.excess.push_back(2 * spread - total[channels + c].real() / paths / unit);
   }
   return survey;
@@ -135,19 +143,19 @@ DrawingPlan make_field_plan(const Scene& scene, const PathSurvey& survey,
   const double excess = largest_magnitude(survey.excess);
   plan.paths_per_field =
       demand.paths_per_field.value_or(rounded_up(excess / accepted_excess, fewest_paths));
-  const double asked =
+  const double required_paths =
       mean(survey.spread) / (demand.covariance_error * demand.covariance_error);
-  plan.covariance_paths = rounded_up(std::min(asked, most_paths), 10 * fewest_paths);
+  plan.covariance_paths = rounded_up(std::min(required_paths, most_paths), 10 * fewest_paths);
   plan.excess = excess / static_cast<double>(plan.paths_per_field);
   set_costs(plan, scene, survey.contributions, static_cast<double>(demand.fields));
   plan.method = demand.method;
   if (plan.method == FieldMethod::automatic)
     plan.method =
         plan.covariance_cost < plan.paths_cost ? FieldMethod::covariance : FieldMethod::paths;
-  if (plan.method == FieldMethod::covariance && asked > most_paths)
+  if (plan.method == FieldMethod::covariance && required_paths > most_paths)
     throw InputError("target_error", demand.covariance_error,
-                     "asks for " + number_text(asked) + " paths, at most " + number_text(most_paths) +
-                         " are taken");
+                     "requires " + number_text(required_paths) + " paths, above the limit of " +
+                         number_text(most_paths) + "; take a larger error");
   return plan;
 }
 
@@ -162,7 +170,7 @@ std::string DrawingPlan::describe() const {
   if (std::isfinite(covariance_cost))
     text << covariance_cost;
   else
-    text << "more than the memory holds";
+    text << "does not fit into memory";
   return text.str();
 }
 

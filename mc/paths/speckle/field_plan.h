@@ -11,47 +11,52 @@
 
 namespace flatspeckle::mc {
 
-/// What some thousand paths tell about the fields of a scene, before any is drawn.
+/// Results of the pilot run (the survey): statistics of the light paths of a scene, estimated from
+/// survey_paths paths before any field is drawn.
 struct PathSurvey {
-  double contributions = 0;       ///< per path
+  double contributions = 0;       ///< mean number of scored contributions per path
   std::vector<double> intensity;  ///< E|u|^2 per channel
-  /// Variance of the intensity that one path brings, over the square of its mean, per channel: the
-  /// relative error of an intensity from P paths is sqrt(spread / P).
+  /// Variance of the intensity of one path over the square of its mean, per channel. The relative
+  /// error of an intensity from P paths is sqrt(spread / P).
   std::vector<double> spread;
-  /// E|u|^4 / (E|u|^2)^2 - 2 of the field of one path, per channel. A field of N paths has this / N
-  /// (their phases are independent), a Gaussian field 0; its contrast is sqrt(1 + excess / N), and
-  /// the intensities of distant speckles have a correlation of up to excess / N.
+  /// Excess kurtosis E|u|^4 / (E|u|^2)^2 - 2 of the field of one path, per channel; for a Gaussian
+  /// field it would be 0. The phases of paths are independent, so a field of N paths has an excess
+  /// kurtosis of excess / N. Its contrast is sqrt(1 + excess / N), and the intensities of distant
+  /// speckles have a correlation of up to excess / N.
   std::vector<double> excess;
 };
 
-/// Batches for the runner; stop after survey_paths samples.
+/// Makes the job of the pilot run (the survey), which is run for survey_paths samples.
 BatchJob survey_job(const Scene& scene, const Plan& plan, std::uint64_t seed);
 inline constexpr std::uint64_t survey_paths = 16384;
 PathSurvey read_survey(const GroupedSums& sums);
 
 enum class FieldMethod { automatic, paths, covariance };
 
-/// What is asked for.
+/// Requested number of fields, and how to draw them.
 struct FieldDemand {
   FieldMethod method = FieldMethod::automatic;
   std::uint64_t fields = 0;
-  /// None: so many that the excess is 0.01.
+  /// Number of light paths per field. If it is not set, the number is chosen for an excess kurtosis
+  /// of 0.01 of the fields.
   std::optional<std::uint64_t> paths_per_field = std::nullopt;
-  double covariance_error = 0.01;  ///< relative, of the diagonal
+  double covariance_error = 0.01;  ///< relative error of the diagonal of the covariance
 };
 
-/// How a scene's fields are drawn.
+/// Plan for drawing the fields of a scene.
 struct DrawingPlan {
-  FieldMethod method = FieldMethod::paths;  ///< never automatic
+  FieldMethod method = FieldMethod::paths;  ///< paths or covariance, never automatic
   std::uint64_t paths_per_field = 0, covariance_paths = 0;
-  double excess = 0;  ///< of fields by paths, the magnitude of the largest of all channels
-  /// Complex multiply-adds, for all fields. The covariance's is infinite where it does not fit.
+  /// Excess kurtosis of fields drawn from paths: its largest magnitude over all channels
+  double excess = 0;
+  /// Costs of drawing all fields from paths and from the covariance, in complex multiply-adds.
+  /// covariance_cost is infinite if the covariance does not fit into memory.
   double paths_cost = 0, covariance_cost = 0;
 
   std::string describe() const;
 };
 
-/// The cheaper way that gives what is asked for.
+/// Plans the drawing of the requested fields, by the cheaper method if the method is automatic.
 DrawingPlan make_field_plan(const Scene& scene, const PathSurvey& survey,
                             const FieldDemand& demand);
 

@@ -13,25 +13,27 @@ namespace {
 
 constexpr std::size_t fewest_views = 8;
 
-// Where the sums of a field lie.
-constexpr std::size_t number_at = 0;     // of x
-constexpr std::size_t moments_at = 1;    // sum of x, sum of x^2
-constexpr std::size_t pseudo_at = 2;     // sum of u^2 / E|u|^2
-constexpr std::size_t histogram_at = 3;  // then the autocorrelation, then the channels' moments
+// Positions of the quantities in the sums that each field adds.
+constexpr std::size_t number_at = 0;   // number of values x
+constexpr std::size_t moments_at = 1;  // sum of x, sum of x^2
+constexpr std::size_t pseudo_at = 2;   // sum of u^2 / E|u|^2
+// The histogram; the autocorrelation and the sums of x and x^2 of each channel follow it
+constexpr std::size_t histogram_at = 3;
 constexpr std::size_t lags_at = histogram_at + FieldStatistics::bins;
 
 double ratio(double a, double b) {
   return b == 0 ? 0 : a / b;
 }
 
-/// std / mean from a number, a sum and a sum of squares.
+/// Returns std / mean from the number of values, their sum (real part) and sum of squares
+/// (imaginary part).
 double contrast_of(double number, Complex moments) {
   const double mean = ratio(moments.real(), number);
   const double variance = ratio(moments.imag(), number) - mean * mean;
   return ratio(std::sqrt(std::max(variance, 0.0)), mean);
 }
 
-/// sums[first ..] / sums[number_at].
+/// Returns an estimator of `count` means, sums[first ..] / sums[number_at].
 Estimator per_value(std::size_t first, std::size_t count) {
   return [first, count](double, std::span<const Complex> sums) {
     std::vector<Complex> mean;
@@ -51,7 +53,8 @@ std::optional<double> equal_step(const std::vector<View>& views) {
     return near ? views[v].point : Vec2{std::sin(views[v].angle), 0};
   };
   const Vec2 step = place(1) - place(0);
-  constexpr double rounding = 1e-3;  // of the step, as angles in a list are
+  /// Tolerance, relative to the step, for angles that are rounded in lists
+  constexpr double rounding = 1e-3;
   for (std::size_t v = 1; v < views.size(); ++v) {
     const bool same_side = near || std::cos(views[v].angle) * std::cos(views[0].angle) >= 0;
     if (!same_side || length(place(v) - place(v - 1) - step) > rounding * length(step))
@@ -61,7 +64,8 @@ std::optional<double> equal_step(const std::vector<View>& views) {
   return length(step);
 }
 
-/// Padded with as many zeros as there are values, so that ends do not meet.
+/// FFT plans for a line of values followed by as many zeros, so that the correlation does not wrap
+/// around at the ends.
 struct Autocorrelation::Plans {
   explicit Plans(std::size_t values) : size(2 * values) {
     std::vector<double> line(size);
@@ -162,7 +166,8 @@ Estimate FieldStatistics::autocorrelation() const {
 
 namespace {
 
-/// Lag at which a curve from its first value falls to half of it; 0 where it does not.
+/// Returns the lag at which a curve falls to half of its value at lag 0. Returns 0 if the curve
+/// does not fall so far.
 double half_lag(std::span<const Complex> curve) {
   const double half = curve.front().real() / 2;
   if (half <= 0) return 0;

@@ -12,12 +12,13 @@
 
 namespace flatspeckle::mc {
 
-/// Sine of the angle (far views) or place along the line (near sensors) from one view to the next,
-/// where that is the same for all of at least eight views.
+/// Returns the step from one view to the next, as a difference of sines of angles (far views) or as
+/// a length (near sensors). Returns nullopt if the steps differ or there are fewer than eight
+/// views.
 std::optional<double> equal_step(const std::vector<View>& views);
 
-/// (sum over v of x_v x_{v+d}) / (views - d) for d = 0 .. views - 1, by FFTW. One thread makes it,
-/// several may use it.
+/// Computes (sum over v of x_v x_{v+d}) / (views - d) for d = 0 .. views - 1, by FFTW. Several
+/// threads may call the same object at once.
 class Autocorrelation {
  public:
   explicit Autocorrelation(std::size_t views);
@@ -29,31 +30,36 @@ class Autocorrelation {
   std::shared_ptr<const Plans> plans_;
 };
 
-/// Statistics of x = |u|^2 / E|u|^2 over fields and channels, each with its error from leaving out
-/// groups of fields; channels without light are left out. Gaussian fields have contrast 1,
-/// histogram exp(-x), circularity 0, and the autocorrelation of Siegert's relation (below).
+/// Statistics of the normalised intensity x = |u|^2 / E|u|^2 over fields and channels, each with
+/// its jackknife error over groups of fields. Channels with E|u|^2 = 0 are left out. For Gaussian
+/// fields the contrast is 1, the histogram is exp(-x), the circularity is 0, and the
+/// autocorrelation is siegert_relation().
 class FieldStatistics {
  public:
-  /// intensity: E|u|^2 of the channels [light][view]; autocorrelated: of the first light's views.
+  /// intensity: E|u|^2 of the channels [light][view]. autocorrelated: whether to compute the
+  /// autocorrelation over the views of the first light.
   FieldStatistics(std::vector<double> intensity, std::size_t views, bool autocorrelated);
 
   void add(std::span<const Complex> field);
 
-  Estimate mean_contrast() const;  ///< std / mean of x, pooled
-  Estimate contrast() const;       ///< std / mean per channel, of as many fields as there are
+  Estimate mean_contrast() const;  ///< std / mean of x over all channels and fields
+  Estimate contrast() const;       ///< std / mean of x per channel, over all fields
   Estimate circularity() const;    ///< mean of u^2 / E|u|^2
-  /// Share of x in [i, i + 1) histogram_step; the last bin is open.
+  /// Returns the fraction of the values x in each bin i, from i bin_width to (i + 1) bin_width. The
+  /// last bin has no upper edge.
   Estimate histogram() const;
-  Estimate autocorrelation() const;  ///< mean of (x_v - 1)(x_{v+d} - 1), per d
+  Estimate autocorrelation() const;  ///< mean over v of (x_v - 1)(x_{v+d} - 1), for each lag d
 
-  /// Full width at half maximum of that, in steps between views, by straight lines between lags;
-  /// nothing where it does not fall so far, or before its second lag, for lack of views.
+  /// Returns the full width at half maximum of the autocorrelation, in steps between views,
+  /// interpolated linearly between lags. Returns nullopt if the views do not resolve this width: if
+  /// the autocorrelation does not fall to half its maximum, or does so before lag 1.
   std::optional<Estimate> grain_width() const;
 
-  double values() const;  ///< how many x there are
+  double values() const;  ///< number of normalised intensities x in the histogram
   static constexpr std::size_t bins = 33;
   static constexpr double bin_width = 0.25;
-  static std::vector<double> exponential_law();  ///< expected shares of the bins
+  /// Returns the fraction of values in each bin that is expected for the density exp(-x).
+  static std::vector<double> exponential_law();
 
  private:
   std::vector<double> intensity_;
@@ -62,9 +68,10 @@ class FieldStatistics {
   GroupedSums sums_;
 };
 
-/// What Siegert's relation makes of the covariance of the first `views` channels (the first
-/// light's): mean over v of |C(v, v+d)|^2 / (C(v,v) C(v+d,v+d)), per d. `sums`: those of a full
-/// covariance.
+/// Returns the autocorrelation of the intensity by Siegert's relation: for each lag d, the mean
+/// over v of |C(v, v+d)|^2 / (C(v,v) C(v+d,v+d)). C is the covariance of the first `views`
+/// channels, which are the views of the first light. sums and covariance: sums and estimator of a
+/// run for a full covariance.
 Estimate siegert_relation(const GroupedSums& sums, const Estimator& covariance, std::size_t views);
 
 }  // namespace flatspeckle::mc

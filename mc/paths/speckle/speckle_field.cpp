@@ -11,7 +11,7 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// E|z|^2 = 1, E[z^2] = 0 (Box and Muller).
+/// Samples z with E|z|^2 = 1 and E[z^2] = 0 (Box and Muller).
 Complex circular_gaussian(RandomStream& random) {
   const double radius = std::sqrt(-std::log(random.uniform()));
   return std::polar(radius, 2 * std::numbers::pi * random.uniform());
@@ -66,9 +66,11 @@ CovarianceFactor::CovarianceFactor(std::size_t channels, std::span<const Complex
         matrix[a + b * channels] = entry(a, b) / unit;
 
   const auto n = static_cast<lapack_int>(channels);
-  std::vector<lapack_int> row(channels);  // 1-based: where row i of the factor belongs
+  // row[i]: number, from 1, of the row of the matrix that pivoting has moved to row i
+  std::vector<lapack_int> row(channels);
   lapack_int rank = 0;
-  constexpr double rounding = -1;  // tolerance: n x epsilon x largest diagonal element
+  // Negative: LAPACK uses its default tolerance, n x epsilon x largest diagonal element
+  constexpr double rounding = -1;
   LAPACKE_zpstrf(LAPACK_COL_MAJOR, 'L', n, matrix.data(), n, row.data(), &rank, rounding);
   rank_ = static_cast<std::size_t>(rank);
   factor_.resize(channels * rank_);
@@ -80,7 +82,8 @@ CovarianceFactor::CovarianceFactor(std::size_t channels, std::span<const Complex
   }
 }
 
-/// Not by zgemv: that of OpenBLAS 0.3.21 reads beyond the end of a matrix (its issue 4013).
+/// Does not use zgemv, which in OpenBLAS 0.3.21 reads beyond the end of a matrix (OpenBLAS issue
+/// 4013).
 void CovarianceFactor::apply(std::span<const Complex> noise, std::span<Complex> out) const {
   std::fill(out.begin(), out.end(), 0);
   for (std::size_t k = 0; k < rank_; ++k) {

@@ -15,12 +15,13 @@
 
 namespace flatspeckle::mc {
 
-/// Speckle fields: complex numbers u, one per channel, with E[u] = 0, E[u_a u_b] = 0 and
-/// E[u_a conj(u_b)] = C_ab, the covariance of the scene (conventions, C14, C17). Each is a numbered
-/// sample, a pure function of scene, seed and number. The mean (coherent) field is not in it.
+/// A speckle field is a set of complex numbers u, one per channel, with E[u] = 0, E[u_a u_b] = 0
+/// and E[u_a conj(u_b)] = C_ab, the covariance of the scene (conventions, C14, C17). Fields are
+/// numbered; each is a pure function of scene, seed and number. The mean (coherent) field is not
+/// included.
 
-/// Adds sqrt(weight) f exp(2 pi i U) to `field`, U its own for each contribution, and weight |f|^2
-/// to `intensity`; both have one value per channel (C17).
+/// Adds sqrt(weight) f exp(2 pi i U) to `field`, with an independent U for each contribution, and
+/// weight |f|^2 to `intensity`; both have one value per channel (C17).
 class FieldAccumulator : public Accumulator {
  public:
   FieldAccumulator(const RandomStream& phases, std::span<Complex> field,
@@ -41,44 +42,48 @@ class FieldAccumulator : public Accumulator {
   std::span<double> intensity_;
 };
 
-/// Writes field `number`, and the intensity that it was drawn with: E |u|^2 per channel given all
-/// but its phases, whose mean over fields is that of |u|^2 without speckle's noise. May be called
-/// from several threads at once.
+/// Computes field `number`, and for each channel the intensity with which it was drawn: E|u|^2
+/// conditional on everything except the random phases. The mean of this intensity over fields is
+/// the mean of |u|^2, but without the noise of speckle. The function may be called from several
+/// threads at once.
 using FieldDraw = std::function<void(std::uint64_t number, std::span<Complex> field,
                                      std::span<double> intensity)>;
 
-/// The channels [light][view] of a scene, for fields: no list of covariance entries.
+/// Makes a request for fields in the channels [light][view], without a list of covariance entries.
 CovarianceRequest field_request(Lights lights, std::vector<View> views);
 
-/// A plan that walks all there is to a field: none of it is left to a closed form.
+/// Returns the plan with such changes that walks sample all contributions to a field, including
+/// those that have a closed form.
 Plan plan_for_fields(Plan plan);
 
-/// Each field from `paths` light paths of its own. Its covariance is right for any number of paths,
-/// its distribution is Gaussian for many (field_plan.h).
+/// Draws each field from `paths` separate light paths. The covariance of the fields is exact for
+/// any number of paths; their distribution becomes Gaussian for many paths (field_plan.h).
 FieldDraw fields_by_paths(const Scene& scene, const Plan& plan, std::uint64_t seed,
                           std::uint64_t paths);
 
-/// A Hermitian, positive semidefinite matrix as F F^H with as few columns as its rank (to rounding)
-/// asks for: Cholesky with complete pivoting (LAPACK zpstrf) of the matrix scaled to a unit
-/// diagonal, so that no dim channel drowns in the rounding of a bright one.
+/// Factorisation F F^H of a Hermitian, positive semidefinite matrix, in which F has as many columns
+/// as the rank of the matrix (to rounding). It is computed by Cholesky factorisation with complete
+/// pivoting (LAPACK zpstrf) of the matrix scaled to a unit diagonal, so that no dim channel is lost
+/// in the rounding errors of a bright channel.
 class CovarianceFactor {
  public:
-  /// lower: the lower triangle, row by row, as a full request's entries.
+  /// lower: the lower triangle of the matrix, row by row, like the entries of a full request.
   CovarianceFactor(std::size_t channels, std::span<const Complex> lower);
 
   std::size_t channels() const { return scale_.size(); }
   std::size_t rank() const { return rank_; }
   double variance(std::size_t channel) const { return scale_[channel] * scale_[channel]; }
-  /// out = F noise, noise of size rank().
+  /// Computes out = F noise. noise: rank() values.
   void apply(std::span<const Complex> noise, std::span<Complex> out) const;
 
  private:
-  std::vector<double> scale_;    ///< standard deviations
+  std::vector<double> scale_;    ///< standard deviation of each channel
   std::vector<Complex> factor_;  ///< channels x rank, column-major
   std::size_t rank_ = 0;
 };
 
-/// Each field as F z, z circular Gaussian.
+/// Draws each field as F z, where F is the covariance factor and z are independent circular
+/// Gaussian numbers.
 FieldDraw fields_from_covariance(CovarianceFactor factor, std::uint64_t seed);
 
 }  // namespace flatspeckle::mc

@@ -9,15 +9,15 @@
 
 namespace flatspeckle::mc {
 
-/// What takes the fields of sampled paths: the mean of weight f_a conj(f_b) over the paths of a
-/// batch is the covariance of channels a and b.
+/// Receives the fields f of sampled paths, one value per channel (pair of light and view). The mean
+/// of weight f_a conj(f_b) over the paths of a batch estimates the covariance of channels a and b.
 class Accumulator {
  public:
   virtual ~Accumulator() = default;
   virtual void add(double weight, std::span<const Complex> field) = 0;
 };
 
-/// Adds weight f_a conj(f_b) for the entries of a list.
+/// Adds weight f_a conj(f_b) to the sum of every entry (a, b) of a request.
 class EntryAccumulator : public Accumulator {
  public:
   EntryAccumulator(const CovarianceRequest& request, std::span<Complex> sums);
@@ -34,14 +34,15 @@ class EntryAccumulator : public Accumulator {
   std::span<Complex> sums_;
 };
 
-/// The lower triangle of sum weight f f^H over all channels, row by row: fields are collected and
-/// merged by Hermitian rank-k updates, so the sum is positive semidefinite to rounding.
+/// Accumulates the matrix of weight f f^H, summed over paths, where f is the vector of the fields
+/// of all channels. The sums are its lower triangle, row by row. Fields are collected and then
+/// added by Hermitian rank-k updates, so the matrix is positive semidefinite to rounding.
 class RankKAccumulator : public Accumulator {
  public:
   RankKAccumulator(const CovarianceRequest& request, std::span<Complex> sums);
 
   void add(double weight, std::span<const Complex> field) override;
-  /// Adds what was collected to the sums.
+  /// Adds the collected fields to the sums.
   void finish();
 
  private:
@@ -49,7 +50,7 @@ class RankKAccumulator : public Accumulator {
 
   std::size_t channels_;
   std::span<Complex> sums_;
-  std::vector<Complex> collected_;  ///< columns sqrt(weight) f
+  std::vector<Complex> collected_;  ///< columns sqrt(weight) f, one per path
   std::size_t columns_ = 0;
   std::vector<Complex> matrix_;  ///< column-major, lower triangle
 };

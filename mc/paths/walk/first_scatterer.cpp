@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "grin/media/scattering/free_flight.h"
-#include "mc/paths/bent/graded_ends.h"
+#include "mc/paths/bent/graded_endpoints.h"
 #include "mc/paths/walk/importance.h"
 
 namespace flatspeckle::mc {
@@ -17,8 +17,10 @@ namespace {
 
 using std::numbers::pi;
 
-/// The launches that lead to a domain's edge. Beyond an extreme that is no corner the next place
-/// of the edge may have one that is a little more so.
+/// Returns the range of launch parameters (Arrival::launch) of the rays that reach the edge of a
+/// domain. around: the parameters of the rays to sampled places along the edge, per_side of them on
+/// each side. If the largest or smallest parameter is not at a corner, places between the samples
+/// may slightly exceed it; the range is then widened.
 std::pair<double, double> launches(const std::vector<double>& around, std::size_t per_side) {
   const auto widened = [&](std::vector<double>::const_iterator at, double sign) {
     const auto i = static_cast<std::size_t>(at - around.begin());
@@ -33,7 +35,7 @@ std::pair<double, double> launches(const std::vector<double>& around, std::size_
 
 using std::numbers::pi;
 
-/// Narrows a chord to low <= position + t speed <= high.
+/// Limits a chord to the distances t with low <= position + t speed <= high.
 void narrow(Chord& chord, double position, double speed, double low, double high) {
   if (speed == 0) {
     if (position < low || position > high) chord.leave = chord.enter;
@@ -44,19 +46,19 @@ void narrow(Chord& chord, double position, double speed, double low, double high
   chord.leave = std::min(chord.leave, std::max(a, b));
 }
 
-/// Rounding must not take it out.
+/// Moves x into the box if rounding has put it outside.
 Vec2 kept_inside(const Domain& box, Vec2 x) {
   return {std::clamp(x.x, -box.width / 2, box.width / 2), std::clamp(x.z, 0.0, box.depth)};
 }
 
-Vec2 flown(const Domain& box, const Extinction& extinction, Vec2 origin, Vec2 w, const Chord& chord,
-           RandomStream& random) {
+Vec2 after_flight(const Domain& box, const Extinction& extinction, Vec2 origin, Vec2 w,
+                  const Chord& chord, RandomStream& random) {
   const double flight =
       extinction.sample_flight(origin + chord.enter * w, w, chord.length(), random.uniform());
   return kept_inside(box, origin + (chord.enter + flight) * w);
 }
 
-/// Half the box's extent along a unit vector; its middle is the box's.
+/// Returns half the extent of the box along a unit vector, about the centre of the box.
 double half_extent(const Domain& box, Vec2 w) {
   return (box.width * std::abs(w.x) + box.depth * std::abs(w.z)) / 2;
 }
@@ -71,7 +73,7 @@ double sample_gaussian(RandomStream& random) {
   return radius * std::cos(2 * pi * random.uniform());
 }
 
-/// Whether paths started for one source or beam serve the other.
+/// Whether two point sources or beams are so close that paths from one also sample the other well.
 bool alike(const Light& a, const Light& b, double spacing, double wavelength) {
   if (a.kind != b.kind) return false;
   if (a.kind == Light::Kind::point) return length(a.point - b.point) <= wavelength / 2;
@@ -134,7 +136,7 @@ GradedFirst::Sample GradedFirst::sample(RandomStream& random) const {
       launched(rays, one_ray ? rays.low : rays.low + (rays.high - rays.low) * random.uniform());
   const double inside = medium_.inside(x, w);
   const double sigma = grin::BoundedFlight{mu_t_, inside}.sample(random.uniform());
-  const auto place = inside > 0 ? medium_.flown(x, w, sigma) : std::nullopt;
+  const auto place = inside > 0 ? medium_.after_flight(x, w, sigma) : std::nullopt;
   if (!place) return {{}, {}, false};
   return {place->x, place->w};
 }
@@ -178,9 +180,9 @@ PointRays::PointRays(const Domain& box, const Extinction& extinction, Vec2 sourc
   const double middle = angle_of(Vec2{0, box.depth / 2} - source);
   double low = 0, high = 0;
   for (Vec2 corner : {Vec2{-half, 0}, {half, 0}, {-half, box.depth}, {half, box.depth}}) {
-    const Vec2 way = corner - source;
-    if (length(way) == 0) continue;
-    const double angle = std::remainder(angle_of(way) - middle, 2 * pi);
+    const Vec2 offset = corner - source;
+    if (length(offset) == 0) continue;
+    const double angle = std::remainder(angle_of(offset) - middle, 2 * pi);
     low = std::min(low, angle);
     high = std::max(high, angle);
   }
@@ -189,10 +191,10 @@ PointRays::PointRays(const Domain& box, const Extinction& extinction, Vec2 sourc
 }
 
 Vec2 PointRays::sample(RandomStream& random) const {
-  while (true) {  // rounding may let a ray along the wedge's rim miss the box
+  while (true) {  // because of rounding, a ray that grazes a corner may miss the box
     const Vec2 w = direction(first_angle_ + wedge_ * random.uniform());
     const Chord chord = chord_through(box_, source_, w, 0);
-    if (chord.length() > 0) return flown(box_, extinction_, source_, w, chord, random);
+    if (chord.length() > 0) return after_flight(box_, extinction_, source_, w, chord, random);
   }
 }
 
@@ -206,8 +208,8 @@ double PointRays::density(Vec2 x) const {
 }
 
 Vec2 PointRays::arrival(Vec2 x) const {
-  const Vec2 way = x - source_;
-  return 1 / length(way) * way;
+  const Vec2 offset = x - source_;
+  return 1 / length(offset) * offset;
 }
 
 BeamRays::BeamRays(const Domain& box, const Extinction& extinction, const GaussianBeam& beam,
@@ -221,8 +223,8 @@ BeamRays::BeamRays(const Domain& box, const Extinction& extinction, const Gaussi
   share_ = gaussian_share(low_, high_, sigma_);
 }
 
-/// Gaussian between low and high, by rejection: of a Gaussian, or where little of it lies there, of
-/// a uniform number.
+/// Samples a Gaussian restricted to [low_, high_] by rejection. The candidates are Gaussian, or
+/// uniform if little of the Gaussian lies in this interval.
 double BeamRays::sample_across(RandomStream& random) const {
   constexpr double little = 0.2;
   while (true) {
@@ -243,7 +245,8 @@ Vec2 BeamRays::sample(RandomStream& random) const {
     const double across = sample_across(random);
     const Vec2 origin = beam_.focus() + across * beam_.across_axis();
     const Chord chord = chord_through(box_, origin, beam_.axis(), anywhere);
-    if (chord.length() > 0) return flown(box_, extinction_, origin, beam_.axis(), chord, random);
+    if (chord.length() > 0)
+      return after_flight(box_, extinction_, origin, beam_.axis(), chord, random);
   }
 }
 
@@ -270,20 +273,22 @@ std::vector<BeamRays> beam_rays(const Domain& box, const Extinction& extinction,
   if (widest > alike * narrowest) rays.emplace_back(box, extinction, beam, narrowest);
   std::erase_if(rays, [](const BeamRays& some) { return some.misses(); });
   if (rays.empty())
-    throw InputError("beam focused at x", beam.focus().x, "misses the medium; move it there");
+    throw InputError("beam focused at x", beam.focus().x,
+                     "misses the medium; move the focus or turn the beam");
   return rays;
 }
 
 Lights representative_lights(const Scene& scene) {
   const double spacing = std::max(0.5 * (1 - std::abs(scene.medium.g)), 0.01);
-  // After the first, which tilted ones are seen against, oblique ones: they reach deep along the
-  // sides, where others have no density.
+  // The first light, which is the reference of tilted lights, stays first. The most oblique lights
+  // follow, because their rays reach deep places along the sides that the rays of other lights do
+  // not reach.
   std::vector<Light> lights(scene.request.lights.begin(), scene.request.lights.end());
   std::stable_sort(lights.begin() + 1, lights.end(), [](const Light& a, const Light& b) {
     return std::abs(std::sin(a.angle)) > std::abs(std::sin(b.angle));
   });
   Lights chosen;
-  std::vector<Vec2> waves;  // of the chosen, where they are plane
+  std::vector<Vec2> waves;  // directions of the chosen plane waves
   for (const Light& light : lights) {
     const bool plane = light.kind == Light::Kind::plane;
     const bool known = plane ? reached(scene, direction(light.angle), waves, spacing)
@@ -297,11 +302,11 @@ Lights representative_lights(const Scene& scene) {
   return chosen;
 }
 
-FirstScatterer::FirstScatterer(const Scene& scene, double rise)
+FirstScatterer::FirstScatterer(const Scene& scene, double mean_derivative)
     : domain_(scene.domain),
       profile_(scene.profile.get()),
       mu_t_(scene.medium.mu_t),
-      pull_(rise / scene.medium.mu_t) {
+      bias_(mean_derivative / scene.medium.mu_t) {
   const Extinction extinction(scene);
   for (const Light& light : representative_lights(scene)) {
     switch (light.kind) {

@@ -11,7 +11,7 @@
 #include "flatland/request/light.h"
 #include "flatland/scene/scene.h"
 #include "grin/media/scattering/free_flight.h"
-#include "mc/paths/endpoint_factors/end_factors.h"
+#include "mc/paths/endpoint_factors/endpoint_factors.h"
 #include "mc/paths/endpoint_factors/gaussian_beam.h"
 #include "mc/paths/endpoint_factors/profile_flight.h"
 #include "mc/paths/endpoint_factors/varying_scattering.h"
@@ -19,52 +19,57 @@
 
 namespace flatspeckle::mc {
 
-/// As grin::StretchedFlight, of flights that stay inside. Without stretched ones the variance has
-/// no bound but the depth of the medium, from a pull of 1/2 on.
-class BoundedStretchedFlight {
+/// Lengths of free flights under the condition that the flight ends inside the medium. If the bias
+/// is positive, half of the flights are biased by the exponential transform, as in
+/// grin::BiasedFlight. If all flights were biased, by 1/2 or more, the variance would be bounded
+/// only by the depth of the medium.
+class BoundedBiasedFlight {
  public:
-  BoundedStretchedFlight(double mu_t, double longest, double pull)
-      : plain_{mu_t, longest}, pull_(pull) {}
+  BoundedBiasedFlight(double mu_t, double longest, double bias)
+      : plain_{mu_t, longest}, bias_(bias) {}
 
   double sample(double u) const {
-    if (pull_ <= 0) return plain_.sample(u);
-    return u < 0.5 ? stretched().sample(2 * u) : plain_.sample(2 * u - 1);
+    if (bias_ <= 0) return plain_.sample(u);
+    return u < 0.5 ? biased().sample(2 * u) : plain_.sample(2 * u - 1);
   }
   double density(double distance) const {
-    if (pull_ <= 0) return plain_.density(distance);
-    return (plain_.density(distance) + stretched().density(distance)) / 2;
+    if (bias_ <= 0) return plain_.density(distance);
+    return (plain_.density(distance) + biased().density(distance)) / 2;
   }
-  /// Of a flight so long: the density of all flights over that of those sampled.
+  /// Returns the weight of a flight of this length: the density of unbounded, unbiased flights
+  /// divided by the density from which the flight is sampled.
   double weight(double distance) const {
-    if (pull_ <= 0) return plain_.probability();
+    if (bias_ <= 0) return plain_.probability();
     return plain_.probability() * plain_.density(distance) / density(distance);
   }
 
  private:
-  grin::BoundedFlight stretched() const {
-    return {(1 - std::min(pull_, grin::StretchedFlight::most_pull)) * plain_.mu_t, plain_.longest};
+  grin::BoundedFlight biased() const {
+    return {(1 - std::min(bias_, grin::BiasedFlight::largest_bias)) * plain_.mu_t, plain_.longest};
   }
 
   grin::BoundedFlight plain_;
-  double pull_;
+  double bias_;
 };
 
-/// The part of a ray from an origin that lies in the medium.
+/// Part of a ray inside the medium, between two distances from the origin of the ray.
 struct Chord {
   double enter, leave;
   double length() const { return leave - enter; }
 };
-/// Through a box, for enter >= least; no longer than 0 where the ray misses it.
+/// Returns the part of a ray inside a box, without points nearer to the origin of the ray than
+/// `least`. The length of the chord is 0 or negative if the ray misses the box.
 Chord chord_through(const Domain& box, Vec2 origin, Vec2 w, double least);
 
-/// First scatterers of a point source in a box or outside it: uniform in angle over what the box
-/// subtends, attenuated along the ray.
+/// Samples the first scatterer of a path from a point source inside or outside a box. The angle of
+/// the ray is uniform over the angles under which the source sees the box; the distance follows
+/// from the attenuation along the ray.
 class PointRays {
  public:
   PointRays(const Domain& box, const Extinction& extinction, Vec2 source);
 
   Vec2 sample(RandomStream& random) const;
-  double density(Vec2 x) const;  ///< per area
+  double density(Vec2 x) const;  ///< density of sample() at x, per area
   Vec2 arrival(Vec2 x) const;
 
  private:
@@ -74,16 +79,18 @@ class PointRays {
   double first_angle_, wedge_;
 };
 
-/// First scatterers of a beam in a box: Gaussian across, of the intensity's width at one distance
-/// from the focus, attenuated along the axis.
+/// Samples the first scatterer of a path from a Gaussian beam in a box. Its density across the axis
+/// of the beam is Gaussian, with the width of the beam's intensity at one distance from the focus.
+/// Its density along the axis follows from the attenuation. width: 1/e radius of the beam's field
+/// at that distance (GaussianBeam::width()).
 class BeamRays {
  public:
   BeamRays(const Domain& box, const Extinction& extinction, const GaussianBeam& beam, double width);
 
-  /// Whether the box lies beyond two widths.
+  /// Whether the whole box lies more than two beam widths away from the axis of the beam.
   bool misses() const { return nearest_ > 4 * sigma_; }
   Vec2 sample(RandomStream& random) const;
-  double density(Vec2 x) const;  ///< per area
+  double density(Vec2 x) const;  ///< density of sample() at x, per area
   Vec2 arrival(Vec2 x) const { return beam_.ray(x); }
 
  private:
@@ -92,32 +99,41 @@ class BeamRays {
   Domain box_;
   Extinction extinction_;
   GaussianBeam beam_;
-  double sigma_, low_, high_;  ///< of the coordinate across; between them it meets the box
-  double nearest_;             ///< the least |coordinate across| of them
-  double share_;               ///< of the Gaussian that lies between them
+  /// Standard deviation of the transverse coordinate (distance from the axis), and the smallest and
+  /// largest value of this coordinate in the box
+  double sigma_, low_, high_;
+  double nearest_;  ///< smallest distance of the box from the axis
+  double share_;    ///< probability that the Gaussian lies in [low_, high_]
 };
 
-/// Of the narrowest and the widest that the beam is in the box: together they cover it. Throws
-/// InputError for a beam that misses the box.
+/// Returns samplers that together cover a beam: one with the largest width that the beam has in the
+/// box and, if it is much smaller, one with the smallest width. Throws InputError for a beam that
+/// misses the box.
 std::vector<BeamRays> beam_rays(const Domain& box, const Extinction& extinction,
                                 const GaussianBeam& beam);
 
-/// Which of the request's lights paths are started for: so many that every light has one whose
-/// attenuation and phase function are close to its own. The rest need no density of their own.
+/// Selects the lights of the request from which paths start. Every light differs so little from a
+/// selected light, in its attenuation and in the directions of scattering, that paths from the
+/// selected lights sample all lights well.
 Lights representative_lights(const Scene& scene);
 
-/// Samples a path's first scatterer and first direction by the attenuation, shape and phase
-/// function of the representative lights, all having equal shares, and knows the density of the
-/// mixture. Plane waves reach deeper than their attenuation where depth is worth it.
+/// Samples the first scatterer of a path: selects one of the representative_lights() with equal
+/// probabilities, then a random ray of this light, then a scatterer on the ray by the attenuation
+/// along it. Evaluates the density of this mixture, alone or jointly with the direction in which
+/// the path leaves the first scatterer. For plane waves, deep scatterers are sampled more
+/// frequently if the importance grows with depth.
 class FirstScatterer {
  public:
-  /// rise: of the logarithm of what a place is worth, per depth; 0 samples plain attenuation.
-  explicit FirstScatterer(const Scene& scene, double rise = 0);
+  /// mean_derivative: DiffusionImportance::mean_derivative() of the log importance with respect to
+  /// depth; 0 for unbiased flights.
+  explicit FirstScatterer(const Scene& scene, double mean_derivative = 0);
 
   struct Sample {
     Vec2 x, arrival;
   };
-  /// Plane waves: uniform across the aperture, attenuated along the ray, never outside.
+  /// Samples the first scatterer and the direction in which the light arrives there. For plane
+  /// waves the point of entry is uniform over the cross-section of the medium, and the free flight
+  /// always ends inside the medium.
   Sample sample(RandomStream& random) const {
     const auto number = static_cast<std::size_t>(random.uniform() * count_);
     if (number >= plane_.size()) [[unlikely]]
@@ -130,7 +146,7 @@ class FirstScatterer {
     return {entry + flight(w, chord).sample(random.uniform()) * w, w};
   }
 
-  /// Of the first scatterer alone, per area (per depth of a slab).
+  /// Returns the density of the position of the first scatterer: per area or, in a slab, per depth.
   double density(Vec2 x) const {
     double sum = 0;
     for (Vec2 w : plane_) sum += density(x, w);
@@ -139,7 +155,8 @@ class FirstScatterer {
     return sum / count_;
   }
 
-  /// Of the first scatterer and the direction in which it is left.
+  /// Returns the joint density of the position of the first scatterer and of the direction in which
+  /// the path leaves it.
   template <typename Scattering>
   double density(Vec2 x, const typename Scattering::Direction& start,
                  const Scattering& scattering) const {
@@ -160,11 +177,12 @@ class FirstScatterer {
     return flight(w, chord).density(behind) / aperture(w);
   }
 
-  BoundedStretchedFlight flight(Vec2 w, double chord) const { return {mu_t_, chord, pull_ * w.z}; }
+  BoundedBiasedFlight flight(Vec2 w, double chord) const { return {mu_t_, chord, bias_ * w.z}; }
 
   bool has_near() const { return plane_.size() < static_cast<std::size_t>(count_); }
 
-  /// Out of line: plane waves must not pay for it.
+  /// Sums density times factor(direction of arrival at x) over the samplers of point sources and
+  /// beams. It is not inlined, so that it does not slow down plane waves.
   template <typename Factor>
   [[gnu::noinline]] double near_sum(Vec2 x, Factor factor) const {
     double sum = 0;
@@ -181,7 +199,8 @@ class FirstScatterer {
     return number < point_.size() ? from(point_[number]) : from(beam_[number - point_.size()]);
   }
 
-  /// Length across which the light meets the medium; per unit length of a slab.
+  /// Returns the width of the medium perpendicular to the light; for a slab, per unit length of the
+  /// face.
   double aperture(Vec2 w) const {
     if (domain_.kind == Domain::Kind::slab) return std::abs(w.z);
     return domain_.width * std::abs(w.z) + domain_.depth * std::abs(w.x);
@@ -198,23 +217,25 @@ class FirstScatterer {
   }
 
   Domain domain_;
-  const MediumProfile* profile_;  ///< null where the medium is the same everywhere
-  double mu_t_, pull_;
+  const MediumProfile* profile_;  ///< null if the medium is homogeneous
+  double mu_t_, bias_;
   std::vector<Vec2> plane_;
   std::vector<PointRays> point_;
   std::vector<BeamRays> beam_;
-  double count_ = 0;  ///< of all
+  double count_ = 0;  ///< number of samplers of all three kinds
 };
 
-/// First scatterers of a path where light is bent (as first_scatterer.h): a ray of one of the
-/// representative lights, uniform over those that meet the domain, attenuated along it in sigma.
+/// Samples the first scatterer of a path if rays are curved, as FirstScatterer does for straight
+/// rays. Selects a representative light, then one of its rays that meet the domain (uniformly in
+/// Arrival::launch), then a scatterer on this ray. Attenuation is exponential in the ray parameter
+/// sigma (conventions, C31).
 class GradedFirst {
  public:
   GradedFirst(const Scene& scene, const GradedScattering& scattering);
 
   struct Sample {
     Vec2 x, arrival;
-    bool hit = true;  ///< else the ray misses the domain, and the path has no scatterer
+    bool hit = true;  ///< whether the ray meets the domain; if not, the path has no scatterer
   };
   Sample sample(RandomStream& random) const;
 
@@ -225,8 +246,10 @@ class GradedFirst {
   struct Rays {
     std::shared_ptr<const Wavefront> wave;
     Light light;
-    double low, high;   ///< of the launch of rays that meet the domain
-    double per_launch;  ///< of a unit wave, power per launch: |cos| of a plane wave, else 1
+    double low, high;  ///< range of Arrival::launch of the rays that meet the domain
+    /// Power of a light of unit amplitude per unit of Arrival::launch: |cos(angle)| for a plane
+    /// wave, 1 for a point source
+    double per_launch;
   };
   Rays rays_of(const Light& light) const;
   RayPlace launched(const Rays& rays, double launch) const;
@@ -236,7 +259,8 @@ class GradedFirst {
   double mu_t_;
   const GradedMedium& medium_;
   std::vector<Rays> lights_;
-  std::optional<FirstScatterer> straight_;  ///< where refraction is in the end factors alone
+  /// set if rays are straight: refraction changes only the endpoint factors
+  std::optional<FirstScatterer> straight_;
 };
 
 }  // namespace flatspeckle::mc

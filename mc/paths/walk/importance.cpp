@@ -17,10 +17,11 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// Along w through an entry: close behind it and some mean free paths on.
+/// Whether the plane waves along `others` represent (see reached()) the ray that enters along w.
+/// Tests four places on the ray, from just behind the entry to ten mean free paths from it.
 bool ray_reached(const Scene& scene, Vec2 w, Vec2 entry, const std::vector<Vec2>& others) {
   const double mfp = scene.medium.mean_free_path(), chord = scene.domain.distance_to_edge(entry, w);
-  constexpr double tolerated = 1.5;  // mean free paths
+  constexpr double tolerated = 1.5;  // additional path in the medium, in mean free paths
   for (const double deep : {0.01, 1.0, 3.0, 10.0}) {
     const double s = std::min(deep * mfp, 0.99 * chord);
     const Vec2 x = entry + s * w;
@@ -34,20 +35,20 @@ bool ray_reached(const Scene& scene, Vec2 w, Vec2 entry, const std::vector<Vec2>
 
 using std::numbers::pi;
 
-constexpr int nodes = 512;  ///< of the table of importance
+constexpr int nodes = 512;  ///< number of intervals of the importance table
 
-/// log [sinh(a) / sinh(b)], 0 < a <= b.
+/// Returns log [sinh(a) / sinh(b)], 0 < a <= b.
 double log_sinh_ratio(double a, double b) {
   return a - b + std::log(std::expm1(-2 * a) / std::expm1(-2 * b));
 }
 
-/// exp(-x), more or less and in a third of the time.
+/// Approximates exp(-x) in a third of the time of std::exp.
 double about_exp(double x) {
   const double square = (1 + x / 8) * (1 + x / 8), fourth = square * square;
   return 1 / (fourth * fourth);
 }
 
-/// Where the lights are first scattered.
+/// Returns typical depths at which the lights are first scattered.
 std::set<double> first_depths(const Scene& scene) {
   const double depth = scene.domain.depth,
                shallow = std::min(scene.medium.mean_free_path(), depth / 2);
@@ -61,7 +62,7 @@ std::set<double> first_depths(const Scene& scene) {
   return depths;
 }
 
-/// Depths that light has to reach for the views to see it.
+/// Returns the depths that light must reach to be detected by the views.
 std::set<double> view_depths(const Scene& scene) {
   std::set<double> depths;
   const double depth = scene.domain.depth;
@@ -99,16 +100,17 @@ DiffusionImportance::DiffusionImportance(const Scene& scene) : step_(scene.domai
   const auto& medium = scene.medium;
   const double beyond = extrapolation_length(medium);
   double rate = grin::diffusion_rate(medium.albedo, medium.g, medium.dimension) * medium.mu_t;
-  if (scene.domain.kind == Domain::Kind::box)  // what leaves by the sides is lost as well
+  if (scene.domain.kind == Domain::Kind::box)  // light that leaves through the sides is also lost
     rate = std::hypot(rate, pi / (scene.domain.width + 2 * beyond));
   rate = std::max(rate, 1e-8 / depth);
-  // Of light from z at a depth, or beyond an edge.
+  // Log of the fraction of the light at depth z that reaches the depth `there` before it leaves
+  // through the face on the other side.
   const auto log_reaching = [&](double z, double there) {
-    const double way = z < there ? z : depth - z, whole = z < there ? there : depth - there;
-    return log_sinh_ratio(rate * (way + beyond), rate * (whole + beyond));
+    const double distance = z < there ? z : depth - z, whole = z < there ? there : depth - there;
+    return log_sinh_ratio(rate * (distance + beyond), rate * (whole + beyond));
   };
   const auto firsts = first_depths(scene);
-  const auto log_usual = [&](double there) {  // of the light that reaches best
+  const auto log_usual = [&](double there) {  // from the first depth that sends most light there
     double best = -std::numeric_limits<double>::infinity();
     for (double first : firsts) best = std::max(best, log_reaching(first, there));
     return best;
@@ -119,12 +121,14 @@ DiffusionImportance::DiffusionImportance(const Scene& scene) : step_(scene.domai
     for (double there : destinations)
       logs.push_back(log_reaching(depth * i / nodes, there) - log_usual(there));
     const double largest = *std::max_element(logs.begin(), logs.end());
-    double worth = 0;
-    for (double log : logs) worth += std::exp(log - largest);
-    log_worth_.push_back(largest + std::log(worth / static_cast<double>(logs.size())));
+    double sum = 0;
+    for (double log : logs) sum += std::exp(log - largest);
+    log_importance_.push_back(largest + std::log(sum / static_cast<double>(logs.size())));
   }
-  // Green's function of the slab, its faces moved outwards; the diffusion constant is the transport
-  // mean free path over the dimension.
+  // Log of the mean number of scatterings in the table interval at depth z, of light that is first
+  // scattered at depth `first`: the Green's function of diffusion in the slab. The faces are moved
+  // outwards by the extrapolation length; the diffusion constant is the transport mean free path
+  // divided by the dimension.
   const auto log_scatterings = [&](double first, double z) {
     const double low = std::min(first, z), high = depth - std::max(first, z);
     return log_sinh(rate * (low + beyond)) + log_sinh(rate * (high + beyond)) -
@@ -135,54 +139,57 @@ DiffusionImportance::DiffusionImportance(const Scene& scene) : step_(scene.domai
   for (double first : firsts)
     for (int i = 0; i < nodes; ++i) {
       const double z = depth * (i + 0.5) / nodes,
-                   growth = log_worth(z) - std::max(log_worth(first), 0.0);
+                   growth = log_importance(z) - std::max(log_importance(first), 0.0);
       scatterings_ +=
           std::exp(log_scatterings(first, z) + growth) / static_cast<double>(firsts.size());
     }
-  constexpr double steep = 5, decay_lengths = 3.5;  // measured: where splitting begins to gain
-  dies_out_ = rate * (depth + 2 * beyond) > decay_lengths;
-  steep_ = *std::max_element(log_worth_.begin(), log_worth_.end()) > steep;
+  constexpr double steep = 5, decay_lengths = 3.5;  // measured values above which splitting pays
+  is_attenuated_ = rate * (depth + 2 * beyond) > decay_lengths;
+  steep_ = *std::max_element(log_importance_.begin(), log_importance_.end()) > steep;
 }
 
-double DiffusionImportance::log_worth(double z) const {
+double DiffusionImportance::log_importance(double z) const {
   const double position = z / step_;
   const std::size_t i = interval(z);
   const double t = position - static_cast<double>(i);
-  return (1 - t) * log_worth_[i] + t * log_worth_[i + 1];
+  return (1 - t) * log_importance_[i] + t * log_importance_[i + 1];
 }
 
-double DiffusionImportance::slope(double z) const {
+double DiffusionImportance::derivative(double z) const {
   if (!steep_) return 0;
   const std::size_t i = interval(z);
-  return (log_worth_[i + 1] - log_worth_[i]) / step_;
+  return (log_importance_[i + 1] - log_importance_[i]) / step_;
 }
 
-double DiffusionImportance::rise() const {
-  constexpr double worthwhile = 1;
-  const double whole = log_worth_.back() - log_worth_.front();
-  return std::abs(whole) > worthwhile ? whole / (step_ * nodes) : 0;
+double DiffusionImportance::mean_derivative() const {
+  constexpr double least_growth = 1;
+  const double whole = log_importance_.back() - log_importance_.front();
+  return std::abs(whole) > least_growth ? whole / (step_ * nodes) : 0;
 }
 
 std::size_t DiffusionImportance::interval(double z) const {
-  return std::min(static_cast<std::size_t>(z / step_), log_worth_.size() - 2);
+  return std::min(static_cast<std::size_t>(z / step_), log_importance_.size() - 2);
 }
 
-ExpectedContribution::ExpectedContribution(const Scene& scene, const std::vector<End>& ends)
+ExpectedContribution::ExpectedContribution(const Scene& scene,
+                                           const std::vector<Endpoint>& endpoints)
     : domain_(scene.domain), extinction_(scene), g_(scene.medium.g) {
-  always_ = std::any_of(ends.begin(), ends.end(), [](const End& end) { return end.near; });
+  always_ =
+      std::any_of(endpoints.begin(), endpoints.end(), [](const Endpoint& end) { return end.near; });
   if (always_) return;
   constexpr std::size_t few = 16;
   double spacing = std::max(0.5 * (1 - std::abs(g_)), 0.05);
   const auto choose = [&] {
-    std::vector<Vec2> chosen;  // lights that go where the light leaves, backwards
-    for (const End& end : ends)
+    std::vector<Vec2> chosen;  // exit directions of the selected endpoints, reversed
+    for (const Endpoint& end : endpoints)
       if (chosen.size() <= few && !reached(scene, -end.towards, chosen, spacing))
         chosen.push_back(-end.towards);
     return chosen;
   };
   auto chosen = choose();
   for (; chosen.size() > few && spacing < pi; chosen = choose()) spacing *= 1.5;
-  // No sharper than the representatives are spaced.
+  // The lobe of the phase function is made no narrower than the angle between the representative
+  // endpoints.
   g_ = std::copysign(std::min(std::abs(g_), std::max(0.0, 1 - spacing)), g_);
   for (Vec2 w : chosen) towards_.push_back(-w);
 }
@@ -192,7 +199,7 @@ double ExpectedContribution::operator()(Vec2 x, const Direction& arrival) const 
   if (always_) return 1;
   constexpr int dimension = std::is_same_v<Direction, Vec2> ? 2 : 3;
   const grin::HenyeyGreenstein<dimension> lobe{g_};
-  double largest = 0.01;  // what no representative sees must not wait for one in a million
+  double largest = 0.01;  // bound for directions far from all representative endpoints
   for (Vec2 w : towards_) {
     double value = about_exp(extinction_.optical_depth(x, w, domain_.distance_to_edge(x, w)));
     if (g_ != 0)

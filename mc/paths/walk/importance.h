@@ -4,54 +4,62 @@
 
 #include "core/numbers/random.h"
 #include "flatland/scene/scene.h"
-#include "mc/paths/endpoint_factors/end_factors.h"
+#include "mc/paths/endpoint_factors/endpoint_factors.h"
 
 namespace flatspeckle::mc {
 
-/// Whether a plane wave along w is represented by others: wherever it reaches in the medium, one of
-/// them whose direction differs by `spacing` (radians) at the most is weakened by no more than a
-/// factor of exp(1.5) beyond it. By reversal the same holds for light that leaves along -w.
+/// Whether the plane waves along `others` represent the plane wave along w. They do if, at every
+/// place of the medium, one of those whose direction differs from w by at most `spacing` (radians)
+/// is at most exp(1.5) times more attenuated than the wave along w. By reciprocity the result also
+/// holds for light that leaves the medium along -w.
 bool reached(const Scene& scene, Vec2 w, const std::vector<Vec2>& others, double spacing);
 
-/// What a walker at a depth is worth to the far views: the share of its light that leaves the
-/// medium on their sides, by diffusion theory, relative to a mean free path from where the light
-/// enters. Walkers are split where it rises and play roulette where it falls, so that all
-/// contributions weigh alike. It changes the variance alone.
+/// Importance of a depth for the views: the fraction of the light at that depth that reaches the
+/// views, by diffusion theory, relative to the same fraction at one mean free path inside the face
+/// where the light enters. Walkers are split where the importance grows and undergo Russian
+/// roulette where it falls, so that all contributions have similar weights. The importance changes
+/// only the variance of the result.
 class DiffusionImportance {
  public:
   explicit DiffusionImportance(const Scene& scene);
 
-  double log_worth(double z) const;
-  /// Its derivative, for stretching flights: 0 where the worth rises so little in all that
-  /// stretched ones cost more than they give.
-  double slope(double z) const;
-  /// The mean slope, for stretching the light's flight to the first scatterer: 0 where that gains
-  /// nothing.
-  double rise() const;
+  double log_importance(double z) const;
+  /// Returns the derivative of the log importance with respect to depth, by which free flights are
+  /// biased. It is set to 0 if the importance grows so little over the medium that biased flights
+  /// cost more than they gain.
+  double derivative(double z) const;
+  /// Returns the mean derivative of the log importance over all depths, for biasing the flight to
+  /// the first scatterer. It is set to 0 if the bias gains nothing.
+  double mean_derivative() const;
   bool steep() const { return steep_; }
-  /// Whether light dies out exponentially, not only as by the faces of a lossless slab: there
-  /// walkers of equal weight are as good at any depth.
-  bool dies_out() const { return dies_out_; }
-  /// Of a path and all that it splits into, on the mean, by diffusion theory.
+  /// Whether diffuse light decays exponentially, by absorption or through the sides of a box.
+  /// Otherwise (as in a lossless slab, which light leaves only through the faces) walkers of equal
+  /// weight are as efficient as weighted ones, however thick the medium is.
+  bool is_attenuated() const { return is_attenuated_; }
+  /// Returns the mean number of scatterings of a path, summed over all the paths into which it
+  /// splits, by diffusion theory.
   double scatterings() const { return scatterings_; }
 
  private:
   std::size_t interval(double z) const;
 
   double step_;
-  bool steep_ = false, dies_out_ = false;
+  bool steep_ = false, is_attenuated_ = false;
   double scatterings_ = 0;
-  std::vector<double> log_worth_;  ///< at equally spaced depths
+  std::vector<double> log_importance_;  ///< log importance at equally spaced depths
 };
 
-/// What a scatterer at the end of a path is likely to contribute, up to a factor: the largest
-/// attenuation times phase function towards any of a few representative ends. Contributions cost
-/// far more than steps, so small ones play roulette before they are computed.
+/// Estimates the contribution of a path from its last scatterer and the direction in which the path
+/// arrives there, up to a constant factor. The estimate is the largest product of attenuation and
+/// phase function towards any of a few representative endpoints. Computing a contribution costs far
+/// more than a step of a walk, so small contributions undergo Russian roulette before they are
+/// computed.
 class ExpectedContribution {
  public:
-  ExpectedContribution(const Scene& scene, const std::vector<End>& ends);
+  ExpectedContribution(const Scene& scene, const std::vector<Endpoint>& endpoints);
 
-  /// About 1 where an end is near and scattering is isotropic. Direction: Vec2 or SpaceDirection.
+  /// Returns the estimate, which is about 1 for isotropic scattering where little medium lies
+  /// between x and an endpoint. Direction: Vec2 or SpaceDirection.
   template <typename Direction>
   double operator()(Vec2 x, const Direction& arrival) const;
 
@@ -60,7 +68,7 @@ class ExpectedContribution {
   Extinction extinction_;
   double g_;
   std::vector<Vec2> towards_;
-  bool always_ = false;  ///< near ends: no guess
+  bool always_ = false;  ///< true if an endpoint is near; the estimate is then 1 everywhere
 };
 
 }  // namespace flatspeckle::mc

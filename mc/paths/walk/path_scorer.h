@@ -7,45 +7,49 @@
 
 namespace flatspeckle::mc {
 
-/// A path of B >= 2 scatterers as the walk found it. The mean of weight f_a conj(f_b) over walks is
-/// the covariance, with f = F, or F + R with reversed paths (conventions, C14), whose amplitudes
-/// are divided by sqrt(sigma_s).
+/// A sampled light path of B >= 2 scatterers. The covariance of two channels a and b is the mean
+/// over walks of the sum of weight f_a conj(f_b) over the paths of a walk. The field f of a channel
+/// is F, or F + R if reversed paths are included (conventions, C14), with all amplitudes divided by
+/// sqrt(sigma_s).
 struct Path {
-  Vec2 first;  ///< the first scatterer
-  SpaceDirection start;
+  Vec2 first;            ///< the first scatterer
+  SpaceDirection start;  ///< direction in which the path leaves the first scatterer
   Vec2 last;
-  SpaceDirection arrival;  ///< at the last scatterer
+  SpaceDirection arrival;  ///< direction in which the path reaches the last scatterer
   double weight = 0;
-  bool new_start = false;  ///< the first such path from this first scatterer and start
+  bool new_start = false;  ///< true for the first path with these values of `first` and `start`
 };
 
-/// Takes the paths that a walk finds.
+/// Receives the paths that a walk samples.
 class PathScorer {
  public:
   virtual ~PathScorer() = default;
 
-  /// A path of one scatterer at x, where the plan samples them.
+  /// Scores a path of one scatterer at x. Called only if the plan samples such paths
+  /// (Plan::sampled_single).
   virtual void single(Vec2 x, double weight) = 0;
-  /// A path of more.
+  /// Scores a path of two or more scatterers.
   virtual void multiple(const Path& path) = 0;
 
-  // The rest is for scorers that tally each path's flights and inner scatterings (not those of the
-  // first and last scatterer).
+  // The members below are for scorers with a tally: sums over the free flights and scatterings of
+  // each path. The scatterings at the first and the last scatterer are not tallied.
 
-  /// Whether step() is called.
+  /// Whether the scorer has a tally. Walks call step() only for scorers that have one.
   virtual bool has_tally() const { return false; }
-  /// A path begins at x, its first scatterer, with a flight along w.
+  /// Begins the tally of a path with the flight from its first scatterer x along w.
   virtual void begin(Vec2 /*x*/, const SpaceDirection& /*w*/, double /*length*/) {}
-  /// It is scattered at x, and flies on along `to`.
+  /// Adds the scattering at x from direction `from` to direction `to`, and the flight along `to`
+  /// that follows.
   virtual void step(Vec2 /*x*/, const SpaceDirection& /*from*/, const SpaceDirection& /*to*/,
                     double /*length*/) {}
-  /// Its tally is kept for the paths that it splits into, then taken up again by each; last: for
-  /// the last time. What was kept last is taken up first.
+  /// Saves the tally for the paths into which this path splits. Each of these paths restores the
+  /// saved tally by take_up(), the last one with last = true. Saved tallies form a stack.
   virtual void keep() {}
   virtual void take_up(bool /*last*/) {}
 };
 
-/// A scorer with a tally: a copyable type with
+/// Scorer that sums over the free flights and scatterings of each path in a Tally, a copyable type
+/// with the members
 ///   flight(x, w, length)
 ///   scattering(x, from, to)
 template <typename Tally>
@@ -67,7 +71,7 @@ class TallyScorer : public PathScorer {
   }
 
  protected:
-  /// none: what every path starts with.
+  /// none: the tally with which every path starts.
   explicit TallyScorer(const Tally& none) : none_(none), tally_(none) {}
 
   const Tally& none() const { return none_; }

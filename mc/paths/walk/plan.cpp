@@ -13,11 +13,12 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// More than a right angle away from exact backscattering the reversed paths only add terms that
-/// oscillate away, of the order of the 1/(k mean free path) that the method neglects anyway.
-bool can_see_backscattering(const CovarianceRequest& request, const Domain& domain) {
+/// Whether views can detect coherent backscattering. More than a right angle away from the
+/// direction of backscattering, reversed paths only add oscillating terms of order 1/(k mean free
+/// path), which the method neglects anyway.
+bool can_detect_backscattering(const CovarianceRequest& request, const Domain& domain) {
   return std::any_of(request.views.begin(), request.views.end(), [&](const View& view) {
-    if (domain.kind == Domain::Kind::slab && has_near_ends(request))
+    if (domain.kind == Domain::Kind::slab && has_near_endpoints(request))
       return view.near ? view.point.z < 0 : std::cos(view.angle) < 0;
     if (view.near) return true;
     return std::any_of(request.lights.begin(), request.lights.end(), [&](const Light& light) {
@@ -27,15 +28,17 @@ bool can_see_backscattering(const CovarianceRequest& request, const Domain& doma
   });
 }
 
-/// Twice the mean square of the phase function over the square of its mean: measured to be about
-/// best in the plane, and flat around it.
+/// Returns the score level (Plan::score_level) of a thick medium: twice the mean square of the
+/// phase function divided by the square of its mean. Measurements in 2D show that this is near the
+/// optimum, which is flat.
 double score_level(double g, int dimension) {
   const double square = std::min(g * g, 0.9);
   return 2 * (1 + square) / std::pow(1 - square, dimension - 1);
 }
 
-/// Paths of thin media promise little each: the level falls with the share of flights that end
-/// inside, or none of them would be scored.
+/// Returns the score level of a scene. In a thin medium every path contributes little, so the level
+/// is reduced in proportion to the fraction of free flights that end inside the medium; otherwise
+/// no path would be scored.
 double level_of(const Scene& scene) {
   constexpr double thin = 1e-3;
   const double across = scene.domain.kind == Domain::Kind::box
@@ -45,20 +48,22 @@ double level_of(const Scene& scene) {
          std::min(1.0, scene.medium.mu_t * across / thin);
 }
 
-/// Whether a box is so narrow that little reaches the views without absorption either.
-bool loses_by_the_sides(const Scene& scene) {
+/// Whether a box loses so much light through its sides that, even without absorption, little light
+/// reaches the views.
+bool loses_light_by_sides(const Scene& scene) {
   if (scene.domain.kind != Domain::Kind::box || scene.medium.mu_s == 0) return false;
   const DiffusionImportance importance(scene);
-  return importance.steep() && importance.dies_out();
+  return importance.steep() && importance.is_attenuated();
 }
 
-/// Scatterings of a batch, on the mean: tens of milliseconds.
+/// Largest mean number of scatterings of a batch. They take tens of milliseconds.
 constexpr double most_scatterings = 1e6;
-/// Scatterings of one path that is among the longest: seconds.
+/// Largest mean number of scatterings of the longest paths; such a path takes seconds.
 constexpr double longest_path = 1e8;
 
-/// So many that the sums of a batch cost less to merge than to make; where walkers split into many,
-/// so few that a batch does not take long.
+/// Returns the number of paths per batch. It is large enough that merging the sums of a batch costs
+/// less than computing them. If walkers split into many, the number is reduced so that a batch does
+/// not take long.
 std::uint64_t paths_per_batch(const Scene& scene, const Plan& plan) {
   const std::uint64_t most = plan.rank_k && scene.request.channels.size() > 100 ? 2000 : 400;
   if (!plan.weighted || scene.medium.mu_s == 0) return most;
@@ -82,14 +87,15 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
                : scene.profile               ? Plan::Phase::varying
                : scene.medium.dimension == 3 ? Plan::Phase::space
                                              : phase_of(scene.scatterer);
-  plan.reversed = reversed == ReversedPaths::yes || (reversed == ReversedPaths::automatic &&
-                                                     can_see_backscattering(request, scene.domain));
-  plan.near = has_near_ends(request);
+  plan.reversed =
+      reversed == ReversedPaths::yes ||
+      (reversed == ReversedPaths::automatic && can_detect_backscattering(request, scene.domain));
+  plan.near = has_near_endpoints(request);
   plan.rank_k = request.kind == CovarianceRequest::Kind::full;
   plan.score_level = level_of(scene);
   plan.phases = plan.reversed || request.kind != CovarianceRequest::Kind::intensity;
-  plan.weighted = scene.medium.albedo < 1 - 1e-12 || loses_by_the_sides(scene);
-  constexpr std::size_t few = 20000;  // entries; a millisecond each at the most
+  plan.weighted = scene.medium.albedo < 1 - 1e-12 || loses_light_by_sides(scene);
+  constexpr std::size_t few = 20000;  // entries; quadrature takes at most 1 ms for each
   plan.sampled_single =
       scene.index || scene.profile || plan.near || plan.rank_k || request.entries.size() > few;
   plan.paths_per_batch = paths_per_batch(scene, plan);
@@ -97,23 +103,25 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
 }
 
 void require_walks(const Scene& scene, bool weighted) {
-  if (scene.domain.kind == Domain::Kind::slab && has_near_ends(scene.request))
+  if (scene.domain.kind == Domain::Kind::slab && has_near_endpoints(scene.request))
     throw InputError(
-        "method: beams, near sources and near sensors beside a slab are of transport "
-        "alone; or take a box");
+        "method: beams, near sources and near sensors beside a slab require method = "
+        "transport, or a box");
   if (scene.medium.mu_s == 0) return;
   const auto require = [&](double scatterings, double most, const std::string& what) {
     if (scatterings < most) return;
     std::ostringstream text;
-    text << what << " about " << std::setprecision(2) << scatterings << " times, at most " << most
-         << "; take a thinner medium, or a slab by method = transport, which needs no paths";
+    text << what << " about " << std::setprecision(2) << scatterings << " times, but at most "
+         << most
+         << " are allowed; take a thinner medium, or a slab with method = transport, which samples "
+            "no paths";
     throw InputError("optical_depth", scene.medium.mu_t * scene.domain.depth, text.str());
   };
   require(scatterings_of_slowest_mode(scene.medium, scene.domain), longest_path,
-          "its longest light paths scatter");
+          "the longest light paths scatter");
   if (weighted)
     require(DiffusionImportance(scene).scatterings(), most_scatterings,
-            "light paths with all that they split into scatter");
+            "light paths and all that they split into scatter");
 }
 
 std::string Plan::describe() const {
@@ -133,18 +141,18 @@ std::string Plan::describe() const {
       text << "phase function in space";
       break;
     case Phase::varying:
-      text << "scattering that varies";
+      text << "varying scattering";
       break;
     case Phase::graded:
       text << "curved rays";
       break;
   }
-  text << "; " << (weighted ? "walkers split and play roulette" : "walkers of equal weight") << "; "
+  text << "; " << (weighted ? "splitting and Russian roulette" : "walkers of equal weight") << "; "
        << (sampled_single ? "" : "single scattering in closed form; ")
        << (phases ? "" : "no phases; ") << (reversed ? "reversed paths" : "no reversed paths")
        << "; " << (near ? "near field" : "far field only") << "; "
        << (rank_k ? "full covariance by rank-k updates" : "listed entries only")
-       << "; scores promising less than " << score_level << " play roulette; " << paths_per_batch
+       << "; Russian roulette for expected scores below " << score_level << "; " << paths_per_batch
        << " paths per batch";
   return text.str();
 }

@@ -7,38 +7,43 @@
 
 namespace flatspeckle::mc {
 
-/// Whether reversed paths (coherent backscattering, the R of C14) are walked: where a view asks for
-/// them, always, never.
+/// Whether reversed paths (coherent backscattering, the R of C14) are included: only if a view can
+/// detect coherent backscattering (automatic), always (yes), or never (no).
 enum class ReversedPaths { automatic, yes, no };
 
-/// What a scene asks of the estimator, derived before the first batch. Each choice picks a kernel
-/// that has no code for what is left out.
+/// Settings of the Monte Carlo estimator for a scene, selected before the first batch. Each form of
+/// scattering (Phase) has its own compiled walk, without code for the other forms.
 struct Plan {
   enum class Phase { isotropic, henyey_greenstein, tabulated, space, varying, graded };
   Domain::Kind domain = Domain::Kind::box;
   Phase phase = Phase::isotropic;
-  bool phases = true;            ///< false: magnitudes alone, which is all that intensities need
-  bool reversed = false;         ///< paths count walked backwards too
-  bool near = false;             ///< some lights or views are points, or beams
-  bool weighted = false;         ///< walkers split and play roulette: absorption, depth
-  bool rank_k = false;           ///< the full covariance by Hermitian rank-k updates
-  bool sampled_single = true;    ///< false: paths of one scatterer by quadrature
-  bool single_roulette = false;  ///< those of one scatterer play it, too
-  /// Expected contribution, in units of that of an isotropic scatterer next to a view, below which
-  /// scoring is left to chance; 0: never.
+  /// false: only magnitudes of fields are computed; sufficient for intensities
+  bool phases = true;
+  bool reversed = false;  ///< whether reversed paths are included
+  bool near = false;      ///< whether some lights or views are points or beams
+  /// Whether walkers are split or undergo Russian roulette by the importance at their depth
+  bool weighted = false;
+  bool rank_k = false;  ///< whether Hermitian rank-k updates compute the full covariance
+  /// Whether walks sample paths of one scatterer; otherwise these are integrated by quadrature
+  bool sampled_single = true;
+  bool single_roulette = false;  ///< whether paths of one scatterer undergo Russian roulette
+  /// Expected contribution (ExpectedContribution) below which a path undergoes Russian roulette
+  /// before it is scored; 0 if no path does. The unit is the contribution of an isotropic scatterer
+  /// next to a view.
   double score_level = 0;
   std::uint64_t paths_per_batch = 0;
 
   std::string describe() const;
 };
 
-/// Which form of scattering a scatterer of the plane needs.
+/// Returns the form of scattering of a scatterer in 2D: isotropic, Henyey-Greenstein or tabulated.
 Plan::Phase phase_of(const Scatterer& scatterer);
 
 Plan make_plan(const Scene& scene, ReversedPaths reversed);
 
-/// Throws InputError where walks cannot be used: near ends beside a slab, and media in which a
-/// single path, or all that one splits into where walkers are weighted, takes seconds.
+/// Throws InputError for scenes that random walks cannot compute: slabs with near endpoints, and
+/// media in which a single path takes seconds. weighted: Plan::weighted; if true, this time
+/// includes all the paths into which the path splits.
 void require_walks(const Scene& scene, bool weighted);
 
 }  // namespace flatspeckle::mc

@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "mc/paths/bent/graded_medium.h"
-#include "mc/paths/endpoint_factors/end_factors.h"
+#include "mc/paths/endpoint_factors/endpoint_factors.h"
 #include "mc/paths/endpoint_factors/varying_scattering.h"
 #include "mc/paths/walk/plan.h"
 
 namespace flatspeckle::mc {
 
-/// Scattering (scattering.h) in a medium whose index varies; flights between scatterers are curved.
+/// Scattering (scattering.h) in a medium whose refractive index varies, so that flights between
+/// scatterers are curved.
 class GradedScattering {
  public:
   using Direction = Vec2;
@@ -37,8 +38,9 @@ constexpr bool bends = false;
 template <>
 inline constexpr bool bends<GradedScattering> = true;
 
-/// Calls f with the scattering of a scene of the plane in one of its forms. Throws std::logic_error
-/// for any other scene.
+/// Calls f with the scattering object of a 2D scene, of the type that `phase` selects: isotropic,
+/// Henyey-Greenstein or tabulated. Throws std::logic_error for other values of `phase` and for 3D
+/// scenes.
 template <typename F>
 void with_scattering(const Scene& scene, Plan::Phase phase, F f) {
   if (scene.medium.dimension != 2)
@@ -58,10 +60,11 @@ void with_scattering(const Scene& scene, Plan::Phase phase, F f) {
   throw std::logic_error("with_scattering: not the phase function of a scatterer in the plane");
 }
 
-/// Of a medium that varies: of each material in its form.
+/// Returns the scattering of a medium whose material varies with position. Each material has its
+/// own form of scattering.
 VaryingScattering varying_scattering(const Scene& scene);
 
-/// Of a medium whose index varies.
+/// Returns the scattering in a medium whose refractive index varies.
 GradedScattering graded_scattering(const Scene& scene);
 
 }  // namespace flatspeckle::mc

@@ -10,7 +10,7 @@
 #include "core/run/interrupt.h"
 #include "flatland/scene/scene.h"
 #include "grin/media/scattering/free_flight.h"
-#include "mc/paths/bent/graded_ends.h"
+#include "mc/paths/bent/graded_endpoints.h"
 #include "mc/paths/endpoint_factors/profile_flight.h"
 #include "mc/paths/endpoint_factors/space_scattering.h"
 #include "mc/paths/endpoint_factors/varying_scattering.h"
@@ -24,13 +24,14 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// Walks from the lights through a scene (Bar et al. 2019) and gives what it finds to a scorer.
-/// Steps are cheap and scoring is not, so a contribution that promises little plays roulette first.
-/// Walkers split and die by what their depth is worth.
+/// Samples random walks from the lights through a scene [bar2019] and passes their paths to a
+/// scorer. Scoring a path costs far more than a step of a walk, so paths with a small expected
+/// contribution undergo Russian roulette before they are scored. A weight window splits and
+/// terminates walkers by the importance at their depth.
 ///
-/// With reversed paths a path is weighed by the mean of the densities with which the walk would
-/// find it from either end. That is unbiased, because F + R does not change when a path is turned
-/// round, and no |R|^2 can outgrow its weight.
+/// With reversed paths, the density of a path is the mean of the densities with which the walk
+/// samples it from its two ends. This is unbiased, because F + R does not change when a path is
+/// reversed, and keeps |R|^2 times the weight bounded.
 template <typename Scattering>
 class PathWalk {
   using Direction = typename Scattering::Direction;
@@ -44,11 +45,12 @@ class PathWalk {
         scattering_(scattering),
         importance_(scene),
         first_(make_first(scene)),
-        expected_view_(scene, view_ends(scene)) {}
+        expected_view_(scene, view_endpoints(scene)) {}
 
-  /// To be called before a batch's first walk.
+  /// Prepares a batch. Called before the first walk of the batch.
   void begin(RandomStream& random) {
-    constexpr std::uint64_t steps_of_splitting = 5'000'000;  // five times what is planned
+    // Five times the largest mean number of scatterings of a batch (plan.cpp)
+    constexpr std::uint64_t steps_of_splitting = 5'000'000;
     ticket_ = random.uniform();
     last_splitting_ = steps_ + steps_of_splitting;
   }
@@ -68,11 +70,11 @@ class PathWalk {
     start_ = local(scattering_, x).sample(arrival, random);
     path_ = {x, start_, {}, {}, 0, true};
     start_density_ = -1;
-    log_worth_first_ = std::max(importance_.log_worth(x.z), 0.0);
+    log_importance_first_ = std::max(importance_.log_importance(x.z), 0.0);
     if (plan_.reversed) expected_first_ = expected(x, -start_);
     const auto [length, weight] = first_flight(x, start_, random);
     scorer.begin(x, start_, length);
-    const auto [end, w] = landed(x, start_, length);
+    const auto [end, w] = flight_end(x, start_, length);
     follow({end, w, weight, 1}, random, scorer);
     while (!waiting_.empty()) {
       Walker walker = waiting_.back();
@@ -90,10 +92,11 @@ class PathWalk {
     if constexpr (bends<Scattering>)
       return First(scene, scattering_);
     else
-      return First(scene, plan_.weighted ? importance_.rise() : 0);
+      return First(scene, plan_.weighted ? importance_.mean_derivative() : 0);
   }
 
-  /// Weights in units of mu_s^2 / mu_t, that of B = 2.
+  /// A walker on its arrival at a scatterer. Its weight is in units of mu_s^2 / mu_t, the weight of
+  /// a path of two scatterers in C14. copies: number of paths that are still to continue from here.
   struct Walker {
     Vec2 x;
     Direction arrival;
@@ -101,7 +104,7 @@ class PathWalk {
     std::uint32_t copies;
   };
 
-  // Of the medium at a place.
+  // Properties of the medium at a place.
   double mu_s(Vec2 x) const {
     if constexpr (varies<Scattering>) return profile_->mu_s(x);
     return medium_.mu_s;
@@ -111,8 +114,8 @@ class PathWalk {
     return medium_.albedo;
   }
 
-  /// Its length and its weight. It stays inside: else most walks of a thin medium would find
-  /// nothing.
+  /// Returns the length and weight of the first flight between scatterers. This flight always ends
+  /// inside the medium; otherwise most walks in a thin medium would yield no path.
   std::pair<double, double> first_flight(Vec2 x, Vec2 w, RandomStream& random) const {
     if constexpr (bends<Scattering>) {
       const grin::BoundedFlight flight{medium_.mu_t, scattering_.medium().inside(x, w)};
@@ -123,22 +126,23 @@ class PathWalk {
       const ProfileFlight flight(*profile_, x, w, edge);
       return {flight.sample(random.uniform()), flight.probability()};
     }
-    const BoundedStretchedFlight flight{medium_.mu_t, edge, pull(x, w)};
+    const BoundedBiasedFlight flight{medium_.mu_t, edge, bias(x, w)};
     const double length = flight.sample(random.uniform());
     return {length, flight.weight(length)};
   }
 
-  /// Where a flight ends, and its direction there.
-  std::pair<Vec2, Direction> landed(Vec2 x, const Direction& w, double length) const {
+  /// Returns the place where a flight ends, and the direction of the flight at this place.
+  std::pair<Vec2, Direction> flight_end(Vec2 x, const Direction& w, double length) const {
     if constexpr (bends<Scattering>) {
-      const auto place = scattering_.medium().flown(x, w, length);
+      const auto place = scattering_.medium().after_flight(x, w, length);
       return place ? std::pair(place->x, place->w) : std::pair(x, w);
     } else {
       return {x + length * Vec2(w), w};
     }
   }
 
-  /// From where a walker has arrived, until it leaves, dies or splits.
+  /// Follows a walker from its arrival at a scatterer until it leaves the medium, is terminated or
+  /// splits.
   void follow(Walker walker, RandomStream& random, PathScorer& scorer) {
     do {
       score(walker, scorer);
@@ -146,10 +150,10 @@ class PathWalk {
     } while (step(walker, random, scorer));
   }
 
-  /// To the next scatterer; false if there is none.
+  /// Moves a walker to the next scatterer; returns false if there is none.
   bool step(Walker& walker, RandomStream& random, PathScorer& scorer) {
-    constexpr std::uint64_t between_looks = 4096;
-    if (++steps_ % between_looks == 0) stop_if_interrupted();
+    constexpr std::uint64_t between_checks = 4096;
+    if (++steps_ % between_checks == 0) stop_if_interrupted();
     const Direction w = local(scattering_, walker.x).sample(walker.arrival, random);
     if constexpr (bends<Scattering>) return fly_bent(walker, w, random, scorer);
     const double edge = domain_.distance_to_edge(walker.x, w),
@@ -163,7 +167,7 @@ class PathWalk {
 
   bool fly_bent(Walker& walker, Vec2 w, RandomStream& random, PathScorer& scorer) const {
     const double flight = grin::sample_free_flight(medium_.mu_t, random.uniform());
-    const auto place = scattering_.medium().flown(walker.x, w, flight);
+    const auto place = scattering_.medium().after_flight(walker.x, w, flight);
     if (!place) return false;
     if (has_tally_) scorer.step(walker.x, walker.arrival, w, flight);
     walker.x = place->x;
@@ -171,43 +175,45 @@ class PathWalk {
     return true;
   }
 
-  /// Where light dies out with depth, half of the flights towards what is worth more are stretched
-  /// (Dwivedi 1982): else rare long ones would carry most of the result.
+  /// Samples the length of a flight. Where light decays with depth, half of the flights towards
+  /// higher importance are biased by the exponential transform [dwivedi1982]; otherwise rare long
+  /// flights would dominate the result.
   double sample_flight(Walker& walker, Vec2 w, double edge, RandomStream& random) const {
     if constexpr (varies<Scattering>)
       return profile_->reach(walker.x, w, -std::log(random.uniform()), edge);
     const double mu_t = medium_.mu_t;
     if (plan_.weighted) {
-      if (const double gain = pull(walker.x, w); gain > 0) {
-        const double stretched = 1 - std::min(gain, grin::StretchedFlight::most_pull);
-        const bool stretch = random.uniform() < 0.5;
+      if (const double growth = bias(walker.x, w); growth > 0) {
+        const double mu_t_factor = 1 - std::min(growth, grin::BiasedFlight::largest_bias);
+        const bool is_biased = random.uniform() < 0.5;
         const double flight =
-            grin::sample_free_flight(stretch ? stretched * mu_t : mu_t, random.uniform());
-        walker.weight *= 2 / (1 + stretched * std::exp((1 - stretched) * mu_t * flight));
+            grin::sample_free_flight(is_biased ? mu_t_factor * mu_t : mu_t, random.uniform());
+        walker.weight *= 2 / (1 + mu_t_factor * std::exp((1 - mu_t_factor) * mu_t * flight));
         return flight;
       }
     }
     return grin::sample_free_flight(mu_t, random.uniform());
   }
 
-  /// How fast the worth grows in a direction, per mean free path.
-  double pull(Vec2 x, Vec2 w) const {
-    return plan_.weighted ? importance_.slope(x.z) * w.z / medium_.mu_t : 0;
+  /// Returns the derivative of the log importance at x in the direction w, per mean free path.
+  double bias(Vec2 x, Vec2 w) const {
+    return plan_.weighted ? importance_.derivative(x.z) * w.z / medium_.mu_t : 0;
   }
 
-  /// The weight window: false if the walker died, or waits as several. Where depth promises more
-  /// than it gives, walkers would multiply for ever: splitting ends for the rest of the batch,
-  /// which depends on the past alone and so changes no mean.
+  /// Applies the weight window; returns false if the walker is terminated or split. Where the
+  /// importance exceeds the actual contributions, the number of walkers could grow without limit.
+  /// Splitting therefore stops for the rest of the batch after a number of steps. This decision
+  /// depends only on the past, so it causes no bias.
   bool reweigh(Walker& walker, RandomStream& random, PathScorer& scorer) {
     walker.weight *= albedo(walker.x);
-    const double worth = walker.weight * importance(walker.x);
-    if (worth < 0.5) {
-      walker.weight /= worth;
-      return random.uniform() < worth;
+    const double weighted_importance = walker.weight * importance(walker.x);
+    if (weighted_importance < 0.5) {
+      walker.weight /= weighted_importance;
+      return random.uniform() < weighted_importance;
     }
-    if (worth < 2 || steps_ > last_splitting_) return true;
+    if (weighted_importance < 2 || steps_ > last_splitting_) return true;
     constexpr double most_copies = 1000;
-    const double copies = std::min(worth, most_copies);
+    const double copies = std::min(weighted_importance, most_copies);
     walker.weight /= copies;
     walker.copies = static_cast<std::uint32_t>(copies + random.uniform());
     waiting_.push_back(walker);
@@ -215,22 +221,26 @@ class PathWalk {
     return false;
   }
 
-  /// Contributions that promise less than a score play systematic roulette: every so many of them,
-  /// measured in what they promise, one is taken for all.
+  /// Scores the path that ends at a walker. Expected contributions below the score level undergo
+  /// systematic Russian roulette: the ratios of contribution to score level are summed, and
+  /// whenever the sum passes a whole number, one path is scored with a weight that represents all
+  /// paths since the last one.
   void score(const Walker& walker, PathScorer& scorer) {
-    double promise = expected(walker.x, walker.arrival), backward_density = 0;
+    double contribution = expected(walker.x, walker.arrival), backward_density = 0;
     if (plan_.reversed) {
       backward_density = first_.density(walker.x, -walker.arrival, scattering_);
-      if constexpr (varies<Scattering>) {  // flights end in the first scatterer, not in the last
+      // The density of each flight contains mu_t at its end. A flight of the reversed path ends at
+      // the first scatterer, but none ends at the last scatterer.
+      if constexpr (varies<Scattering>) {
         const double mu_t = profile_->mu_t(walker.x);
         backward_density *= mu_t > 0 ? profile_->mu_t(path_.first) / mu_t : 0;
       }
       const double forward = start_density();
-      promise =
-          (forward * promise + backward_density * expected_first_) / (forward + backward_density);
+      contribution = (forward * contribution + backward_density * expected_first_) /
+                     (forward + backward_density);
     }
     double weight = walker.weight;
-    if (!survives(promise * weight / plan_.score_level, weight)) return;
+    if (!survives(contribution * weight / plan_.score_level, weight)) return;
     path_.last = walker.x;
     path_.arrival = walker.arrival;
     path_.weight =
@@ -239,7 +249,7 @@ class PathWalk {
     path_.new_start = false;
   }
 
-  /// A path of one scatterer, in the same units.
+  /// Scores a path of one scatterer, with a weight in the same units as in score().
   void score_single(Vec2 x, const Direction& light, PathScorer& scorer) {
     double weight = mu_s(x) / first_.density(x);
     if (plan_.single_roulette && albedo(x) > 0 &&
@@ -248,29 +258,34 @@ class PathWalk {
     scorer.single(x, weight);
   }
 
-  /// Systematic roulette.
-  bool survives(double chance, double& weight) {
-    if (chance >= 1) return true;
-    ticket_ += chance;
+  /// Applies systematic Russian roulette with this survival probability. Returns whether the
+  /// contribution survives; the weight of a survivor is divided by the probability.
+  bool survives(double probability, double& weight) {
+    if (probability >= 1) return true;
+    ticket_ += probability;
     if (ticket_ < 1) return false;
     ticket_ -= 1;
-    weight /= chance;
+    weight /= probability;
     return true;
   }
 
-  /// Of x relative to where the walk began, so that a deep beginning is not split at once.
+  /// Returns the importance of x relative to that of the first scatterer, so that a walk that
+  /// begins at a great depth is not split at once.
   double importance(Vec2 x) const {
-    constexpr double largest_log = 600;  // exp of it is finite
-    return std::exp(std::min(importance_.log_worth(x.z) - log_worth_first_, largest_log));
+    constexpr double largest_log = 600;  // logarithm whose exp is finite
+    return std::exp(std::min(importance_.log_importance(x.z) - log_importance_first_, largest_log));
   }
 
-  /// What a path that ends at x is likely to contribute, for a walker of usual weight there.
+  /// Returns the expected contribution of a path that ends at x, for a walker of unit weight. It is
+  /// multiplied by the importance at x, because walkers there have typically the weight 1 /
+  /// importance.
   double expected(Vec2 x, const Direction& arrival) const {
     const double value = expected_view_(x, arrival);
     return plan_.weighted ? value * importance(x) : value;
   }
 
-  /// Computed when it is first asked for: many walks never score.
+  /// Returns the joint density of the first scatterer of the walk and the direction after it. It is
+  /// computed on first use, because many walks score no path.
   double start_density() {
     if (start_density_ < 0) start_density_ = first_.density(path_.first, start_, scattering_);
     return start_density_;
@@ -279,7 +294,7 @@ class PathWalk {
   const Plan& plan_;
   Domain domain_;
   const BulkMedium& medium_;
-  const MediumProfile* profile_;  ///< of a medium that varies
+  const MediumProfile* profile_;  ///< null if the medium is homogeneous
   const Scattering& scattering_;
   DiffusionImportance importance_;
   First first_;
@@ -288,8 +303,9 @@ class PathWalk {
   bool has_tally_ = false;
   Direction start_;
   Path path_;
-  double start_density_ = -1, log_worth_first_ = 0, expected_first_ = 0;
-  double ticket_ = 0;  ///< a score at every whole number
+  double start_density_ = -1, log_importance_first_ = 0, expected_first_ = 0;
+  /// fraction of the sum of survival probabilities; a path survives when it reaches 1
+  double ticket_ = 0;
   std::uint64_t steps_ = 0, last_splitting_ = 0;
 };
 
@@ -313,12 +329,13 @@ class WalksBy final : public PathWalks {
                std::span<Complex> out) const override {
     local(scattering_, x).towards(from, to, out);
   }
-  std::unique_ptr<EndFactors> factors(const Scene& scene, const std::vector<End>& ends,
-                                      bool phases) const override {
+  std::unique_ptr<EndpointFactors> factors(const Scene& scene,
+                                           const std::vector<Endpoint>& endpoints,
+                                           bool phases) const override {
     if constexpr (bends<Scattering>)
-      return std::make_unique<GradedEnds>(scene, ends, phases, scattering_.medium());
+      return std::make_unique<GradedEndpoints>(scene, endpoints, phases, scattering_.medium());
     else
-      return std::make_unique<StraightEnds>(scene, ends, phases);
+      return std::make_unique<StraightEndpoints>(scene, endpoints, phases);
   }
 
  private:
@@ -326,7 +343,7 @@ class WalksBy final : public PathWalks {
   const PathWalk<Scattering> walk_;
 };
 
-/// Calls f with the scattering of any scene.
+/// Calls f with the scattering object of any scene, of the type that `phase` selects.
 template <typename F>
 void with_any_scattering(const Scene& scene, Plan::Phase phase, F f) {
   if (phase == Plan::Phase::varying) return f(varying_scattering(scene));
@@ -352,7 +369,7 @@ VaryingScattering varying_scattering(const Scene& scene) {
 GradedScattering graded_scattering(const Scene& scene) {
   std::vector<GradedScattering> made;
   const auto medium = graded_medium(scene);
-  check_graded_ends(scene, *medium);
+  check_graded_endpoints(scene, *medium);
   with_scattering(scene, phase_of(scene.scatterer), [&](const auto& scattering) {
     made.emplace_back(AnyScattering(scattering), medium);
   });

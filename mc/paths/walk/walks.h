@@ -4,15 +4,16 @@
 #include <memory>
 
 #include "flatland/scene/scene.h"
-#include "mc/paths/endpoint_factors/end_factors.h"
+#include "mc/paths/endpoint_factors/endpoint_factors.h"
 #include "mc/paths/walk/path_scorer.h"
 #include "mc/paths/walk/plan.h"
 
 namespace flatspeckle::mc {
 
-/// Numbered batches of plan.paths_per_batch walks, each handed to a scorer, and scattering at the
-/// ends of paths, which is called once for many ends: its form (scattering.h) is chosen at run
-/// time.
+/// Samples light paths by random walks, in numbered batches of plan.paths_per_batch walks, and
+/// passes the paths to a scorer. Also evaluates the scattering towards the endpoints of paths
+/// (lights and views). The form of scattering (scattering.h) is selected by virtual calls; they
+/// cost little, because one call evaluates many endpoints.
 class PathWalks {
  public:
   PathWalks(const Scene& scene, const Plan& plan, std::uint64_t seed)
@@ -24,14 +25,17 @@ class PathWalks {
   const Plan& plan() const { return plan_; }
   virtual void batch(std::uint64_t number, PathScorer& scorer) const = 0;
 
-  /// A of C14 over sqrt(sigma_s) at x, in the plane of incidence.
+  /// Returns the scattering amplitude A (conventions, C14) of a scatterer at x divided by
+  /// sqrt(sigma_s), for two directions in the plane of incidence.
   virtual Complex amplitude(Vec2 x, Vec2 from, Vec2 to) const = 0;
-  /// Multiplies out[j] by the amplitude towards each of many.
+  /// Multiplies out[j], for all j, by the same amplitude for scattering from `from` to to[j].
   virtual void towards(Vec2 x, const SpaceDirection& from, const Directions& to,
                        std::span<Complex> out) const = 0;
-  /// Factors of ends for the rays of the same medium.
-  virtual std::unique_ptr<EndFactors> factors(const Scene& scene, const std::vector<End>& ends,
-                                              bool phases) const = 0;
+  /// Makes the endpoint factors (C13) of lights or views. scene: has the medium of these walks, but
+  /// may have another wavenumber. phases: whether the factors are complex, not only magnitudes.
+  virtual std::unique_ptr<EndpointFactors> factors(const Scene& scene,
+                                                   const std::vector<Endpoint>& endpoints,
+                                                   bool phases) const = 0;
 
  protected:
   const Scene scene_;
@@ -39,7 +43,8 @@ class PathWalks {
   const std::uint64_t seed_;
 };
 
-/// Null where nothing scatters. Throws InputError where walks cannot be used.
+/// Makes the walks of a scene; returns null if nothing scatters. Throws InputError as
+/// require_walks() does.
 std::shared_ptr<const PathWalks> path_walks(const Scene& scene, const Plan& plan,
                                             std::uint64_t seed);
 

@@ -9,9 +9,13 @@ namespace flatspeckle::mc {
 namespace {
 
 constexpr double right_angle = std::numbers::pi / 2;
-constexpr double growth = 5;  ///< of panels with the distance from a focus: 3 is no better
+/// Ratio of the distances of the two ends of a panel from a focus. A ratio of 3 was not more
+/// accurate.
+constexpr double growth = 5;
 
-/// Splits a panel until none is longer than 4 times its distance from any focus, or 4 widths.
+/// Splits the interval [from, to] until no part is longer than 5 times its distance from any focus,
+/// or 5 times the width of that focus if this is larger. Appends the upper ends of the parts to
+/// `ends`.
 void split(double from, double to, const std::vector<Focus>& foci, std::vector<double>& ends) {
   for (const Focus& focus : foci) {
     const bool above = focus.angle <= from;
@@ -25,7 +29,8 @@ void split(double from, double to, const std::vector<Focus>& foci, std::vector<d
   ends.push_back(to);
 }
 
-/// Those that matter, as ends of panels, and without near twins.
+/// Returns the foci that are so narrow that they require shorter panels. Foci close to an end of
+/// the quadrant are moved to that end; foci close to each other are merged.
 std::vector<Focus> sharp(std::vector<Focus> foci) {
   std::sort(foci.begin(), foci.end(), [](auto& a, auto& b) { return a.angle < b.angle; });
   std::vector<Focus> kept;
@@ -53,7 +58,8 @@ std::vector<double> panel_ends(const std::vector<Focus>& all) {
   return ends;
 }
 
-/// Lagrange's polynomials of nodes in [0, 1], [node][at], by the barycentric formula.
+/// Returns the values of the Lagrange polynomials of the nodes `node` in [0, 1] at the points `at`,
+/// [node][point], by the barycentric formula.
 Matrix lagrange(const std::vector<double>& node, const std::vector<double>& at) {
   const auto n = static_cast<Eigen::Index>(node.size()), m = static_cast<Eigen::Index>(at.size());
   Matrix values(n, m);
@@ -100,7 +106,8 @@ const QuadratureRule& AngularGrid::nodes_of(const Panel& panel) const {
   return is_last(panel) ? last_nodes_ : nodes_;
 }
 
-/// A point u of [0, 1] is theta = from + u width, or on the last panel pi/2 - u^2 width.
+/// Adds a panel, with its nodes and subpanels. A point u of [0, 1] is mapped to theta = from + u
+/// width, or on the last panel to theta = pi/2 - u^2 width.
 void AngularGrid::add_panel(double from, double to, double fine) {
   const double width = to - from;
   panels_.push_back({from, to, static_cast<Eigen::Index>(panels_.size()) * order_});

@@ -9,20 +9,25 @@
 
 namespace flatspeckle::mc {
 
-/// Where radiance changes within a small angle: near a light where scattering is forward-peaked, or
-/// where the phase of a pair of lights stands still.
+/// A direction near which radiance varies rapidly, so that the angular grid must be finer there. It
+/// is the direction of an illumination if scattering is forward-peaked, or a direction in which the
+/// phase of the radiance of a field pair is stationary.
 struct Focus {
-  double angle, width;  ///< angle in the first quadrant
+  /// Angle from z, in [0, pi/2], and the width of the range of angles in which radiance varies.
+  double angle, width;
   auto operator<=>(const Focus&) const = default;
 };
 
-/// Ordinates of a quadrant, 0 < theta < pi/2, which stand for the other three by symmetry: panels
-/// that grow away from the foci, and on each a polynomial of theta by its values at Gauss nodes; on
-/// the last of sqrt(pi/2 - theta), for radiance has a logarithm at grazing angles near the faces.
+/// Discrete ordinates of the quadrant 0 < theta < pi/2, where theta is the angle from the normal z
+/// of the slab. The other three quadrants follow by symmetry. The quadrant is divided into panels
+/// whose widths grow with the distance from the foci, the angles near which radiance varies fast
+/// (directions of lights and views, narrow peaks). On each panel radiance is a polynomial of
+/// theta, given by its values at Gauss nodes. On the last panel it is a polynomial of sqrt(pi/2 -
+/// theta), because radiance has a logarithmic singularity at grazing angles near the faces.
 class AngularGrid {
  public:
-  /// order: nodes of a panel. fine: the angle within which a phase function may change; integrals
-  /// against it are taken on subpanels as narrow.
+  /// order: nodes per panel. fine: smallest angle over which a phase function varies. Panels are
+  /// divided into subpanels of this width for integrals that contain a phase function.
   AngularGrid(const std::vector<Focus>& foci, int order, double fine);
 
   Eigen::Index size() const { return cosine_.size(); }
@@ -30,8 +35,8 @@ class AngularGrid {
   const Eigen::VectorXd& cosine() const { return cosine_; }
   const Eigen::VectorXd& weight() const { return weight_; }
 
-  /// Integrals of l_j f over the quadrant, l_j the polynomial that is 1 at node j and 0 at the
-  /// others of its panel.
+  /// Returns the integral of l_j f over the quadrant for each node j. The polynomial l_j is 1 at
+  /// node j and 0 at the other nodes of the same panel.
   template <typename F>
   Eigen::VectorXcd integrals(const F& f) const {
     Eigen::VectorXcd found = Eigen::VectorXcd::Zero(size());
@@ -43,7 +48,8 @@ class AngularGrid {
     return found;
   }
 
-  /// The same of many functions: f(angles) returns [angle][function].
+  /// Returns the integrals of l_j f for several functions f at once, [node][function]. f(angles)
+  /// returns the values of all functions, [angle][function].
   template <typename F>
   Matrix integrals_of(Eigen::Index functions, const F& f) const {
     Matrix found = Matrix::Zero(size(), functions);
@@ -52,7 +58,7 @@ class AngularGrid {
     return found;
   }
 
-  /// The same of the indicator of [from, to].
+  /// Returns the integral of l_j, defined at integrals(), over [from, to] for each node j.
   Eigen::VectorXd interval_integrals(double from, double to) const;
 
  private:
@@ -63,16 +69,17 @@ class AngularGrid {
   struct Subpanel {
     Eigen::Index first;
     Eigen::VectorXd angle;
-    Matrix weighted_basis;  ///< l_j at the angles, times their weights: [node][angle]
+    /// Values of l_j at the angles, times the quadrature weights of the angles, [node][angle].
+    Matrix weighted_basis;
   };
   void add_panel(double from, double to, double fine);
   bool is_last(const Panel& panel) const;
   const QuadratureRule& nodes_of(const Panel& panel) const;
 
   int order_;
-  QuadratureRule nodes_, last_nodes_;  ///< of a panel, of the last
-  QuadratureRule inner_;               ///< of a subpanel
-  QuadratureRule exact_;               ///< for polynomials of a panel
+  QuadratureRule nodes_, last_nodes_;  ///< nodes of other panels; nodes of the last panel
+  QuadratureRule inner_;               ///< quadrature rule on a subpanel
+  QuadratureRule exact_;  ///< quadrature rule that is exact for the polynomials of a panel
   Eigen::VectorXd angle_, cosine_, weight_;
   std::vector<Panel> panels_;
   std::vector<Subpanel> subpanels_;

@@ -21,7 +21,7 @@ double norm(const Rows& rows) {
   return rows.norm();
 }
 double norm(const Dual<Rows>& rows) {
-  return rows.value.norm() + rows.slope.norm();
+  return rows.value.norm() + rows.derivative.norm();
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ DirectionModesOf<Geometry, Number>::DirectionModesOf(const Slab& slab, const Dis
       highest_(highest),
       q_(Geometry::size(momentum, slab.k / slab.mu_t)) {
   for (std::size_t layer = 0; layer < slab.layers.size(); ++layer)
-    ends_.push_back(ends(layer, momentum, lights, views));
+    endpoints_.push_back(endpoints(layer, momentum, lights, views));
 }
 
 template <typename Geometry, typename Number>
@@ -43,19 +43,19 @@ double DirectionModesOf<Geometry, Number>::q(std::size_t layer) const {
   return q_ * (slab_.mu_t / slab_.layers[layer].mu_t);
 }
 
-/// What pairs feed, and what views collect: waves of lights and of views turned round; shares of
-/// mu_t.
+/// Returns the radiance that the scattering of pairs of illuminations adds in a layer, and the
+/// sensitivity with which pairs of views collect radiance from the layer, both per mean free path.
 template <typename Geometry, typename Number>
-EndWavesOf<Number> DirectionModesOf<Geometry, Number>::ends(std::size_t layer,
-                                                            const Momentum& momentum,
-                                                            const Pairs& lights,
-                                                            const Pairs& views) const {
+EndpointWavesOf<Number> DirectionModesOf<Geometry, Number>::endpoints(std::size_t layer,
+                                                                      const Momentum& momentum,
+                                                                      const Pairs& lights,
+                                                                      const Pairs& views) const {
   const double k = slab_.k / slab_.layers[layer].mu_t;
   const auto fed = [&](const Pairs& pairs) {
     return Geometry::template fed<Number>(discrete_.layers()[layer], momentum, highest_, pairs);
   };
   const Waves of_lights = fed(lights), seen = views == lights ? of_lights : fed(views);
-  EndWavesOf<Number> found{of_lights, {{}, {}, seen.up, seen.down}};
+  EndpointWavesOf<Number> found{of_lights, {{}, {}, seen.up, seen.down}};
   for (const auto& pair : lights) add(found.lights, pair_wave(k, pair, slab_.departure));
   for (const auto& pair : views)
     add(found.views, pair_wave(k, turned_round(pair), slab_.departure));
@@ -66,11 +66,11 @@ template <typename Geometry, typename Number>
 auto DirectionModesOf<Geometry, Number>::parts() const -> std::vector<Part> {
   std::vector<Part> list;
   if (q_ == 0) {
-    for (int f = 0; f <= Geometry::families * highest_; ++f)
+    for (int f = 0; f <= Geometry::function_kinds * highest_; ++f)
       list.push_back({{f}, mode(f) % 2 == 0});
     return list;
   }
-  for (int first = 0; first < Geometry::families; ++first) {  // of cosines, of sines
+  for (int first = 0; first < Geometry::function_kinds; ++first) {  // cosines, then sines
     Part part{{}, 0};
     for (const int parity : {0, 1}) {
       for (int m = first; m <= highest_; ++m)
@@ -85,23 +85,25 @@ auto DirectionModesOf<Geometry, Number>::parts() const -> std::vector<Part> {
 template <typename Geometry, typename Number>
 auto DirectionModesOf<Geometry, Number>::layers(const Part& part) const -> std::vector<Layer> {
   std::vector<Layer> list;
-  if (is_dark(part, &EndWavesOf<Number>::lights) || is_dark(part, &EndWavesOf<Number>::views))
+  if (is_dark(part, &EndpointWavesOf<Number>::lights) ||
+      is_dark(part, &EndpointWavesOf<Number>::views))
     return list;
   for (std::size_t layer = 0; layer < slab_.layers.size(); ++layer)
     list.push_back({transport(layer, part), slab_.optical_depth(slab_.layers[layer]),
-                    part_of(ends_[layer].lights, part), part_of(ends_[layer].views, part)});
+                    part_of(endpoints_[layer].lights, part),
+                    part_of(endpoints_[layer].views, part)});
   return list;
 }
 
 template <typename Geometry, typename Number>
 bool DirectionModesOf<Geometry, Number>::is_dark(const Part& part,
-                                                 Waves EndWavesOf<Number>::*waves) const {
+                                                 Waves EndpointWavesOf<Number>::*waves) const {
   constexpr double rounding = 1e-13;
   double within = 0, all = 0;
-  for (const auto& ends : ends_) {
-    const Waves own = part_of(ends.*waves, part);
+  for (const auto& endpoints : endpoints_) {
+    const Waves own = part_of(endpoints.*waves, part);
     within += norm(own.down) + norm(own.up);
-    all += norm((ends.*waves).down) + norm((ends.*waves).up);
+    all += norm((endpoints.*waves).down) + norm((endpoints.*waves).up);
   }
   return within < rounding * all;
 }
@@ -109,7 +111,7 @@ bool DirectionModesOf<Geometry, Number>::is_dark(const Part& part,
 template <typename Geometry, typename Number>
 Number DirectionModesOf<Geometry, Number>::extinction(std::size_t layer) const {
   return slab_.departure.extinction(slab_.k / slab_.layers[layer].mu_t) -
-         discrete_.layers()[layer].not_turned();
+         discrete_.layers()[layer].peak_scattering();
 }
 
 template <typename Geometry, typename Number>

@@ -8,10 +8,11 @@
 
 namespace flatspeckle::mc {
 
-/// Transport of pairs of one transverse momentum (C36, C41) by functions of direction: for each
-/// mode m its cosines, of number m, and in space its sines, of number highest + m. Scattering keeps
-/// the mode, the momentum couples neighbours; odd modes are taken over i, so that everything is
-/// real but the lights.
+/// Transport of field pairs with one transverse momentum (C36, C41), expanded in functions of
+/// direction. Function m is the cosine of mode m; in space, function highest + m is the sine of
+/// mode m. Scattering does not couple modes; the transverse momentum couples mode m to modes m - 1
+/// and m + 1. Coefficients of odd modes are divided by i; then all quantities except the
+/// illuminations are real.
 template <typename Geometry, typename Number>
 class DirectionModesOf {
  public:
@@ -21,23 +22,31 @@ class DirectionModesOf {
   using Pairs = std::vector<PairOf<typename Geometry::Direction>>;
   using Layer = HomogeneousLayerOf<Number>;
 
-  /// Modes m = 0 .. highest.
+  /// Expands in the modes m = 0 .. highest.
   DirectionModesOf(const Slab& slab, const Discrete& discrete, int highest,
                    const Momentum& momentum, const Pairs& lights, const Pairs& views);
 
-  /// Without transverse momentum: of lights and views of all functions, per layer.
+  /// Constructs the expansion for zero transverse momentum. endpoints: for each layer, the waves of
+  /// illuminations and views, expanded in all functions of direction.
   DirectionModesOf(const Slab& slab, const Discrete& discrete, int highest,
-                   std::vector<EndWavesOf<Number>> ends)
-      : slab_(slab), discrete_(discrete), highest_(highest), q_(0), ends_(std::move(ends)) {}
+                   std::vector<EndpointWavesOf<Number>> endpoints)
+      : slab_(slab),
+        discrete_(discrete),
+        highest_(highest),
+        q_(0),
+        endpoints_(std::move(endpoints)) {}
 
-  /// Functions that no other ones are coupled to, those of even modes first.
+  /// A set of functions of direction that are not coupled to functions outside the set. The first
+  /// `even` functions in the list belong to even modes.
   struct Part {
     std::vector<int> functions;
     int even;
   };
-  /// Cosines and sines; without momentum each function alone.
+  /// Returns the sets of functions that are solved separately: all cosines and, in space, all
+  /// sines. For zero transverse momentum each function is a set by itself.
   std::vector<Part> parts() const;
-  /// None where the lights feed nothing into the part, or the views collect nothing of it.
+  /// Returns the layers, expanded in the functions of a part. The list is empty if the
+  /// illuminations contribute nothing to these functions, or the views collect nothing from them.
   std::vector<Layer> layers(const Part& part) const;
 
  private:
@@ -46,21 +55,22 @@ class DirectionModesOf {
   using Scattering = typename Discrete::Ordinates::Scattering;
   int mode(int function) const { return function > highest_ ? function - highest_ : function; }
   double q(std::size_t layer) const;
-  /// Per mu_t of the layer, without what its peak scatters.
+  /// Returns the extinction coefficient of a layer, in units of its mu_t, without the scattering
+  /// into the forward peak of its phase function.
   Number extinction(std::size_t layer) const;
-  EndWavesOf<Number> ends(std::size_t layer, const Momentum& momentum, const Pairs& lights,
-                          const Pairs& views) const;
+  EndpointWavesOf<Number> endpoints(std::size_t layer, const Momentum& momentum,
+                                    const Pairs& lights, const Pairs& views) const;
   TransportOperatorOf<Number> transport(std::size_t layer, const Part& part) const;
   MatrixOf<Number> block(std::size_t layer, const Part& part,
                          MatrixOf<Real> Scattering::*scattering) const;
   Waves part_of(const Waves& all, const Part& part) const;
-  bool is_dark(const Part& part, Waves EndWavesOf<Number>::*waves) const;
+  bool is_dark(const Part& part, Waves EndpointWavesOf<Number>::*waves) const;
 
   const Slab& slab_;
   const Discrete& discrete_;
   int highest_;
-  double q_;                              ///< per mu_t of the slab
-  std::vector<EndWavesOf<Number>> ends_;  ///< of all functions, per layer
+  double q_;  ///< transverse momentum in units of the slab's mu_t
+  std::vector<EndpointWavesOf<Number>> endpoints_;  ///< waves of each layer, in all functions
 };
 
 }  // namespace flatspeckle::mc

@@ -11,8 +11,8 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// tanh(sqrt(k)) / sqrt(k) by Lambert's continued fraction, to rounding within the unit circle (at
-/// its edge 4e-12).
+/// Returns tanh(sqrt(k)) / sqrt(k) of a matrix k by Lambert's continued fraction. The error is
+/// 4e-12 for eigenvalues on the unit circle and decreases to rounding error inside the circle.
 template <typename M>
 M tanh_ratio(const M& k) {
   const M one = identity_like(k), k2 = product(k, k), k3 = product(k2, k);
@@ -20,27 +20,27 @@ M tanh_ratio(const M& k) {
       .before(M(135135.0 * one + 17325.0 * k + 378.0 * k2 + k3));
 }
 
-/// (1 + a)^-1 a
+/// Returns (1 + a)^-1 a.
 template <typename M>
 M share(const M& a) {
   return FactorsOf<M>(M(identity_like(a) + a)).before(a);
 }
 
 template <typename T>
-std::vector<T> joined(std::vector<T> list, const std::vector<T>& rest) {
+std::vector<T> concatenated(std::vector<T> list, const std::vector<T>& rest) {
   list.insert(list.end(), rest.begin(), rest.end());
   return list;
 }
 
-Rows joined(const Rows& upper, const Rows& lower) {
+Rows concatenated(const Rows& upper, const Rows& lower) {
   Rows both(upper.rows() + lower.rows(), upper.cols());
   both.topRows(upper.rows()) = upper;
   both.bottomRows(lower.rows()) = lower;
   return both;
 }
 
-Dual<Rows> joined(const Dual<Rows>& upper, const Dual<Rows>& lower) {
-  return {joined(upper.value, lower.value), joined(upper.slope, lower.slope)};
+Dual<Rows> concatenated(const Dual<Rows>& upper, const Dual<Rows>& lower) {
+  return {concatenated(upper.value, lower.value), concatenated(upper.derivative, lower.derivative)};
 }
 
 void multiply(Rows& rows, Eigen::Index i, Eigen::Index j, Complex factor) {
@@ -48,28 +48,29 @@ void multiply(Rows& rows, Eigen::Index i, Eigen::Index j, Complex factor) {
 }
 
 void multiply(Dual<Rows>& rows, Eigen::Index i, Eigen::Index j, const Dual<Complex>& factor) {
-  rows.slope(i, j) = factor.value * rows.slope(i, j) + factor.slope * rows.value(i, j);
+  rows.derivative(i, j) =
+      factor.value * rows.derivative(i, j) + factor.derivative * rows.value(i, j);
   rows.value(i, j) *= factor.value;
 }
 
-/// Radiance of both ways, in rows.
+/// Downward and upward radiance, one row per illumination or view.
 template <typename R>
-struct BothWays {
+struct UpAndDown {
   R down, up;
 };
 
-/// The same as S and D.
+/// Sum and difference of downward and upward radiance: S and D of TransportOperatorOf.
 template <typename R>
 struct Mirrored {
   R sum, difference;
 
-  BothWays<R> both_ways() const { return {0.5 * (sum + difference), 0.5 * (sum - difference)}; }
+  UpAndDown<R> up_and_down() const { return {0.5 * (sum + difference), 0.5 * (sum - difference)}; }
 };
 
-using flatspeckle::scaled;  // of one way's rows
+using flatspeckle::scaled;  // overload for plain rows, beside the one for UpAndDown below
 
 template <typename C, typename R>
-BothWays<R> scaled(const std::vector<C>& factor, const BothWays<R>& rows) {
+UpAndDown<R> scaled(const std::vector<C>& factor, const UpAndDown<R>& rows) {
   return {scaled(factor, rows.down), scaled(factor, rows.up)};
 }
 
@@ -79,7 +80,7 @@ std::vector<C> times(const Number& factor, std::vector<C> list) {
   return list;
 }
 
-/// exp(depth rate) of each.
+/// Returns exp(depth * rate) for each rate.
 template <typename Number, typename C>
 std::vector<C> damping(std::vector<C> rates, const Number& depth) {
   using std::exp;
@@ -87,7 +88,8 @@ std::vector<C> damping(std::vector<C> rates, const Number& depth) {
   return rates;
 }
 
-/// int_0^1 exp(rate u) u^power du of powers 1 .. count: the last by its series, then downwards.
+/// Returns int_0^1 exp(rate u) u^power du for power = 1 .. count. The integral of the highest power
+/// is computed by its power series, the others by downward recurrence.
 template <typename C>
 std::vector<C> moments(const C& rate, int count) {
   std::vector<C> moment(static_cast<std::size_t>(count));
@@ -103,7 +105,7 @@ std::vector<C> moments(const C& rate, int count) {
   return moment;
 }
 
-/// Rows with the signs of all but the first `even` columns turned.
+/// Flips the signs of all but the first `even` columns.
 template <typename R>
 R turned(const R& rows, Eigen::Index even) {
   const auto turn = [even](Rows r) {
@@ -113,26 +115,30 @@ R turned(const R& rows, Eigen::Index even) {
   return linear(turn, rows);
 }
 
-/// [view][light]; of the signs that rows have, one is turned back.
+/// Returns the scalar product of each row of `views` with each row of `lights`, [view][light]. The
+/// sign flip of PairWavesOf is first undone in `views`.
 template <typename R>
 R contracted(const R& views, const R& lights, Eigen::Index even) {
   return product_transposed(turned(views, even), lights);
 }
 
-/// A layer or some of them by what they do to radiance from above and below, rows times these; what
-/// leaves of lights and, turned round, of views; and what views collect.
+/// Response of one or several layers: matrices of reflection and transmission, by which rows of
+/// radiance are multiplied from the right; the radiance that leaves, caused by the illuminations
+/// or, in the time-reversed problem, by the views; and the signal that the views collect.
 template <typename Number>
 struct Sheet {
-  MatrixOf<Number> top, bottom;  ///< reflected
-  MatrixOf<Number> down, up;     ///< transmitted
-  BothWays<RowsOf<Number>> lights, views;
+  MatrixOf<Number> top, bottom;  ///< reflection at the top; reflection at the bottom
+  MatrixOf<Number> down, up;     ///< transmission downwards; transmission upwards
+  UpAndDown<RowsOf<Number>> lights, views;
   RowsOf<Number> collected;
 };
 
-/// A layer by what leaves it. Of equal radiance from above and below 1 - `equal` comes back, of
-/// opposite radiance `opposite` - 1: both small for a thin layer, so that albedo 1 balances to
-/// rounding of it; `transmitted` follows from them, and in the deep, where it is small, from
-/// itself. And what leaves of the lights and, turned round, of the views.
+/// Response of a homogeneous layer. With reflection R and transmission T, R + T = 1 - equal_ is the
+/// response to equal radiance on both faces, and R - T = opposite_ - 1 is the response to opposite
+/// radiance. For a thin layer equal_ and opposite_ are small, so that at albedo 1 power is
+/// conserved to rounding error. transmitted_ is T, computed from equal_ and opposite_; in thick
+/// layers, where T is small, it is computed by its own recurrence. leaves_ is the radiance that
+/// leaves, caused by the illuminations or, in the time-reversed problem, by the views.
 template <typename Number>
 class Layer {
  public:
@@ -143,9 +149,10 @@ class Layer {
   using C = ComplexOf<Number>;
 
   Layer(const Operator& medium, RealOf<Number> depth, const Waves& lights, const Waves& views);
-  /// Puts another one on top.
+  /// Doubles the depth by adding an identical layer on top.
   void double_depth();
-  /// Whose lights and views have lost something before they enter.
+  /// Returns the response of this layer if its illuminations and views are attenuated by these
+  /// factors before they enter the layer.
   Sheet<Number> sheet(const std::vector<C>& light_factors,
                       const std::vector<C>& view_factors) const;
   LayerResponseOf<Number> response() const {
@@ -170,7 +177,7 @@ class Layer {
   Eigen::Index lights_, even_;
   Waves waves_;
   M equal_, opposite_, transmitted_;
-  BothWays<R> leaves_;
+  UpAndDown<R> leaves_;
   R collected_;
 };
 
@@ -180,14 +187,15 @@ Layer<Number>::Layer(const Operator& medium, RealOf<Number> depth, const Waves& 
     : depth_(depth),
       lights_(static_cast<Eigen::Index>(lights.top.size())),
       even_(medium.even),
-      waves_{joined(lights.top, views.top), joined(lights.bottom, views.bottom),
-             joined(lights.down, views.down), joined(lights.up, views.up)} {
+      waves_{concatenated(lights.top, views.top), concatenated(lights.bottom, views.bottom),
+             concatenated(lights.down, views.down), concatenated(lights.up, views.up)} {
   start_radiance(medium);
   start_pairs(medium);
 }
 
-/// With D = m S at the top for equal and S = n D for opposite radiance from both sides,
-/// m = (d/2) y f, n = (d/2) f x, f = tanh_ratio(x y d^2/4).
+/// Computes the response to incident radiance. With the symbols of TransportOperatorOf, at the top
+/// of a layer of depth d, D = m S if equal radiance is incident on both faces, and S = n D if it is
+/// opposite, where m = (d/2) y f, n = (d/2) f x and f = tanh_ratio(x y d^2/4).
 template <typename Number>
 void Layer<Number>::start_radiance(const Operator& medium) {
   const RealOf<Number> half = depth_ / 2.0;
@@ -197,8 +205,10 @@ void Layer<Number>::start_radiance(const Operator& medium) {
   transmitted_ = rest();
 }
 
-/// Power series in z of what lights feed into a layer that no radiance enters at the top; then
-/// radiance enters from below so that none enters there in sum.
+/// Computes the response to illuminations and views. First, the radiance that they cause is summed
+/// as a power series in z, with downward and upward radiance set to 0 at the top. In fact no upward
+/// radiance enters at the bottom. Therefore the upward radiance of the series at the bottom is
+/// cancelled by incident radiance of the opposite sign.
 template <typename Number>
 void Layer<Number>::start_pairs(const Operator& medium) {
   constexpr int terms = 30;
@@ -217,13 +227,13 @@ void Layer<Number>::start_pairs(const Operator& medium) {
     sum.difference += term.difference;
     series.push_back({of_lights(term.sum), of_lights(term.difference)});
   }
-  const auto [down, up] = sum.both_ways();
+  const auto [down, up] = sum.up_and_down();
   leaves_ = {down - product(up, reflected()), -product(up, transmitted_)};
   collected_ =
       collected_in_series(series) - contracted(of_views(leaves_.down), of_lights(up), even_);
 }
 
-/// What views collect of the radiance sum_j series[j] (z / depth)^(j+1).
+/// Returns the signal that views collect from the radiance sum_j series[j] (z / depth)^(j+1).
 template <typename Number>
 RowsOf<Number> Layer<Number>::collected_in_series(const std::vector<Mirrored<R>>& series) const {
   const R sums = turned(R(0.5 * of_views(waves_.up + waves_.down)), even_),
@@ -242,7 +252,8 @@ RowsOf<Number> Layer<Number>::collected_in_series(const std::vector<Mirrored<R>>
   return collected;
 }
 
-/// Of waves along z from the bottom to the top.
+/// Returns, for each illumination and view, the rate r of its exponential change exp(r z) with
+/// depth.
 template <typename Number>
 std::vector<ComplexOf<Number>> Layer<Number>::rates() const {
   std::vector<C> list;
@@ -251,17 +262,18 @@ std::vector<ComplexOf<Number>> Layer<Number>::rates() const {
   return list;
 }
 
-/// Of radiance between the halves: down = r lights' + reflected up, up likewise, so that their sum
-/// is (1 - r)^-1 times that of the lights, and their difference (1 + r)^-1 times.
+/// Combines two equal halves. If the upper half emits d0 down and the lower half emits u0 up, the
+/// radiance between them is down = d0 + r up and up = u0 + r down, with the reflection r of a half.
+/// Therefore down + up = (1 - r)^-1 (d0 + u0), and down - up = (1 + r)^-1 (d0 - u0).
 template <typename Number>
 void Layer<Number>::double_depth() {
   const M reflects = reflected(), one = identity_like(reflects);
   const FactorsOf<M> of_sums(M(one - reflects)), of_differences(M(one + reflects));
   const auto upper = damping(waves_.bottom, depth_), lower = damping(waves_.top, depth_);
-  const BothWays<R> above = scaled(upper, leaves_), below = scaled(lower, leaves_);
+  const UpAndDown<R> above = scaled(upper, leaves_), below = scaled(lower, leaves_);
   const Mirrored<R> between{of_sums.after(above.down + below.up),
                             of_differences.after(above.down - below.up)};
-  const auto [down, up] = between.both_ways();
+  const auto [down, up] = between.up_and_down();
   const auto lights = static_cast<std::size_t>(lights_);
   for (std::size_t l = 0; l < lights; ++l)
     for (std::size_t v = lights; v < upper.size(); ++v)
@@ -292,28 +304,30 @@ Sheet<Number> Layer<Number>::sheet(const std::vector<C>& light_factors,
           back,
           transmitted_,
           transmitted_,
-          scaled(light_factors, BothWays<R>{of_lights(leaves_.down), of_lights(leaves_.up)}),
-          scaled(view_factors, BothWays<R>{of_views(leaves_.down), of_views(leaves_.up)}),
+          scaled(light_factors, UpAndDown<R>{of_lights(leaves_.down), of_lights(leaves_.up)}),
+          scaled(view_factors, UpAndDown<R>{of_views(leaves_.down), of_views(leaves_.up)}),
           collected};
 }
 
-/// One above the other. even: rows whose sign is not turned.
+/// Returns the response of two stacked layers or groups of layers. even: number of columns of
+/// radiance whose sign is not flipped.
 template <typename Number>
 Sheet<Number> stacked(const Sheet<Number>& above, const Sheet<Number>& below, Eigen::Index even) {
   using M = MatrixOf<Number>;
-  using Ways = BothWays<RowsOf<Number>>;
+  using UpAndDownRows = UpAndDown<RowsOf<Number>>;
   const M one = identity_like(above.top);
   const FactorsOf<M> of_down(M(one - product(below.top, above.bottom))),
       of_up(M(one - product(above.bottom, below.top)));
-  const auto between = [&](const Ways& upper, const Ways& lower) {
-    return Ways{of_down.after(upper.down + product(lower.up, above.bottom)),
-                of_up.after(lower.up + product(upper.down, below.top))};
+  const auto between = [&](const UpAndDownRows& upper, const UpAndDownRows& lower) {
+    return UpAndDownRows{of_down.after(upper.down + product(lower.up, above.bottom)),
+                         of_up.after(lower.up + product(upper.down, below.top))};
   };
-  const auto leaving = [&](const Ways& upper, const Ways& lower, const Ways& middle) {
-    return Ways{lower.down + product(middle.down, below.down),
-                upper.up + product(middle.up, above.up)};
+  const auto leaving = [&](const UpAndDownRows& upper, const UpAndDownRows& lower,
+                           const UpAndDownRows& middle) {
+    return UpAndDownRows{lower.down + product(middle.down, below.down),
+                         upper.up + product(middle.up, above.up)};
   };
-  const Ways lights = between(above.lights, below.lights);
+  const UpAndDownRows lights = between(above.lights, below.lights);
   return {above.top + product(above.down, of_down.before(product(below.top, above.up))),
           below.bottom + product(below.up, of_up.before(product(above.bottom, below.down))),
           product(above.down, of_down.before(below.down)),
@@ -347,7 +361,8 @@ Layer<Number> doubled(const HomogeneousLayerOf<Number>& layer) {
   return part;
 }
 
-/// Of each layer's lights or views.
+/// Returns the factors by which illuminations or views are attenuated in the other layers before
+/// they enter each layer.
 template <typename Number>
 auto entering(const std::vector<HomogeneousLayerOf<Number>>& layers,
               PairWavesOf<Number> HomogeneousLayerOf<Number>::*waves) {

@@ -6,42 +6,45 @@
 
 namespace flatspeckle::mc {
 
-/// Homogeneous transport at one transverse frequency (C36), z in mean free paths: of radiance down,
-/// L+, and up, L-, at n ordinates, in a basis in which all is real,
+/// Transport equation of a homogeneous layer at one transverse frequency (C36), with the depth z in
+/// mean free paths. L+ is downward and L- upward radiance at n ordinates, in a basis in which the
+/// coefficients are real:
 ///   S' = -x D,  D' = -y S,  S = L+ + L-,  D = L+ - L-.
-/// x and y with the signs of all but the first `even` rows turned are symmetric.
+/// The matrices x and y become symmetric if the signs of all but the first `even` rows are flipped.
 template <typename Number>
 struct TransportOperatorOf {
   MatrixOf<Number> x, y;
   Eigen::Index even = 0;
-  double fastest = 0;  ///< bounds the rates of change along z
+  double fastest = 0;  ///< upper bound of the rates at which radiance varies with z
 };
 
-/// Pairs of lights or of views, a row each: what exp(top z + bottom (depth - z)) of a light feeds
-/// into L+ and L- per mean free path, or a view of that sensitivity collects from L- and L+ (turned
-/// round: a view is a light that time runs backwards for). Signs of all but the first `even`
-/// columns are turned.
+/// Pairs of illuminations or of views, one per row. A pair of illuminations has the intensity
+/// exp(top z + bottom (depth - z)) at depth z; `down` and `up` contain the radiance that its
+/// scattering adds to L+ and L- per mean free path. For a pair of views, `down` and `up` contain
+/// the sensitivity to L- and L+, in this reversed order because by reciprocity a view is a
+/// time-reversed illumination. The signs of all but the first `even` columns are flipped.
 template <typename Number>
 struct PairWavesOf {
   std::vector<ComplexOf<Number>> top, bottom;
   RowsOf<Number> down, up;
 };
 
-/// Of both ends of a slab's paths.
+/// Waves of the illuminations and of the views of a layer.
 template <typename Number>
-struct EndWavesOf {
+struct EndpointWavesOf {
   PairWavesOf<Number> lights, views;
 };
 
-/// What leaves the slab through its faces, a row for each light, and what views collect of it,
-/// [view][light]. Signs as above.
+/// Radiance that leaves the slab upwards and downwards, one row per illumination, with signs
+/// flipped as in PairWavesOf; and the signal that the views collect, [view][light].
 template <typename Number>
 struct LayerResponseOf {
   RowsOf<Number> up, down;
   RowsOf<Number> collected;
 };
 
-/// One of the layers of a slab, all on the same ordinates.
+/// One layer of a slab, with its depth in mean free paths. All layers of a slab use the same
+/// ordinates.
 template <typename Number>
 struct HomogeneousLayerOf {
   TransportOperatorOf<Number> medium;
@@ -49,15 +52,16 @@ struct HomogeneousLayerOf {
   PairWavesOf<Number> lights, views;
 };
 
-/// Of layers from the top down, each by doubling from one so thin that its series converge to
-/// rounding; they are stacked by the star product (Redheffer), where a face that reflects would
-/// have its place among them. Number: double, Complex for complex extinction, or Dual<double> for
-/// derivatives too.
+/// Computes the response of a stack of layers, listed from the top down. Each layer is built by
+/// doubling, starting from a layer so thin that its power series converges to rounding error.
+/// Layers are combined by the Redheffer star product, which could also include reflecting faces.
+/// Number: double, Complex for complex extinction, or Dual<double> to include derivatives.
 template <typename Number>
 LayerResponseOf<Number> response_of(const std::vector<HomogeneousLayerOf<Number>>& layers);
 
-/// What the layers above and below leave of waves where they enter each layer, [layer][wave]. top
-/// and bottom: exponents of a layer as a whole, [layer][wave].
+/// Returns the factors by which waves are attenuated in all other layers on their way to each
+/// layer, [layer][wave]. A layer as a whole attenuates a wave from above by exp(top) and a wave
+/// from below by exp(bottom), [layer][wave].
 template <typename C>
 std::vector<std::vector<C>> entering(const std::vector<std::vector<C>>& top,
                                      const std::vector<std::vector<C>>& bottom) {

@@ -11,8 +11,8 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// sum over degrees l = first, first + 2, .. of weight moments[l] v_l v_l^T; integrals: of degrees
-/// m and more.
+/// Returns the sum over degrees l = first, first + 2, .. of Geometry::weight(l) moments[l] v_l
+/// v_l^T, where v_l is column l - m of `integrals`.
 template <typename Geometry>
 Matrix gram(const Matrix& integrals, const std::vector<double>& moments, int m, int first) {
   const Eigen::Index n = integrals.rows(), degrees = std::ssize(moments) - first,
@@ -31,7 +31,7 @@ template <typename Geometry>
 Dual<Matrix> gram(const Matrix& integrals, const Dual<std::vector<double>>& moments, int m,
                   int first) {
   return {gram<Geometry>(integrals, moments.value, m, first),
-          gram<Geometry>(integrals, moments.slope, m, first)};
+          gram<Geometry>(integrals, moments.derivative, m, first)};
 }
 
 }  // namespace
@@ -79,7 +79,9 @@ std::array<Eigen::VectorXcd, 2> OrdinatesOf<Geometry, Real>::of_beam(double ligh
   return {scale.asDiagonal() * forward, scale.asDiagonal() * backward};
 }
 
-/// Backwards, theta -> pi - theta, functions of degree l have the sign (-1)^(l + m).
+/// At the backward direction pi - theta, a function of degree l has (-1)^(l + m) times its value at
+/// theta. Degrees m + 1, m + 3, .. therefore contribute only to the difference of forward and
+/// backward scattering, and degrees m, m + 2, .. only to the sum.
 template <typename Geometry, typename Real>
 auto OrdinatesOf<Geometry, Real>::scattering(int m) const -> Scattering {
   const Matrix integrals = this->integrals(m);

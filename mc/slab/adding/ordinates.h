@@ -12,40 +12,47 @@
 
 namespace flatspeckle::mc {
 
-/// Scattering by a layer between the ordinates of an angular grid, in Galerkin's form, for each
-/// mode of direction (of space the Fourier modes of the azimuth about z; of the plane 0 for what is
-/// even and 1 for what is odd in the angle to z). Between the polynomials of two panels it is
-/// integrated exactly, so that it conserves energy and is reciprocal on any grid, and forward peaks
-/// that the ordinates do not see cost no accuracy where radiance is smooth. Unknowns are radiance
-/// times root(). Real: double, or Dual<double> for derivatives too.
+/// Scattering in a layer from any ordinate of an angular grid to any other, discretised by
+/// Galerkin's method, separately for each mode of direction. In space the modes are Fourier modes
+/// of the azimuth about z; in the plane mode 0 contains the functions that are even in the angle to
+/// z, and mode 1 the odd ones. The integrals of the phase function over the polynomials of two
+/// panels are exact. Scattering therefore conserves energy and is reciprocal on any grid, and
+/// forward peaks that the ordinates do not resolve cause no error where radiance is smooth. The
+/// unknowns are radiance times root(). Real: double, or Dual<double> to include derivatives.
 template <typename Geometry, typename Real>
 class OrdinatesOf {
  public:
   using Law = LawOf<Geometry, Real>;
 
-  /// fine: the angle within which phase functions change.
+  /// fine: smallest angle over which a phase function varies.
   OrdinatesOf(const std::vector<Focus>& foci, int order, double fine, Law law, Real albedo);
 
   struct Scattering {
-    MatrixOf<Real> difference, sum;  ///< forward minus, plus backward, times the albedo
+    /// Matrices albedo (F - B) and albedo (F + B), with the forward scattering F, within the upward
+    /// or the downward directions, and the backward scattering B between them.
+    MatrixOf<Real> difference, sum;
   };
-  /// Made when it is first asked for, by any thread.
+  /// Returns the scattering of mode m, which is computed at the first call. May be called from
+  /// several threads.
   const Scattering& of_mode(int m) const;
 
   const AngularGrid& grid() const { return grid_; }
   const Law& law() const { return law_; }
   const Real& albedo() const { return albedo_; }
-  /// The angle within which phase functions change.
+  /// Smallest angle over which a phase function varies.
   double fine() const { return fine_; }
-  /// What the law's peak scatters, which goes on as if it were not scattered.
-  Real not_turned() const { return albedo_ * law_.peak(); }
-  /// What a beam scatters into mode m, down and up, by the moments that are kept.
+  /// Fraction of the extinction that is due to scattering into the forward peak of the phase
+  /// function. Light in this peak is treated as unscattered.
+  Real peak_scattering() const { return albedo_ * law_.peak(); }
+  /// Returns the radiance of mode m, downwards and upwards, that a beam at the angle `light` causes
+  /// by scattering. Only the kept moments of the phase function are used.
   std::array<Eigen::VectorXcd, 2> of_beam(double light, int m) const;
-  /// What the unknowns of mode 0 weigh in the integral of radiance over all directions.
+  /// Returns the weights of the unknowns of mode 0 in the integral of radiance over all directions.
   Eigen::VectorXd all_directions() const {
     return Geometry::all_directions() * root_.cwiseQuotient(grid_.cosine());
   }
-  /// sqrt(weight cos(theta)), the weight that of a polynomial over cos(theta).
+  /// Returns sqrt(weight cos(theta)) at each ordinate theta, with the quadrature weights
+  /// Geometry::weights().
   const Eigen::VectorXd& root() const { return root_; }
 
  private:
@@ -61,7 +68,7 @@ class OrdinatesOf {
   mutable std::deque<Scattering> of_mode_;
 };
 
-/// A slab's layers on ordinates of one grid.
+/// The layers of a slab, discretised on one angular grid.
 template <typename Geometry, typename Number>
 class DiscreteSlabOf {
  public:
@@ -76,7 +83,7 @@ class DiscreteSlabOf {
   }
   const std::deque<Ordinates>& layers() const { return layers_; }
   const AngularGrid& grid() const { return layers_.front().grid(); }
-  /// Those of the grid.
+  /// Returns OrdinatesOf::root(), which is the same for all layers.
   const Eigen::VectorXd& root() const { return layers_.front().root(); }
 
  private:

@@ -10,15 +10,16 @@
 
 namespace flatspeckle::mc {
 
-/// e_1 conj(e_2) of two far lights within a slab (C13), exp(top z + bottom (depth - z)); lengths in
-/// mean free paths. A pair of views is that of the lights turned round.
+/// Product e_1 conj(e_2) of the endpoint factors (C13) of two far illuminations at depth z in a
+/// slab: exp(top z + bottom (depth - z)), with lengths in mean free paths. A pair of views is
+/// represented by illuminations in the reversed directions.
 template <typename Number>
 struct PairWaveOf {
   ComplexOf<Number> top{}, bottom{};
 };
 
-/// Directions of two lights, from above or below, or of two views; none along the slab. Direction:
-/// an angle in the plane, a unit vector in space (z into the slab).
+/// Directions of two illuminations or of two views, not parallel to the faces. Direction: an angle
+/// in the plane, or a unit vector in space, with z into the slab.
 template <typename Direction>
 struct PairOf {
   Direction first, second;
@@ -45,15 +46,19 @@ inline double cosine_of(const Eigen::Vector3d& direction) {
   return direction.z();
 }
 
-/// How a calculation departs from the scene.
+/// Difference between a calculation and its scene: the derivative of the mean free path by a
+/// parameter, or a frequency shift of the second field.
 template <typename Number = double>
 struct Departure {
-  RealOf<Number> length{1};  ///< of a mean free path over the scene's: 1, and its derivative
-  /// Of the wavenumber of the second field of each pair, relative; not 0 for Complex alone.
+  /// Mean free path in units of the mean free path of the scene. The value is 1; Dual<double> adds
+  /// its derivative.
+  RealOf<Number> length{1};
+  /// Relative shift of the wavenumber of the second field of each pair; 0 unless Number is Complex.
   double shift = 0;
 
-  /// Per mu_t: radiance of pairs turns its phase along its way by the difference in wavenumber
-  /// (C39). k: per mu_t.
+  /// Returns the extinction coefficient in units of mu_t. Its imaginary part is the difference of
+  /// the two wavenumbers, because the phase of the radiance of a field pair changes at this rate
+  /// along a path (C39). k: wavenumber in units of mu_t.
   Number extinction(double k) const {
     if constexpr (std::is_same_v<Number, Complex>)
       return {1, shift * k};
@@ -62,7 +67,8 @@ struct Departure {
   }
 };
 
-/// k: per mu_t.
+/// Returns the product of the endpoint factors of two illuminations. k: wavenumber in units of
+/// mu_t.
 template <typename Number, typename Direction>
 PairWaveOf<Number> pair_wave(double k, const PairOf<Direction>& pair,
                              const Departure<Number>& departure) {

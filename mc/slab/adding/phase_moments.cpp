@@ -14,13 +14,15 @@ namespace {
 
 using std::numbers::pi;
 
-/// Gauss nodes of panels over [0, pi], with weights that contain the integrand.
+/// Gauss nodes on panels that divide [0, pi] finely enough to integrate a function. The weights
+/// include the values of the function.
 class ResolvedNodes {
  public:
-  /// No panel is longer than `longest`.
+  /// longest: upper bound of the length of a panel.
   ResolvedNodes(const std::function<double(double)>& integrand, double longest)
       : integrand_(integrand), longest_(longest) {
-    constexpr int halvings = 40;  // down to the peak of g = 1 - 1e-11
+    // The smallest panel resolves the Henyey-Greenstein peak of g = 1 - 1e-11.
+    constexpr int halvings = 40;
     std::vector<double> ends{0};
     for (int i = halvings; i >= 1; --i) ends.push_back(std::ldexp(pi, -i));
     for (int i = 2; i <= halvings; ++i) ends.push_back(pi - std::ldexp(pi, -i));
@@ -66,13 +68,13 @@ class ResolvedNodes {
   std::vector<double> angle_, weight_;
 };
 
-/// Adds weight times cos(l angle) or P_l(cos(angle)), by differences of neighbours, which keep
-/// their digits at small angles; beyond pi / 2 by those at pi - angle, of which odd ones change
-/// their sign.
+/// Adds weight cos(l angle), or in space weight P_l(cos(angle)), to each moment l. The recurrence
+/// uses the differences of successive degrees, which lose no digits at small angles. For angles
+/// above pi / 2, pi - angle is used instead, with the opposite sign for odd l.
 void add_functions(int dimension, double angle, double weight, std::vector<double>& moments) {
   const bool is_behind = angle > pi / 2;
   const double sine = std::sin((is_behind ? pi - angle : angle) / 2),
-               rest = 2 * sine * sine;  // 1 less the cosine of the smaller angle
+               rest = 2 * sine * sine;  // 1 - cos(angle), or 1 - cos(pi - angle)
   const double odd = is_behind ? -weight : weight;
   double value = 1, difference = 0;
   for (std::size_t l = 0; l < moments.size(); ++l) {
@@ -84,7 +86,9 @@ void add_functions(int dimension, double angle, double weight, std::vector<doubl
   }
 }
 
-/// Panels within which functions of degree `count` turn by some radians, which Gauss nodes resolve.
+/// Largest change of the phase l theta within a panel, in radians, for the function cos(l theta) or
+/// P_l(cos(theta)) of highest degree l. The Gauss nodes of a panel resolve functions that vary this
+/// much.
 constexpr double turn_of_panels = 10;
 
 }  // namespace
@@ -92,7 +96,7 @@ constexpr double turn_of_panels = 10;
 PhaseMoments::PhaseMoments(FirstMoments source, int most) : source_(std::move(source)) {
   constexpr double rounding = 1e-13;
   auto& list = kept_.list;
-  std::size_t size = 0;  // without those at the end that are small
+  std::size_t size = 0;  // number of moments up to the last one above rounding error
   const auto take = [&](int count) {
     const auto small = [](double moment) { return std::abs(moment) < rounding; };
     list = source_(count);
@@ -130,7 +134,8 @@ void PhaseMoments::keep(int count) {
 }
 
 void PhaseMoments::set_width() {
-  constexpr double moments_per_width = 30;  // g^l of Henyey-Greenstein is then 1e-13
+  // For Henyey-Greenstein's function of width 1 - g, g^l falls to 1e-13 at l = 30 / width.
+  constexpr double moments_per_width = 30;
   const auto& list = kept_.list;
   const auto large = [&](double moment) { return std::abs(moment) > 1e-3 * list.front(); };
   const auto last = std::find_if(list.rbegin(), list.rend(), large).base() - list.begin();

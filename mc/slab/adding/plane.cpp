@@ -20,10 +20,11 @@ namespace {
 using flatspeckle::divided_difference;
 using std::numbers::pi;
 
-/// The second divided difference of exp: int exp(a x + b y + c z) over x + y + z = 1, x, y, z > 0.
+/// Returns the second divided difference of exp at a, b and c: the integral of exp(a x + b y + c z)
+/// over x + y + z = 1 with x, y, z > 0.
 template <typename C>
 C divided_difference(C a, C b, C c) {
-  // a and c furthest apart
+  // Permutes the arguments so that a and c are furthest apart.
   const double ab = std::norm(value_of(a - b)), bc = std::norm(value_of(b - c)),
                ca = std::norm(value_of(c - a));
   if (ab >= bc && ab >= ca)
@@ -32,10 +33,11 @@ C divided_difference(C a, C b, C c) {
     std::swap(a, b);
   if (std::norm(value_of(a - c)) > 0.25)
     return (divided_difference(a, b) - divided_difference(b, c)) / (a - c);
-  // exp(m) sum_k h_k / (k + 2)!, h_k the complete symmetric polynomials of the distances from m
+  // Sums the series exp(m) sum_k h_k / (k + 2)! about the mean m of a, b and c. The h_k are the
+  // complete symmetric polynomials of x = a - m, y = b - m, z = c - m.
   const C middle = (a + b + c) / 3.0, x = a - middle, y = b - middle, z = c - middle;
   const C second = x * y + y * z + z * x, third = x * y * z;
-  // h_{k-2}, h_{k-1}, h_k; the distances add up to 0
+  // h_{k-2}, h_{k-1}, h_k. The recurrence has only two terms because x + y + z = 0.
   std::array<C, 3> h{C{}, C{}, exp(C{})};
   C sum = 0.5 * h[2];
   double factorial = 2;
@@ -51,17 +53,17 @@ double magnitude(Complex z) {
   return std::abs(z);
 }
 double magnitude(const Dual<Complex>& z) {
-  return std::max(std::abs(z.value), std::abs(z.slope));
+  return std::max(std::abs(z.value), std::abs(z.derivative));
 }
 
-/// The angle in the first quadrant that has the same |sin|.
+/// Returns the angle in the first quadrant that has the same absolute sine.
 double folded(double angle) {
   const double from_z = std::abs(std::remainder(angle, 2 * pi));
   return std::min(from_z, pi - from_z);
 }
 
 void add(std::vector<Focus>& foci, double angle, double width) {
-  constexpr double too_wide = 0.4;  // for any panel to be split
+  constexpr double too_wide = 0.4;  // foci wider than this require no shorter panels
   if (width < too_wide) foci.push_back({angle, width});
 }
 
@@ -138,7 +140,8 @@ double PlaneGeometry::matched(const Pair& lights, const Pair& views, double shif
 }
 
 double PlaneGeometry::momentum(const Pair& lights, double k, double mu_t, double shift) {
-  constexpr double same_momentum = 1e-12;  // of k
+  // In units of k: momenta that differ by less count as equal.
+  constexpr double same_momentum = 1e-12;
   const double unit = same_momentum * k / mu_t,
                q = k / mu_t * (std::sin(lights.first) - (1 + shift) * std::sin(lights.second));
   return unit * std::round(q / unit);
@@ -170,7 +173,8 @@ std::vector<Focus> PlaneGeometry::Foci::of(const Pair& lights, Momentum q) const
   std::vector<Focus> found;
   for (const double angle : {folded(lights.first), folded(lights.second)})
     add(found, *std::prev(std::upper_bound(centres_.begin(), centres_.end(), angle)), width_);
-  // Uniform panels resolve the phase of some ten turns with fewer ordinates.
+  // If the phase varies by fewer radians than this, panels without an additional focus need fewer
+  // ordinates.
   constexpr double many_turns = 150;
   if (std::abs(q) * std::min(4.0, optical_depth_) > many_turns)
     add(found, folded((lights.first + lights.second) / 2),
@@ -214,7 +218,8 @@ PairWavesOf<Number> PlaneGeometry::fed(const OrdinatesOf<PlaneGeometry, RealOf<N
   const AngularGrid& grid = ordinates.grid();
   const Eigen::Index n = grid.size();
   const Eigen::VectorXd scale = ordinates.root().cwiseInverse();
-  /// Even and odd parts of what goes to the right and, mirrored, to the left.
+  /// Returns the parts of radiance that are even and odd in the angle. right: radiance at the
+  /// ordinates; left: radiance in their mirror images about z.
   const auto split = [&](const Eigen::VectorXcd& right, const Eigen::VectorXcd& left) {
     constexpr double share = std::numbers::sqrt2 / 2;
     Eigen::VectorXcd parts(2 * n);
@@ -224,7 +229,8 @@ PairWavesOf<Number> PlaneGeometry::fed(const OrdinatesOf<PlaneGeometry, RealOf<N
     }
     return parts;
   };
-  /// Into directions turn + theta and turn - theta.
+  /// Returns the radiance scattered into the directions turn + theta and turn - theta, split into
+  /// even and odd parts, where theta are the ordinates.
   const auto into = [&](double turn) {
     return each_part<Number>([&](const auto& part) {
       Rows rows(std::ssize(pairs), 2 * n);

@@ -13,7 +13,8 @@ namespace {
 
 using std::numbers::pi;
 
-/// int p cos(m theta) over the circle, m = 0 .. intervals, by the trapezoidal rule.
+/// Returns the integrals of p cos(m theta) over the circle for m = 0 .. intervals, by the
+/// trapezoidal rule.
 std::vector<double> cosine_modes(const std::function<double(double)>& p, int intervals) {
   std::vector<double> line(static_cast<std::size_t>(intervals) + 1);
   for (int i = 0; i <= intervals; ++i) line[i] = p(pi * i / intervals) * pi / intervals;
@@ -78,10 +79,10 @@ ScatteringLaw ScatteringLaw::truncated(int count) const {
   return law;
 }
 
-double ScatteringLaw::pair_slope(double g, double a, double b, double theta) const {
+double ScatteringLaw::pair_derivative(double g, double a, double b, double theta) const {
   const auto by_g = [g](double angle) {
     const double half = std::sin(angle / 2);
-    return henyey_greenstein_slope(g, 2 * half * half);
+    return henyey_greenstein_derivative(g, 2 * half * half);
   };
   return (by_g(theta - a) + by_g(theta - b)) / 2;
 }
@@ -92,7 +93,8 @@ void ScatteringLaw::tabulate(const Scene& scene) {
                                  steps_per_order * (scene.medium.t_matrix.size() + 1));
 }
 
-/// From the table by Lagrange's cubic through the nearest nodes; A is even about both of its ends.
+/// Interpolates the table by the cubic Lagrange polynomial through the four nearest nodes. Nodes
+/// beyond 0 and pi follow from symmetry: A is even about both angles.
 Complex ScatteringLaw::amplitude(double angle) const {
   const double theta = std::abs(angle - 2 * pi * std::rint(angle / (2 * pi)));
   if (density_) return std::sqrt(density_(theta));

@@ -4,16 +4,16 @@
 #include <vector>
 
 #include "flatland/request/request.h"
-#include "mc/slab/adding/bulk_slope.h"
+#include "mc/slab/adding/bulk_derivative.h"
 #include "mc/slab/adding/pair_wave.h"
 
 namespace flatspeckle::mc {
 
-// Slabs in the plane and in space are one code. A Geometry, PlaneGeometry (plane.h) or
-// SpaceGeometry (mc/slab/adding/space.h), has what differs: directions and their momenta, the phase
-// function and its moments, and the functions of direction in which radiance is expanded.
+// Slabs in the plane and in space share one implementation. A Geometry, PlaneGeometry (plane.h) or
+// SpaceGeometry (mc/slab/adding/space.h), defines the differences: directions and their momenta,
+// the phase function and its moments, and the functions of direction in which radiance is expanded.
 
-/// Lengths in one unit; one of the slab's layers.
+/// One layer of a slab. mu_t and depth refer to the same unit of length.
 template <typename Geometry, typename Real>
 struct SlabLayerOf {
   double mu_t, depth;
@@ -21,25 +21,26 @@ struct SlabLayerOf {
   LawOf<Geometry, Real> law;
 };
 
-/// A slab, and how the second fields of pairs, or what it is differentiated by, depart from it.
+/// A slab. `departure` contains the frequency shift of the second field of each pair, or the
+/// derivative of the mean free path by a parameter.
 template <typename Geometry, typename Number>
 struct SlabOf {
   using Layer = SlabLayerOf<Geometry, RealOf<Number>>;
 
-  double k, mu_t, depth;      ///< mu_t: on the mean over the depth
+  double k, mu_t, depth;      ///< mu_t: mean over the depth
   std::vector<Layer> layers;  ///< from the top down
   Departure<Number> departure{};
 
   RealOf<Number> optical_depth(const Layer& layer) const {
     return layer.mu_t * layer.depth / departure.length;
   }
-  /// The angle within which phase functions change.
+  /// Smallest angle over which the phase function of a layer varies.
   double width() const {
     double least = layers.front().law.width();
     for (const Layer& layer : layers) least = std::min(least, layer.law.width());
     return least;
   }
-  /// Nodes of a panel that see the lobes of phase functions.
+  /// Least number of nodes per panel that resolves the lobes of all phase functions.
   int least_order() const {
     int order = 0;
     for (const Layer& layer : layers) order = std::max(order, layer.law.least_order());
@@ -47,8 +48,9 @@ struct SlabOf {
   }
 };
 
-/// What a covariance is asked for: plane waves and far views by their directions, and entries whose
-/// pairs of lights and views differ by the same transverse momentum (C18).
+/// A request for covariances: directions of plane waves and of far views; channels, each an
+/// illumination and a view; and entries, each the covariance of two channels. The two illuminations
+/// of an entry must differ by the same transverse momentum as its two views (C18).
 template <typename Direction>
 struct RequestOf {
   std::vector<Direction> lights, views;
@@ -56,7 +58,7 @@ struct RequestOf {
   std::vector<Entry> entries;
 };
 
-/// In space: in the plane y = 0.
+/// Converts the angles of a request to directions. In space the directions lie in the plane y = 0.
 template <typename Geometry>
 RequestOf<typename Geometry::Direction> directions_of(const CovarianceRequest& plane) {
   RequestOf<typename Geometry::Direction> request{{}, {}, plane.channels, plane.entries};

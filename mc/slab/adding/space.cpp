@@ -19,7 +19,7 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// As functions, with the mean cosine.
+/// Sets the phase function of a medium, the function that samples it, and the mean cosine g.
 template <typename Phase>
 void set_phase(BulkMedium& medium, const Phase& phase) {
   medium.space_phase = {[phase](double cosine) { return phase.density(cosine); },
@@ -27,10 +27,11 @@ void set_phase(BulkMedium& medium, const Phase& phase) {
   medium.g = phase.mean_cosine();
 }
 
-/// Albedo and phase function of spheres.
+/// Sets the albedo and the phase function of a medium of spheres.
 void set_spheres(BulkMedium& medium, const Scatterer& scatterer, double k) {
   const double size = k * scatterer.radius;
-  constexpr double largest = 500;  // SpaceLaw sees all moments of its phase function
+  // Up to this size parameter SpaceLaw keeps all moments of the phase function.
+  constexpr double largest = 500;
   if (!(size >= grin::MieSphere::smallest && size <= largest))
     throw InputError("radius", scatterer.radius,
                      "2 pi radius / wavelength of spheres must be from 1e-6 to 500");
@@ -51,9 +52,9 @@ void set_phase(BulkMedium& medium, const Scatterer& scatterer, const ScattererVa
   }
   if (values.scatterer == Rayleigh::word) return set_phase(medium, grin::RayleighPhase());
   if (values.scatterer != TwoTermHg::word)
-    throw InputError(
-        "scatterer", values.scatterer,
-        "with dimension = 3: hg (g = 0 is isotropic), two_term_hg, phase_table, rayleigh or mie");
+    throw InputError("scatterer", values.scatterer,
+                     "dimension = 3 requires hg (g = 0 is isotropic), two_term_hg, phase_table, "
+                     "rayleigh or mie");
   const auto& terms = std::get<TwoTermHg>(values.bulk);
   set_phase(medium, grin::TwoTermPhase{{*terms.g}, {*terms.g_back}, *terms.forward_share});
 }
@@ -62,13 +63,13 @@ using std::numbers::pi;
 
 constexpr int most_legendre_moments = 2048;
 
-/// i^m
 Complex power_of_i(int m) {
   constexpr Complex powers[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
   return powers[m % 4];
 }
 
-/// [azimuth][function]: normalised, times the step of the azimuth.
+/// Returns the normalised functions 1, cos(m phi) and sin(m phi) at equal steps of the azimuth phi,
+/// times the step, [azimuth][function].
 Matrix azimuthal_functions(int steps, int highest) {
   const double step = 2 * pi / steps;
   Matrix values(steps, 2 * highest + 1);
@@ -82,7 +83,8 @@ Matrix azimuthal_functions(int steps, int highest) {
   return values;
 }
 
-/// Along the slab at equal steps of the azimuth from the momentum, [azimuth][x, y].
+/// Returns unit vectors parallel to the faces at equal steps of the azimuth, which is measured from
+/// the direction of the transverse momentum, [azimuth][x, y].
 Matrix azimuths(int steps, const SpaceGeometry::Momentum& momentum) {
   const Eigen::Vector2d along(momentum[0], momentum[1]),
       x = along.norm() == 0 ? Eigen::Vector2d(1, 0) : Eigen::Vector2d(along.normalized());
@@ -115,7 +117,7 @@ Matrix associated_legendre(const Eigen::VectorXd& angle, int m, int last) {
 
 Scene in_space(Scene slab, const ScattererValues& values) {
   if (slab.domain.kind != Domain::Kind::slab)
-    throw InputError("dimension", 3, "needs domain = slab");
+    throw InputError("dimension", 3, "requires domain = slab");
   BulkMedium& medium = slab.medium;
   medium.dimension = 3;
   if (slab.scatterer.kind == Scatterer::Kind::mie)
@@ -159,8 +161,8 @@ SpaceLaw SpaceLaw::truncated(int count) const {
   return law;
 }
 
-double SpaceLaw::pair_slope(double g, double first, double second) const {
-  const auto by_g = [g](double cosine) { return henyey_greenstein_slope(g, 1 - cosine, 3); };
+double SpaceLaw::pair_derivative(double g, double first, double second) const {
+  const auto by_g = [g](double cosine) { return henyey_greenstein_derivative(g, 1 - cosine, 3); };
   return (by_g(first) + by_g(second)) / 2;
 }
 
@@ -189,7 +191,7 @@ SpaceGeometry::Momentum SpaceGeometry::momentum(const SpacePair& lights, double,
 }
 
 std::vector<Focus> SpaceGeometry::Foci::of(const SpacePair& lights, const Momentum&) const {
-  constexpr double too_wide = 0.4;  // for any panel to be split
+  constexpr double too_wide = 0.4;  // foci wider than this require no shorter panels
   std::vector<Focus> found;
   if (width_ >= too_wide) return found;
   for (const auto& light : {lights.first, lights.second}) {
@@ -231,7 +233,8 @@ PairWavesOf<Number> SpaceGeometry::fed(const OrdinatesOf<SpaceGeometry, RealOf<N
   for (const SpacePair& pair : pairs)
     for (const Eigen::Vector3d& direction : {pair.first, pair.second})
       most_sine = std::max(most_sine, direction.head<2>().norm());
-  // Modes of p beyond l sin(theta) have died out at the angle of a light.
+  // If a light has the polar angle theta, moment l of p hardly contributes to azimuthal modes above
+  // l sin(theta).
   constexpr double nodes_per_width = 25;
   const double most_modes = 1.2 * (1 + degree(ordinates.law().moments())),
                of_peak = ordinates.law().has_sharp_peak() ? nodes_per_width / ordinates.fine() : 0;

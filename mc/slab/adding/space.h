@@ -16,39 +16,43 @@
 
 namespace flatspeckle::mc {
 
-/// A slab that has the same keys in space: lights and views lie in the plane of incidence, the
-/// medium has a phase function per steradian, and its `dimension` says so. Throws InputError for
-/// boxes, and for scatterers of the plane: what may be in space is hg, two_term_hg, phase_table,
-/// rayleigh and mie, whose albedo is that of its spheres.
+/// Converts a slab in the plane to a slab in space with the same scene keys. Illuminations and
+/// views lie in the plane of incidence, the phase function of the medium is per steradian, and its
+/// `dimension` is 3. Throws InputError for boxes, and for scatterers other than hg, two_term_hg,
+/// phase_table, rayleigh and mie. The albedo for mie follows from the spheres.
 Scene in_space(Scene slab, const ScattererValues& values);
 
-/// A phase function in space, without chance: scalar amplitudes sqrt(p), and its Legendre moments,
+/// Scattering of field pairs in space, with scalar amplitudes A = sqrt(p). The Legendre moments of
+/// the phase function p are defined by
 ///   p = sum_l (2 l + 1) / (4 pi) moments[l] P_l(cos).
-/// Of fields at two times, between which the scatterers diffuse, the later one is the second of a
-/// pair: each of its turns loses exp(-2 delay (1 - cos)) (brownian.h), and so does p.
+/// For fields at two times, between which the scatterers diffuse, the second field of a pair is the
+/// later one. Each scattering then multiplies the pair, and therefore p, by the decay exp(-2 delay
+/// (1 - cos)), with delay = k^2 D tau (C39). cos: cosine of the scattering angle.
 class SpaceLaw {
  public:
-  /// density: per steradian, by the cosine of the turn, in any unit; normalised where its moments
-  /// are known exactly.
+  /// density: p as a function of the cosine of the scattering angle. It need not be normalised,
+  /// except if `moments` are given.
   explicit SpaceLaw(std::function<double(double)> density, double delay = 0,
                     FirstMoments moments = {});
 
-  /// A A' of two turns by their cosines.
+  /// Returns the product of the amplitudes at two scattering angles and of the decay at the second
+  /// angle. first, second: cosines of the angles.
   double pair(double first, double second) const {
     return amplitude(first) * amplitude(second) * decay(second);
   }
-  /// Of Henyey-Greenstein's function without delay: d log pair / d g.
-  double pair_slope(double g, double first, double second) const;
-  /// Those that are kept, less the peak of those that are not.
+  /// Returns the derivative by g of log(pair()), for the Henyey-Greenstein function and delay 0.
+  double pair_derivative(double g, double first, double second) const;
+  /// Kept moments (KeptMoments::list), without the contribution of the forward peak.
   const std::vector<double>& moments() const { return moments_.kept().list; }
   double peak() const { return moments_.kept().peak; }
   const KeptMoments& kept() const { return moments_.kept(); }
   bool has_sharp_peak() const { return moments_.kept().is_sharp(); }
-  /// The law whose first `count` moments are kept, with the width of these.
+  /// Returns the law with at most the first `count` moments, and with the width that follows from
+  /// these moments.
   SpaceLaw truncated(int count) const;
-  /// The angle within which p changes.
+  /// Smallest angle over which p varies.
   double width() const { return width_; }
-  int least_order() const { return 0; }  ///< nodes of a panel
+  int least_order() const { return 0; }  ///< least number of nodes per panel; 0: none required
 
  private:
   double amplitude(double cosine) const;
@@ -62,34 +66,36 @@ class SpaceLaw {
 template <typename Geometry, typename Real>
 class OrdinatesOf;
 
-/// What slabs in space have of their own (slab.h), of scalar waves (C41). Directions are unit
-/// vectors, z into the slab; functions of direction are Fourier modes of the azimuth about z,
-/// cos(m phi) and sin(m phi), phi from the momentum.
+/// Parts of the solution that are specific to slabs in space (slab.h), for scalar waves (C41).
+/// Directions are unit vectors, z into the slab; functions of direction are Fourier modes cos(m
+/// phi) and sin(m phi) of the azimuth phi about z, measured from the direction of the transverse
+/// momentum.
 struct SpaceGeometry {
   using Direction = Eigen::Vector3d;
   using Law = SpaceLaw;
-  using Momentum = std::array<double, 2>;  ///< in units of k
+  using Momentum = std::array<double, 2>;  ///< transverse momentum in units of k
 
   static Direction direction(double angle) { return {std::sin(angle), 0, std::cos(angle)}; }
-  /// The second view, turned (slab.h).
+  /// Returns the direction of the second view for which the views have the same transverse momentum
+  /// as the lights (C39).
   static Direction matched(const SpacePair& lights, const SpacePair& views, double shift);
-  /// Transverse; shift: Departure's.
+  /// Returns the transverse momentum of a pair of illuminations. shift: Departure::shift.
   static Momentum momentum(const SpacePair& lights, double, double, double shift);
   static double size(const Momentum& momentum, double k) {
     return k * Eigen::Vector2d(momentum[0], momentum[1]).norm();
   }
 
   static Law law(const Scene& scene, double delay = 0);
-  /// The scene with other spheres at the same extinction.
+  /// Returns the scene with other spheres at the same extinction.
   static Scene with_scatterer(Scene scene, const Scatterer& scatterer);
-  /// One scattering from lights to views.
+  /// Returns Law::pair() for a single scattering from the illuminations to the views.
   template <typename L>
   static auto turned(const L& law, const SpacePair& lights, const SpacePair& views) {
     return law.pair(lights.first.dot(views.first), lights.second.dot(views.second));
   }
 
-  /// Foci of pairs of lights, in steps of half a width, so that lights near to each other have one
-  /// grid.
+  /// Foci of pairs of illuminations. The angles of the foci are rounded to multiples of half the
+  /// width of the phase function, so that close illuminations share one angular grid.
   class Foci {
    public:
     Foci(const std::vector<SpacePair>&, double, double width) : width_(width) {}
@@ -99,26 +105,33 @@ struct SpaceGeometry {
     double width_;
   };
 
-  static constexpr int families = 2;     ///< cosines and sines
-  static constexpr int first_modes = 2;  ///< the highest; refined as the ordinates are
+  static constexpr int function_kinds = 2;  ///< kinds of functions of direction: cosines and sines
+  /// Highest mode of the first solution; it is increased by refinement, like the number of
+  /// ordinates.
+  static constexpr int first_modes = 2;
   static constexpr bool refines_modes = true;
-  static constexpr int flux_modes = 0;  ///< the highest that carries power
-  /// Of the momentum between mode m and the next.
+  static constexpr int flux_modes = 0;  ///< highest mode that slab_flux() requires
+  /// Coefficient by which the transverse momentum couples modes m and m + 1.
   static double coupling(int m);
-  /// Unknowns of both ways, per ordinate of the grid.
+  /// Number of unknowns, downward and upward, per ordinate of the grid.
   static int ordinates(std::size_t functions) { return 2 * static_cast<int>(functions); }
 
-  /// Associated Legendre functions of cos(angle), l = m .. last, [angle][l - m], times sin(angle),
-  /// with int P_l^m(c)^2 dc = 1 over [-1, 1] and positive in the forward direction.
+  /// Returns sin(angle) P_l^m(cos(angle)) for l = m .. last, [angle][l - m]. The associated
+  /// Legendre functions P_l^m are positive towards the forward direction and normalised to int
+  /// P_l^m(c)^2 dc = 1 over [-1, 1].
   static Matrix functions(const Eigen::VectorXd& angle, int m, int last);
-  /// Of a moment in the scattering between such functions.
+  /// Factor of a moment of the phase function in its expansion in functions().
   static double weight(int) { return 2; }
+  /// Returns the integrals of the polynomials l_j (AngularGrid) over cos(theta).
   static Eigen::VectorXd weights(const AngularGrid& grid);
-  /// A beam's share in mode m = 0 of what it scatters, by degrees 0 .. last (of_beam()).
+  /// Returns the coefficients of a beam at the angle `light` in functions() of mode m = 0, for the
+  /// degrees 0 .. last (used by OrdinatesOf::of_beam()).
   static std::vector<Complex> beam(double light, int m, int last);
-  /// What radiance in mode 0 weighs in the integral over all directions.
+  /// Factor of the radiance of mode 0 in the integral of radiance over all directions.
   static double all_directions() { return std::sqrt(2 * std::numbers::pi); }
-  /// What pairs scatter into directions down and up, a row each, function by function.
+  /// Returns the radiance that the scattering of pairs of illuminations adds, downwards and
+  /// upwards, one row per pair. A row contains the values at all ordinates for the first function
+  /// of direction, then those for the next.
   template <typename Number>
   static PairWavesOf<Number> fed(const OrdinatesOf<SpaceGeometry, RealOf<Number>>& ordinates,
                                  const Momentum& momentum, int highest,

@@ -20,12 +20,13 @@ DesignState designed(const DesignScene& scene, Designer& designer) {
   return state;
 }
 
-/// Root mean square and largest distance of the index from that of a lens of this focus, r < 0.9.
+/// Returns the RMS and the largest difference, within r < 0.9, between the index and that of a lens
+/// of this focus.
 std::pair<double, double> index_errors(const FieldForm& form, const std::vector<double>& values,
                                        double focus) {
   double sum = 0, most = 0;
   constexpr int places = 500;
-  const auto look = [&](const auto& of) {
+  const auto add_errors = [&](const auto& of) {
     const auto field = of.field(values);
     for (int i = 0; i < places; ++i) {
       const double r = 0.9 * std::cbrt((i + 0.5) / places), z = 2 * std::fmod(0.618034 * i, 1) - 1;
@@ -36,13 +37,13 @@ std::pair<double, double> index_errors(const FieldForm& form, const std::vector<
       most = std::max(most, std::abs(error));
     }
   };
-  std::visit(look, form);
+  std::visit(add_errors, form);
   return {std::sqrt(sum), most};
 }
 
 DesignValues focusing(int directions, int rays_per_direction) {
   DesignValues values;
-  auto& light = std::get<FocusValues>(values.aim.kinds);
+  auto& light = std::get<FocusValues>(values.design_target.kinds);
   light.directions = directions;
   light.rays_per_direction = rays_per_direction;
   light.aperture = 0.995;
@@ -56,7 +57,7 @@ DesignValues small_ball() {
 DesignValues profile(double focus) {
   DesignValues values = focusing(1, 200);
   values.form.design = "radial";
-  auto& light = std::get<FocusValues>(values.aim.kinds);
+  auto& light = std::get<FocusValues>(values.design_target.kinds);
   light.focus = focus;
   light.aperture = 1;
   return values;
@@ -68,8 +69,8 @@ DesignValues fibre(const char* modes, int coefficients) {
   values.form.index = 1.47;
   values.form.delta = 0.01;
   values.form.coefficients = coefficients;
-  values.aim.goal = FibreValues::word;
-  std::get<FibreValues>(values.aim.kinds) = {modes, 200};
+  values.design_target.goal = FibreValues::word;
+  std::get<FibreValues>(values.design_target.kinds) = {modes, 200};
   return values;
 }
 
@@ -81,7 +82,7 @@ void write(const ScreenPicture& picture, const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("Luneburg's lens is found from n = 1") {
+TEST_CASE("design of a ball from n = 1: agrees with Luneburg's lens") {
   const DesignScene scene = make_design_scene(small_ball());
   Designer designer(scene);
   const DesignState state = designed(scene, designer);
@@ -93,7 +94,7 @@ TEST_CASE("Luneburg's lens is found from n = 1") {
   CHECK(most < 5e-4);
 }
 
-TEST_CASE("Radial profiles of eight coefficients are found, of a focus on the rim and inside") {
+TEST_CASE("design of radial profiles: agrees with lenses of a focus on the rim and inside") {
   for (const double focus : {1.0, 0.7}) {
     const DesignScene scene = make_design_scene(profile(focus));
     Designer designer(scene);
@@ -105,7 +106,7 @@ TEST_CASE("Radial profiles of eight coefficients are found, of a focus on the ri
   }
 }
 
-TEST_CASE("The fibre of no dispersion among meridional rays is n0 sech(alpha rho)") {
+TEST_CASE("design of a fibre without meridional dispersion: agrees with n0 sech(alpha rho)") {
   const DesignScene scene = make_design_scene(fibre("meridional", 8));
   Designer designer(scene);
   const DesignState state = designed(scene, designer);
@@ -116,7 +117,9 @@ TEST_CASE("The fibre of no dispersion among meridional rays is n0 sech(alpha rho
     CHECK(std::abs(index(field, Vec3(rho, 0, 0)) - n0 / std::cosh(alpha * rho)) < 1e-5 * (n0 - n1));
 }
 
-TEST_CASE("The exponent of a fibre for all modes is 2 - 12 delta/5, five times as good as 2") {
+TEST_CASE(
+    "design of a fibre for all modes: exponent agrees with 2 - 12 delta/5, five times as good as "
+    "2") {
   const DesignScene scene = make_design_scene(fibre("all", 0));
   Designer designer(scene);
   const DesignState state = designed(scene, designer);
@@ -127,7 +130,7 @@ TEST_CASE("The exponent of a fibre for all modes is 2 - 12 delta/5, five times a
   CHECK(gain < 5.2);
 }
 
-TEST_CASE("Searches that are baselines are refused") {
+TEST_CASE("design methods: baselines are rejected") {
   DesignValues values = profile(1);
   values.method = "lbfgs";
   CHECK_THROWS_WITH(make_design_scene(values),
@@ -135,12 +138,12 @@ TEST_CASE("Searches that are baselines are refused") {
                     "`bench error`");
 }
 
-TEST_CASE("A beam is made into a picture") {
+TEST_CASE("design of a beam shaper: reaches its picture") {
   DesignValues values;
   values.form.design = "box";
   values.form.nodes = {11};
   values.form.most_index = 2;
-  values.aim.goal = ScreenValues::word;
+  values.design_target.goal = ScreenValues::word;
   values.roughness = 1e-5;
   const ScreenPicture picture = [] {
     ScreenPicture made{1.2, 16, {}};
@@ -151,7 +154,7 @@ TEST_CASE("A beam is made into a picture") {
   }();
   const auto path = std::filesystem::temp_directory_path() / "flatspeckle_design_picture.csv";
   write(picture, path);
-  auto& light = std::get<ScreenValues>(values.aim.kinds);
+  auto& light = std::get<ScreenValues>(values.design_target.kinds);
   light.pictures = {path.string()};
   light.rays_across = flatspeckle::tests::is_night ? 32 : 24;
   const DesignScene scene = make_design_scene(values);
@@ -164,7 +167,7 @@ TEST_CASE("A beam is made into a picture") {
   CHECK(*check.held_out_half_step < 0.2 * check.start_held_out);
 }
 
-TEST_CASE("Bounds of the index hold") {
+TEST_CASE("design with bounds: the index stays within them") {
   DesignValues values = small_ball();
   values.form.nodes = {5};
   values.form.most_index = 1.3;

@@ -5,7 +5,7 @@
 
 #include "core/numbers/random.h"
 #include "grin/design/adjoint/design_ray.h"
-#include "grin/design/adjoint/reading.h"
+#include "grin/design/adjoint/measurement.h"
 #include "grin/design/forms/field_form.h"
 
 namespace flatspeckle::grin::design::test_ray_adjoint {
@@ -14,8 +14,8 @@ namespace {
 
 using Numbers = std::vector<double>;
 
-/// Some numbers between -size and size.
-Numbers some(std::size_t count, double size, std::uint64_t stream) {
+/// Returns random numbers between -size and size.
+Numbers random_numbers(std::size_t count, double size, std::uint64_t stream) {
   RandomStream random(1, stream, 0);
   Numbers values(count);
   for (double& v : values) v = size * (2 * random.uniform() - 1);
@@ -42,29 +42,29 @@ const DesignRay in_grid{Vec3(0.3, -0.4, -0.9), Vec3(0.2, 0.1, 1),
                         Plane{{0, 0, 0.9}, Vec3::UnitZ()}};
 const Frame across = frame_across(Vec3(0.1, 0.2, 1));
 
-/// One ray in one kind of field, and one kind of reading.
-template <class Form, class Reader>
+/// One ray in one kind of field, and one kind of measurement.
+template <class Form, class Measure>
 struct RayCase {
-  static constexpr int K = Reader::count;
+  static constexpr int K = Measure::count;
   Form form;
   DesignRay ray;
-  Reader reader;
+  Measure measure;
   RayWalk walk{0.07, 1000};
   double difference = 2e-4;
   Numbers coefficients =
-      sum(Numbers(form.shape().size(), 0.2), 1, some(form.shape().size(), 0.05, 1));
+      sum(Numbers(form.shape().size(), 0.2), 1, random_numbers(form.shape().size(), 0.05, 1));
 
   Eigen::Matrix<double, K, 1> values(const Numbers& at) const {
-    return reader(follow<Pefrl>(form.field(at), ray, walk).state).values;
+    return measure(follow<Pefrl>(form.field(at), ray, walk).state).values;
   }
-  /// Of each reading, by all coefficients.
+  /// Returns the derivatives of each measured value by all coefficients.
   std::array<Numbers, K> gradient(RayState* again = nullptr) const {
     const auto field = form.field(coefficients);
     const FollowedRay followed = follow<Pefrl>(field, ray, walk);
     CHECK(!followed.lost);
     CoefficientSums<K> sums(shape_of(field));
     const RayState start =
-        pull_back<Pefrl>(field, ray, walk, followed, reader(followed.state).by, sums);
+        backpropagate<Pefrl>(field, ray, walk, followed, measure(followed.state).by, sums);
     if (again) *again = start;
     std::array<Numbers, K> rows;
     rows.fill(Numbers(form.shape().size(), 0.0));
@@ -73,7 +73,7 @@ struct RayCase {
     });
     return rows;
   }
-  /// By differences, extrapolated twice.
+  /// Returns the derivatives along a vector by differences, extrapolated twice.
   Eigen::Matrix<double, K, 1> differences(const Numbers& along, double h) const {
     const auto central = [&](double step) {
       return ((values(sum(coefficients, step, along)) - values(sum(coefficients, -step, along))) /
@@ -92,10 +92,10 @@ double dot(const Numbers& a, const Numbers& b) {
   return value;
 }
 
-template <class Form, class Reader>
-void check_direction(const RayCase<Form, Reader>& ray) {
+template <class Form, class Measure>
+void check_direction(const RayCase<Form, Measure>& ray) {
   const auto rows = ray.gradient();
-  const Numbers along = some(ray.coefficients.size(), 1, 2);
+  const Numbers along = random_numbers(ray.coefficients.size(), 1, 2);
   const auto expected = ray.differences(along, ray.difference);
   for (int k = 0; k < ray.K; ++k) {
     CHECK(std::abs(dot(rows[k], along) - expected[k]) < 1e-8 * std::abs(expected[k]));
@@ -103,7 +103,7 @@ void check_direction(const RayCase<Form, Reader>& ray) {
       return ray.values(sum(ray.coefficients, h, along))[k] - ray.values(ray.coefficients)[k] -
              h * dot(rows[k], along);
     };
-    // without the cube, beside which the square is small along some directions
+    // without the cubic term, beside which the quadratic one is small along some directions
     const auto square = [&](double h) { return 8 * rest(h / 2) - rest(h); };
     const double h = 0.8 * ray.difference, order = std::log2(std::abs(square(h) / square(h / 2)));
     CHECK(order > 1.98);
@@ -111,8 +111,8 @@ void check_direction(const RayCase<Form, Reader>& ray) {
   }
 }
 
-template <class Form, class Reader>
-void check_components(const RayCase<Form, Reader>& ray) {
+template <class Form, class Measure>
+void check_components(const RayCase<Form, Measure>& ray) {
   const auto rows = ray.gradient();
   const std::size_t count = ray.coefficients.size(), every = std::max<std::size_t>(1, count / 200);
   for (int k = 0; k < ray.K; ++k) {
@@ -130,57 +130,62 @@ void check_components(const RayCase<Form, Reader>& ray) {
   }
 }
 
-template <class Form, class Reader>
-void check_derivatives(const Form& form, const DesignRay& ray, const Reader& reader) {
-  const RayCase<Form, Reader> one{form, ray, reader};
+template <class Form, class Measure>
+void check_derivatives(const Form& form, const DesignRay& ray, const Measure& measure) {
+  const RayCase<Form, Measure> one{form, ray, measure};
   check_direction(one);
   check_components(one);
 }
 
 template <class Form>
-void check_readings(const Form& form, const DesignRay& ray) {
+void check_measurements(const Form& form, const DesignRay& ray) {
   check_derivatives(form, ray,
-                    ScreenReading{{0.1, 0.2, 2}, Vec3::UnitZ(), frame_across(Vec3::UnitZ())});
-  check_derivatives(form, ray, SurfaceReading{{0, 0, 1}, across});
-  check_derivatives(form, ray, DirectionReading{across});
-  check_derivatives(form, ray, PathReading{});
+                    ScreenMeasurement{{0.1, 0.2, 2}, Vec3::UnitZ(), frame_across(Vec3::UnitZ())});
+  check_derivatives(form, ray, SurfaceMeasurement{{0, 0, 1}, across});
+  check_derivatives(form, ray, DirectionMeasurement{across});
+  check_derivatives(form, ray, PathMeasurement{});
 }
 
 }  // namespace
 
-TEST_CASE("What is read off a ray has its exact derivative by the coefficients of a ball") {
-  check_readings(BallForm{Vec3::Zero(), 1, 6}, into_ball);
+TEST_CASE(
+    "measurements of a ray: derivatives by the coefficients of a ball agree with differences") {
+  check_measurements(BallForm{Vec3::Zero(), 1, 6}, into_ball);
 }
-TEST_CASE("The same of a radial spline") {
-  check_readings(RadialForm{Vec3::Zero(), 1, 8}, into_ball);
+TEST_CASE(
+    "measurements of a ray: derivatives by the coefficients of a radial spline agree with "
+    "differences") {
+  check_measurements(RadialForm{Vec3::Zero(), 1, 8}, into_ball);
 }
-TEST_CASE("The same of a grid, in which a ray starts at an index that it depends on") {
-  check_readings(GridForm{}, in_grid);
+TEST_CASE("measurements of a ray that starts in a grid: derivatives agree with differences") {
+  check_measurements(GridForm{}, in_grid);
 }
-TEST_CASE("The same of a ray that ends inside of a ball") {
+TEST_CASE("measurements of a ray that ends inside a ball: derivatives agree with differences") {
   const DesignRay ray{into_ball.start, into_ball.direction, Plane{{0, 0, 0.4}, Vec3::UnitZ()}};
-  check_derivatives(BallForm{Vec3::Zero(), 1, 6}, ray, SurfaceReading{{0, 0, 0.4}, across});
+  check_derivatives(BallForm{Vec3::Zero(), 1, 6}, ray, SurfaceMeasurement{{0, 0, 0.4}, across});
 }
 
-TEST_CASE("The same of a fibre, whose rays end where they are nearest to its axis") {
+TEST_CASE(
+    "measurements of fibre rays that end nearest to the axis: derivatives agree with differences") {
   const GuideForm profile{{0.47, 0.05, 1}, 8}, power{{0.47, 0.05, 1}, 0};
   const DesignRay skew{Vec3(0.7, 0, 0), Vec3(0, 0.12, 1), Turn{Vec3::Zero()}};
   const DesignRay meridional{Vec3(0.8, 0, 0), Vec3::UnitZ(), Turn{Vec3::Zero()}};
   for (const DesignRay& ray : {skew, meridional}) {
-    // derivatives are small beside the value, whose rounding shorter differences would tell
-    RayCase<GuideForm, PathPerLengthReading> correction{profile, ray, {0}};
+    // derivatives are small beside the value, whose rounding would dominate shorter differences
+    RayCase<GuideForm, PathPerLengthMeasurement> correction{profile, ray, {0}};
     correction.difference = 2e-3;
     check_direction(correction);
     check_components(correction);
-    RayCase<GuideForm, PathPerLengthReading> exponent{power, ray, {0}};
+    RayCase<GuideForm, PathPerLengthMeasurement> exponent{power, ray, {0}};
     exponent.coefficients = {1.9};
     exponent.difference = 5e-3;
     check_direction(exponent);
   }
 }
 
-TEST_CASE("A ray that is walked back comes to its start") {
-  const RayCase<BallForm, SurfaceReading> ray{{Vec3::Zero(), 1, 9}, into_ball, {{0, 0, 1}, across}};
+TEST_CASE("backpropagation: the reversed ray returns to its start") {
+  const RayCase<BallForm, SurfaceMeasurement> ray{
+      {Vec3::Zero(), 1, 9}, into_ball, {{0, 0, 1}, across}};
   RayState again;
   ray.gradient(&again);
   CHECK((again.x - into_ball.start).norm() < 1e-12);
@@ -188,9 +193,9 @@ TEST_CASE("A ray that is walked back comes to its start") {
   CHECK(std::abs(again.optical_path) < 1e-12);
 }
 
-TEST_CASE("Knots are inserted without changing the field") {
+TEST_CASE("knot insertion: the field is unchanged") {
   const BallForm form{Vec3(0.1, 0, 0.2), 1.5, 5};
-  const Numbers values = some(form.shape().size(), 0.2, 3);
+  const Numbers values = random_numbers(form.shape().size(), 0.2, 3);
   const FinerField fine = finer(form, values);
   const auto before = form.field(values);
   const auto after = std::get<BallForm>(fine.form).field(fine.coefficients);

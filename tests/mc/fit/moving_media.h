@@ -5,13 +5,13 @@
 
 #include "bench/scenes/synthetic_slab.h"
 #include "core/run/runner.h"
-#include "mc/paths/dynamics/moving_slopes.h"
+#include "mc/paths/dynamics/moving_derivatives.h"
 #include "mc/paths/estimators/gradient.h"
 
 namespace flatspeckle::bench {
 
-/// A slab of which reflected light tells how scatterers diffuse, and transmitted light how often
-/// they scatter: |g1| after delays.
+/// Slab measured by |g1| after delays: reflected light constrains the diffusion of the scatterers,
+/// transmitted light the optical depth.
 inline SyntheticSlab diffusing_slab() {
   SyntheticSlab slab(200, 0.6, 1, 8);
   slab.add_decay(std::numbers::pi - 0.5, {0.002, 0.006, 0.02, 0.06, 0.2});
@@ -19,7 +19,7 @@ inline SyntheticSlab diffusing_slab() {
   return slab;
 }
 
-/// K^2 of the same slab's reflected light after exposures.
+/// Squared speckle contrast K^2 of the light that this slab reflects, after exposures.
 inline SyntheticSlab exposed_slab() {
   SyntheticSlab slab(200, 0.6, 1, 8);
   slab.add_contrast(std::numbers::pi - 0.5, {0.01, 0.05, 0.2, 1});
@@ -34,9 +34,9 @@ inline mc::FitTask motion_task(std::vector<mc::Measurement> measurements,
   });
 }
 
-/// |g1| of a slab whose scatterers diffuse and are sheared, by so many paths of its own; to which
-/// noise is added as in SyntheticSlab. With 3 % of it shear is known to 4 %: nearer to 0, where
-/// decays tell of its square alone, errors are not linear.
+/// |g1| of a slab whose scatterers diffuse and are sheared, computed by its own paths; noise is
+/// added as in SyntheticSlab. 3 % noise determines the shear to 4 %. Nearer to 0, where decays
+/// depend on the square of the shear alone, errors are not linear.
 class ShearedSlab {
  public:
   static constexpr double diffusion = 0.5, shear = 0.06;
@@ -57,7 +57,7 @@ class ShearedSlab {
     mc::Plan plan = mc::gradient_plan(scene, mc::ReversedPaths::no);
     plan.sampled_single = true;
     const mc::PathJob job =
-        mc::moving_slope_job(scene, plan, curve_.delays, {diffusion, {}, shear}, {}, 12345);
+        mc::moving_derivative_job(scene, plan, curve_.delays, {diffusion, {}, shear}, {}, 12345);
     RunOptions options;
     options.stop.samples = paths;
     RunState state;
@@ -66,7 +66,8 @@ class ShearedSlab {
                           job.all(state.sums.total_samples(), state.sums.total()));
   }
 
-  /// Fit of measurements with noise of a seed, a share of each value.
+  /// Returns a fit of measurements with noise from a seed; `share` is its size relative to each
+  /// value.
   mc::FitTask task(unsigned seed, double share) const {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;

@@ -11,8 +11,8 @@
 
 namespace flatspeckle::mc::test_correlated_errors {
 
-TEST_CASE("errors of ratios of sums are correlated as their terms are") {
-  // x and y of variances 1 and 4 about 10 and 20, correlation 1/2; values x / 10 and y / x.
+TEST_CASE("correlated errors: covariance of ratios of sums agrees with linear error propagation") {
+  // x and y: means 10 and 20, variances 1 and 4, correlation 1/2; values are x / 10 and y / x.
   constexpr int batches = 4000;
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
@@ -35,8 +35,8 @@ TEST_CASE("errors of ratios of sums are correlated as their terms are") {
   CHECK(found(0, 1) == found(1, 0));
 }
 
-TEST_CASE("the inverse of errors known from few groups has the mean of the exact inverse") {
-  // A fit weighs by the inverse. The mean of 12 numbers of variance 1: the inverse is 12.
+TEST_CASE("correlated errors: the inverse covariance from few groups is unbiased") {
+  // A fit weights by the inverse covariance. For the mean of 12 numbers of variance 1 it is 12.
   constexpr int groups = 12, runs = 20000;
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
@@ -51,7 +51,7 @@ TEST_CASE("the inverse of errors known from few groups has the mean of the exact
   CHECK(std::abs(sum - groups) < 4 * std::sqrt((squares - sum * sum) / runs));
 }
 
-TEST_CASE("errors that all but cancel in a difference are not believed to the last digit") {
+TEST_CASE("correlated errors: shrinkage limits the cancellation of errors in a difference") {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
   GroupedSums sums(2);
@@ -67,9 +67,9 @@ TEST_CASE("errors that all but cancel in a difference are not believed to the la
         doctest::Approx((found(0, 0) + found(1, 1)) / groups).epsilon(0.01));
 }
 
-TEST_CASE("the mean of chi^2 is its degrees of freedom, however the errors are correlated") {
-  // Six points of a line whose errors are a smooth curve and a little noise: shrunk, most of their
-  // combinations hardly count. chi^2 of independent errors has 4 degrees.
+TEST_CASE("correlated errors: mean chi^2 agrees with the expected degrees of freedom") {
+  // Six points of a line whose errors are a smooth curve and a little noise. After shrinkage most
+  // of their combinations have little weight. Independent errors have 4 degrees of freedom.
   constexpr int runs = 400, batches = 256, points = 6;
   std::mt19937_64 random(6);
   std::normal_distribution<double> normal;
@@ -94,16 +94,16 @@ TEST_CASE("the mean of chi^2 is its degrees of freedom, however the errors are c
       one.covariance = correlated_errors(sums, sample_mean);
       one.shrinkage = shrinkage_of(sums);
       const FitData data(task);
-      const Eigen::MatrixXd slopes = data.whitened(basis);
+      const Eigen::MatrixXd derivatives = data.whitened(basis);
       const Eigen::VectorXd white = data.whitened(one.values);
       const Eigen::VectorXd best =
-          (slopes.transpose() * slopes).inverse() * slopes.transpose() * white;
-      const double chi_squared = (white - slopes * best).squaredNorm();
+          (derivatives.transpose() * derivatives).inverse() * derivatives.transpose() * white;
+      const double chi_squared = (white - derivatives * best).squaredNorm();
       sum += chi_squared / runs;
       squares += chi_squared * chi_squared / runs;
-      degrees +=
-          expected_chi_squared(data.whitened(data.whitened(data.scatter()).transpose()), slopes) /
-          runs;
+      degrees += expected_chi_squared(data.whitened(data.whitened(data.scatter()).transpose()),
+                                      derivatives) /
+                 runs;
     }
     CAPTURE(noise);
     CHECK(std::abs(sum - degrees) < 4 * std::sqrt((squares - sum * sum) / runs));
@@ -111,7 +111,7 @@ TEST_CASE("the mean of chi^2 is its degrees of freedom, however the errors are c
   }
 }
 
-TEST_CASE("too few groups tell nothing of correlations") {
+TEST_CASE("correlated errors: too few groups give no covariance") {
   GroupedSums sums(2);
   const Complex values[] = {1, 2};
   for (int batch = 0; batch < 5; ++batch) sums.add(1, values);

@@ -29,20 +29,20 @@ PlanTask plan_of(double patterns) {
 
 }  // namespace
 
-TEST_CASE("two fields of unknown scale tell of their correlation what the closed form says") {
+TEST_CASE("fit plan: information on the correlation of two fields agrees with the closed form") {
   for (const double r : {0.0, 0.5, 0.95}) {
-    const MatrixXcd covariance{{3.0, 3.0 * r}, {3.0 * r, 3.0}}, slope{{0.0, 3.0}, {3.0, 0.0}};
-    const MatrixXd found = field_information(covariance, {slope});
+    const MatrixXcd covariance{{3.0, 3.0 * r}, {3.0 * r, 3.0}}, derivative{{0.0, 3.0}, {3.0, 0.0}};
+    const MatrixXd found = field_information(covariance, {derivative});
     CHECK(found(0, 0) == doctest::Approx(2 / std::pow(1 - r * r, 2)));
   }
 }
 
-TEST_CASE("a scale alone is not known where that of the fields is not") {
+TEST_CASE("fit plan: a common scale has no information if the scale of the fields is unknown") {
   const MatrixXcd covariance{{2.0, Complex(1, 0.5)}, {Complex(1, -0.5), 1.5}};
   CHECK(std::abs(field_information(covariance, {covariance})(0, 0)) < 1e-12);
 }
 
-TEST_CASE("errors of a plan fall with the root of the patterns, and grow with what is left out") {
+TEST_CASE("fit plan: errors fall as 1 / sqrt(patterns) and grow without one view or tilt") {
   const FitPlan few = fit_plan(plan_of(100)), many = fit_plan(plan_of(10000));
   for (int i = 0; i < 2; ++i) {
     CHECK(few.errors[i] == doctest::Approx(10 * many.errors[i]));

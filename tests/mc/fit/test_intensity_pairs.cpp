@@ -15,7 +15,8 @@ namespace {
 
 using Eigen::VectorXd;
 
-/// Of fields that have these C_E with the first, and no more than that with each other.
+/// Draws intensities of fields with these correlations C_E to the first field; given the first,
+/// the fields are independent.
 std::vector<double> drawn(const std::vector<double>& field_correlations, int patterns,
                           std::mt19937_64& random) {
   std::normal_distribution<double> normal(0, std::sqrt(0.5));
@@ -35,7 +36,8 @@ std::vector<double> drawn(const std::vector<double>& field_correlations, int pat
 
 }  // namespace
 
-TEST_CASE("C_I of pairs is unbiased, its errors are what is told, and far less than moments'") {
+TEST_CASE(
+    "C_I of intensity pairs: unbiased, errors agree with the scatter and are below moments'") {
   const VectorXd truth{{0.98, 0.9, 0.5, 0.03}};
   constexpr int runs = 100;
   const int patterns = tests::is_night ? 1000 : 300;
@@ -47,9 +49,9 @@ TEST_CASE("C_I of pairs is unbiased, its errors are what is told, and far less t
     for (const double value : truth) c.push_back(std::sqrt(value));
     const auto found = likeliest_correlations(drawn(c, patterns, random), c.size() + 1);
     const VectorXd off = found.values - truth, error = found.covariance.diagonal().cwiseSqrt(),
-                   pull = off.cwiseQuotient(error);
-    sum += pull;
-    squares += pull.cwiseAbs2();
+                   normalised = off.cwiseQuotient(error);
+    sum += normalised;
+    squares += normalised.cwiseAbs2();
     errors += error / runs;
     chi_squared += off.dot(found.covariance.ldlt().solve(off)) / runs;
   }

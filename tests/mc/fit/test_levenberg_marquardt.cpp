@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 constexpr int most_iterations = 60;
 constexpr double precise = 1e-12;
 
-/// A line through points of known errors: the straight-line fit in closed form.
+/// Straight line through points of known errors, whose fit has a closed form.
 struct Line {
   VectorXd x{{0, 1, 2, 3, 4}}, y{{1.1, 2.9, 5.2, 6.8, 9.1}}, error{{0.1, 0.2, 0.1, 0.3, 0.2}};
 
@@ -24,31 +24,31 @@ struct Line {
               return ((p[0] + p[1] * x.array()) - y.array()) / error.array();
             },
             [this](const VectorXd&, const VectorXd&) {
-              MatrixXd slopes(x.size(), 2);
-              slopes << error.cwiseInverse(), x.cwiseQuotient(error);
-              return slopes;
+              MatrixXd derivatives(x.size(), 2);
+              derivatives << error.cwiseInverse(), x.cwiseQuotient(error);
+              return derivatives;
             },
             lower, upper};
   }
 };
 
-/// y = a exp(-b x)
+/// Least squares of y = a exp(-b x).
 BoundedLeastSquares decay(const VectorXd& x, const VectorXd& y, double error) {
   return {[=](const VectorXd& p) -> VectorXd {
             return (p[0] * (-p[1] * x.array()).exp() - y.array()) / error;
           },
           [=](const VectorXd& p, const VectorXd&) {
             const VectorXd falling = (-p[1] * x.array()).exp() / error;
-            MatrixXd slopes(x.size(), 2);
-            slopes << falling, -p[0] * x.cwiseProduct(falling);
-            return slopes;
+            MatrixXd derivatives(x.size(), 2);
+            derivatives << falling, -p[0] * x.cwiseProduct(falling);
+            return derivatives;
           },
           VectorXd{{0.1, 0.01}}, VectorXd{{10, 5}}};
 }
 
 }  // namespace
 
-TEST_CASE("least squares of a line are those of the closed form") {
+TEST_CASE("Levenberg-Marquardt: a straight-line fit agrees with the closed form") {
   const Line line;
   const auto problem = line.problem(VectorXd{{-10, -10}}, VectorXd{{10, 10}});
   const auto fit = levenberg_marquardt(problem, VectorXd{{5, -3}}, most_iterations, precise);
@@ -65,7 +65,7 @@ TEST_CASE("least squares of a line are those of the closed form") {
   CHECK(known.correlation(0, 1) == doctest::Approx(-wx / std::sqrt(w * wxx)));
 }
 
-TEST_CASE("a bound holds a parameter back, and the others are best there") {
+TEST_CASE("Levenberg-Marquardt: with one parameter at its bound the others are optimal") {
   const Line line;
   const auto problem = line.problem(VectorXd{{-10, -10}}, VectorXd{{10, 1.5}});
   const auto fit = levenberg_marquardt(problem, VectorXd{{5, -3}}, most_iterations, precise);
@@ -77,7 +77,7 @@ TEST_CASE("a bound holds a parameter back, and the others are best there") {
             .epsilon(1e-6));
 }
 
-TEST_CASE("wide bounds do not end a search early") {
+TEST_CASE("Levenberg-Marquardt: wide bounds do not end the search early") {
   constexpr double error = 1e-4, tolerance = 1e-3;
   const VectorXd x = VectorXd::LinSpaced(20, 0, 3), truth{{2, 0.8}};
   auto problem = decay(x, truth[0] * (-truth[1] * x.array()).exp(), error);
@@ -88,7 +88,7 @@ TEST_CASE("wide bounds do not end a search early") {
   CHECK((fit.parameters - truth).cwiseQuotient(errors).cwiseAbs().maxCoeff() < 0.1);
 }
 
-TEST_CASE("pulls of an exponential's parameters are standard normal") {
+TEST_CASE("Levenberg-Marquardt: normalised residuals of an exponential fit are standard normal") {
   constexpr double error = 0.01;
   constexpr int runs = 400;
   const VectorXd x = VectorXd::LinSpaced(20, 0, 3), truth{{2, 0.8}};
@@ -101,10 +101,10 @@ TEST_CASE("pulls of an exponential's parameters are standard normal") {
     const auto problem = decay(x, y, error);
     const auto fit = best_fit(problem, {VectorXd{{0.5, 3}}, VectorXd{{5, 0.1}}});
     REQUIRE(fit.converged);
-    const VectorXd pull =
+    const VectorXd normalised =
         (fit.parameters - truth).cwiseQuotient(information(problem, fit.jacobian).errors());
-    sum += pull;
-    squares += pull.cwiseAbs2();
+    sum += normalised;
+    squares += normalised.cwiseAbs2();
   }
   for (int i = 0; i < 2; ++i) {
     CHECK(std::abs(sum[i] / runs) < 4 / std::sqrt(runs));
@@ -112,7 +112,7 @@ TEST_CASE("pulls of an exponential's parameters are standard normal") {
   }
 }
 
-TEST_CASE("what cannot be told apart is named, not hidden") {
+TEST_CASE("fit information: inseparable parameters have infinite condition and a named direction") {
   const BoundedLeastSquares sum_alone{[](const VectorXd& p) {
                                         return VectorXd{{p[0] + p[1] - 1, 0}};
                                       },
@@ -129,7 +129,7 @@ TEST_CASE("what cannot be told apart is named, not hidden") {
   CHECK(known.worst[0] == doctest::Approx(-known.worst[1]));
 }
 
-TEST_CASE("a jacobian that is off by a hundredth is seen in differences") {
+TEST_CASE("derivative check: a Jacobian wrong by 1 % is detected by differences") {
   const VectorXd x{{0, 0.5, 1, 2, 4}};
   const VectorXd y = 3 * (-0.7 * x.array()).exp();
   for (const double factor : {1.0, 1.01}) {
@@ -139,14 +139,15 @@ TEST_CASE("a jacobian that is off by a hundredth is seen in differences") {
       return MatrixXd(factor * own(p, r));
     };
     const auto fit = levenberg_marquardt(problem, VectorXd{{2, 1}});
-    const auto found = check_slope(problem, fit);
+    const auto found = check_derivative(problem, fit);
     REQUIRE(found.has_value());
     CHECK(found->limit < 0.01);
     CHECK((found->off < found->limit) == (factor == 1));
   }
   Line line;
   const auto at_bound = line.problem(VectorXd{{5, 3}}, VectorXd{{9, 5}});
-  CHECK_FALSE(check_slope(at_bound, levenberg_marquardt(at_bound, VectorXd{{6, 4}})).has_value());
+  CHECK_FALSE(
+      check_derivative(at_bound, levenberg_marquardt(at_bound, VectorXd{{6, 4}})).has_value());
 }
 
 }  // namespace flatspeckle::mc::test_levenberg_marquardt

@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 const VectorXd truth{{0.8, 0.98, 4}};
 
-/// g and the mean free path of slabs without absorption.
+/// Fits g and the mean free path of slabs without absorption.
 FitTask lossless_task(std::vector<Measurement> measurements) {
   MovingSpec none;
   none.scatterer = "hg";
@@ -28,13 +28,13 @@ const SyntheticSlab& standard() {
   return slab;
 }
 
-double relative_error(const MediumFit& fit) {  // of mu_s (1 - g)
+double relative_error(const MediumFit& fit) {  // mu_s (1 - g)
   return fit.derived.front().error / fit.derived.front().value;
 }
 
 }  // namespace
 
-TEST_CASE("without noise a slab's parameters are found again") {
+TEST_CASE("medium fit: measurements without noise give the slab's parameters") {
   const MediumFit fit = fit_medium(slab_task(standard().exact()));
   REQUIRE(fit.converged);
   CHECK((fit.estimates - truth).cwiseQuotient(fit.errors).cwiseAbs().maxCoeff() < 0.1);
@@ -42,16 +42,16 @@ TEST_CASE("without noise a slab's parameters are found again") {
   CHECK(fit.numerical < 0.05);
 }
 
-TEST_CASE("with noise a slab's parameters are found within their errors") {
+TEST_CASE("medium fit: noisy measurements give the slab's parameters within their errors") {
   const MediumFit fit = fit_medium(slab_task(standard().measured(1)));
   REQUIRE(fit.converged);
   CHECK((fit.estimates - truth).cwiseQuotient(fit.errors).cwiseAbs().maxCoeff() < 3);
   CHECK(fit.chi_squared < 14 + 4 * std::sqrt(28));
 }
 
-TEST_CASE("a parameter at its bound stays there") {
+TEST_CASE("medium fit: a parameter at its bound stays there") {
   auto task = slab_task(standard().exact());
-  task.free[1].upper = 0.97;  // of the albedo
+  task.free[1].upper = 0.97;  // albedo
   for (int i = 0; i < 3; ++i) task.free[i].start = (VectorXd{{0.75, 0.95, 5}})[i];
   const MediumFit fit = fit_medium(task);
   REQUIRE(fit.converged);
@@ -59,13 +59,13 @@ TEST_CASE("a parameter at its bound stays there") {
   CHECK(fit.chi_squared > 50);
 }
 
-TEST_CASE("a thick slab in transmission tells mu_s (1 - g) alone; a thin one tells g") {
+TEST_CASE("medium fit: transmission of a thick slab gives mu_s (1 - g) only, a thin slab adds g") {
   SyntheticSlab slab(20000, 0.8, 1, 30);
   slab.add_curve(0, {1, 2, 3, 4});
   slab.add_transmittance();
   auto task = lossless_task(slab.exact());
   const MediumFit thick = fit_medium(task);
-  MESSAGE("thick: g to " << thick.errors[0] << "; " << degeneracy(task, thick));
+  MESSAGE("thick slab: error of g " << thick.errors[0] << "; " << degeneracy(task, thick));
   CHECK(relative_error(thick) < 0.02);
   CHECK(thick.errors[1] / thick.estimates[1] > 5 * relative_error(thick));
   CHECK(std::abs(thick.correlation(0, 1)) > 0.98);
@@ -76,7 +76,7 @@ TEST_CASE("a thick slab in transmission tells mu_s (1 - g) alone; a thin one tel
   slab.add_transmittance();
   task.measurements = slab.exact();
   const MediumFit both = fit_medium(task);
-  MESSAGE("with a thin one: g to " << both.errors[0] << "; " << degeneracy(task, both));
+  MESSAGE("with a thin slab: error of g " << both.errors[0] << "; " << degeneracy(task, both));
   CHECK(both.errors[0] < thick.errors[0] / 2);
   CHECK(both.errors[1] < thick.errors[1] / 2);
 }

@@ -11,17 +11,17 @@ using Eigen::VectorXd;
 
 void check_found(FitTask task, const VectorXd& truth, double most) {
   for (std::size_t i = 0; !flatspeckle::tests::is_night && i < task.free.size(); ++i)
-    task.free[i].start = 1.2 * truth[static_cast<Eigen::Index>(i)];  // one in place of a grid
+    task.free[i].start = 1.2 * truth[static_cast<Eigen::Index>(i)];  // one start instead of a grid
   const MediumFit fit = fit_medium(task);
   REQUIRE(fit.converged);
-  const VectorXd pulls = (fit.estimates - truth).cwiseQuotient(fit.errors);
-  CAPTURE(pulls.transpose());
-  CHECK(pulls.cwiseAbs().maxCoeff() < most);
+  const VectorXd normalised = (fit.estimates - truth).cwiseQuotient(fit.errors);
+  CAPTURE(normalised.transpose());
+  CHECK(normalised.cwiseAbs().maxCoeff() < most);
 }
 
 }  // namespace
 
-TEST_CASE("diffusion and mean free path follow from decays, and from contrasts") {
+TEST_CASE("motion fit: decays give diffusion and optical depth, contrasts diffusion and beta") {
   check_found(bench::motion_task(bench::diffusing_slab().exact(),
                                  {"diffusion=0.1:10", "optical_depth=3:20"}),
               VectorXd{{1, 8}}, 0.1);
@@ -31,7 +31,7 @@ TEST_CASE("diffusion and mean free path follow from decays, and from contrasts")
               VectorXd{{1, bench::SyntheticSlab::beta}}, 0.1);
 }
 
-TEST_CASE("shear and diffusion are told apart by light in several views") {
+TEST_CASE("motion fit: decays in several views separate shear from diffusion") {
   check_found(bench::ShearedSlab().task(1, 0.03),
               VectorXd{{bench::ShearedSlab::diffusion, bench::ShearedSlab::shear}}, 4);
 }

@@ -17,7 +17,8 @@ using tests::pi;
 
 constexpr double depth = 2000, share = 0.01;  // share: standard error over intensity
 
-/// Intensity and three tilts of a view, real parts; g, albedo, optical depth.
+/// Real parts of the intensity and of three tilts per view, as functions of g, albedo and optical
+/// depth.
 struct Views {
   std::vector<double> angles;
 
@@ -30,14 +31,14 @@ struct Views {
   std::vector<Complex> values(const VectorXd& p) const {
     return slab_covariance(scene(p), false, {1e-4}).value;
   }
-  MatrixXd slopes(const VectorXd& p) const {
+  MatrixXd derivatives(const VectorXd& p) const {
     const Scene at = scene(p);
     const auto n = static_cast<Index>(at.request.entries.size());
     MatrixXd found(n, 3);
     const BulkParameter of[] = {BulkParameter::g, BulkParameter::albedo, BulkParameter::mu_t};
     const double unit[] = {1, 1, 1 / depth};
     for (Index j = 0; j < 3; ++j) {
-      const auto all = slab_slopes(at, false, {1e-4}, of[j]).value;
+      const auto all = slab_derivatives(at, false, {1e-4}, of[j]).value;
       for (Index e = 0; e < n; ++e)
         found(e, j) = all[static_cast<std::size_t>(n + e)].real() * unit[j];
     }
@@ -45,7 +46,7 @@ struct Views {
   }
 };
 
-/// Residuals about the truth, of errors that are a share of the truth's values.
+/// Least squares about the truth; errors are a fixed share of the true values.
 BoundedLeastSquares slab(const Views& views, const VectorXd& truth) {
   const auto measured = views.values(truth);
   const auto n = static_cast<Index>(measured.size());
@@ -60,7 +61,7 @@ BoundedLeastSquares slab(const Views& views, const VectorXd& truth) {
             return residual;
           },
           [=](const VectorXd& p, const VectorXd&) -> MatrixXd {
-            return error.cwiseInverse().asDiagonal() * views.slopes(p);
+            return error.cwiseInverse().asDiagonal() * views.derivatives(p);
           },
           VectorXd{{0.3, 0.9, 2}}, VectorXd{{0.95, 1, 60}}};
 }
@@ -72,7 +73,7 @@ Information known(const Views& views, const VectorXd& truth) {
 
 }  // namespace
 
-TEST_CASE("a slab's parameters are found again from transmission and reflection") {
+TEST_CASE("slab information: transmission and reflection give g, albedo and optical depth") {
   const VectorXd truth{{0.8, 0.98, 4}};
   const auto problem = slab({{0.1, pi - 0.3}}, truth);
   const auto fit = levenberg_marquardt(
@@ -82,7 +83,7 @@ TEST_CASE("a slab's parameters are found again from transmission and reflection"
   CHECK((fit.parameters - truth).cwiseQuotient(errors).cwiseAbs().maxCoeff() < 0.05);
 }
 
-TEST_CASE("a thick slab in transmission hides g, and reflection tells it") {
+TEST_CASE("slab information: reflection determines g of a thick slab better than transmission") {
   const VectorXd thick{{0.8, 0.98, 30}};
   const auto alone = known({{0.1}}, thick), both = known({{0.1, pi - 0.3}}, thick);
   CHECK(both.errors()[0] < alone.errors()[0] / 3);

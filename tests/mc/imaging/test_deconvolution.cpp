@@ -1,4 +1,4 @@
-// Frames divided by that of a reference point.
+// Deconvolution of frames by the frame of a reference point.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -13,7 +13,7 @@ namespace {
 
 using Method = DeconvolutionTask::Method;
 
-/// Exponentially distributed pixels.
+/// Draws independent, exponentially distributed pixels.
 std::vector<double> speckle(std::size_t pixels, std::mt19937& random) {
   std::exponential_distribution<double> law(1);
   std::vector<double> values(pixels);
@@ -27,8 +27,8 @@ struct Frames {
   std::vector<double> frame, reference;
 };
 
-/// alike: C_I of each point and the reference.
-Frames frames_of(const LineObject& shifts, double alike, std::mt19937& random) {
+/// Draws frames of shifted points; `correlation` is C_I of each point with the reference.
+Frames frames_of(const LineObject& shifts, double correlation, std::mt19937& random) {
   const auto shared = speckle(pixels + 2 * lags, random);
   Frames frames{std::vector<double>(pixels),
                 {shared.begin() + lags, shared.begin() + lags + pixels}};
@@ -36,9 +36,10 @@ Frames frames_of(const LineObject& shifts, double alike, std::mt19937& random) {
     const auto own = speckle(pixels, random);
     const auto first = static_cast<long>(lags) - static_cast<long>(shifts.x[i]);
     for (std::size_t p = 0; p < pixels; ++p)
-      frames.frame[p] += shifts.brightness[i] *
-                         (alike * shared[static_cast<std::size_t>(static_cast<long>(p) + first)] +
-                          std::sqrt(1 - alike * alike) * own[p]);
+      frames.frame[p] +=
+          shifts.brightness[i] *
+          (correlation * shared[static_cast<std::size_t>(static_cast<long>(p) + first)] +
+           std::sqrt(1 - correlation * correlation) * own[p]);
   }
   return frames;
 }
@@ -52,7 +53,8 @@ const LineObject object{{-31, 4, 19}, {1, 3, 2}};
 
 }  // namespace
 
-TEST_CASE("points stand where they are, as bright as they are") {
+TEST_CASE(
+    "deconvolution: positions and brightness of points are recovered, not their mirror image") {
   std::mt19937 random(1);
   const Frames frames = frames_of(object, 1, random);
   CHECK(psnr_of(object, frames, {}) > 30);
@@ -62,19 +64,19 @@ TEST_CASE("points stand where they are, as bright as they are") {
   CHECK(psnr_of(mirrored, frames, {Method::richardson_lucy}) < 22);
 }
 
-TEST_CASE("what the reference does not know of lowers the picture") {
+TEST_CASE("deconvolution: PSNR falls with the correlation to the reference") {
   std::mt19937 random(2);
   for (const Method method : {Method::wiener, Method::richardson_lucy}) {
     double before = 100;
-    for (const double alike : {1.0, 0.7, 0.3, 0.1}) {
-      const double now = psnr_of(object, frames_of(object, alike, random), {method});
+    for (const double correlation : {1.0, 0.7, 0.3, 0.1}) {
+      const double now = psnr_of(object, frames_of(object, correlation, random), {method});
       CHECK(now < before - 1);
       before = now;
     }
   }
 }
 
-TEST_CASE("the residual of Richardson and Lucy falls, to what the reference does not know of") {
+TEST_CASE("Richardson-Lucy: the residual falls to the uncorrelated part") {
   std::mt19937 random(3);
   const Frames frames = frames_of({{10}, {1}}, 0.8, random);
   const auto found =
@@ -84,7 +86,7 @@ TEST_CASE("the residual of Richardson and Lucy falls, to what the reference does
   CHECK(found.residual.back() == doctest::Approx(0.6 / 1.4).epsilon(0.1));
 }
 
-TEST_CASE("the ratio of peak to noise is that of its definition") {
+TEST_CASE("PSNR: agrees with its definition") {
   std::vector<double> truth(101), picture(101);
   truth[50] = 2;
   picture[50] = 6;

@@ -1,4 +1,4 @@
-// Pictures of points through a medium: frames, their autocorrelation, the points found in it.
+// Imaging of points through a medium: frames, their autocorrelation, the recovered points.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -32,7 +32,7 @@ bool distances_distinct(const Positions& x, int apart) {
   return true;
 }
 
-/// With distinct distances.
+/// Draws positions with distinct distances.
 Positions random_ruler(std::size_t points, int longest, int apart, std::mt19937& random) {
   std::uniform_int_distribution<int> place(0, longest);
   for (;;) {
@@ -42,8 +42,8 @@ Positions random_ruler(std::size_t points, int longest, int apart, std::mt19937&
   }
 }
 
-/// Independent pixels that are exponentially distributed; the pattern of each point is the first's
-/// shifted, with the correlation C_I of two intensities.
+/// Draws independent, exponentially distributed pixels. The patterns of the points are shifted
+/// copies of one pattern; `correlation` is C_I of two of them.
 std::vector<double> shifted_speckle(const Positions& x, std::size_t pixels, double correlation,
                                     std::mt19937& random) {
   std::normal_distribution<double> normal(0, std::sqrt(0.5));
@@ -70,7 +70,7 @@ LineObject object_of(const Positions& x) {
   return {{x.begin(), x.end()}, std::vector<double>(x.size(), 1)};
 }
 
-/// Peaks of height b_i b_j and half width 1.
+/// Returns triangular peaks of height b_i b_j and half width 1.
 PairPeaks ideal_peaks(const LineObject& object, std::size_t lags) {
   PairPeaks peaks{.step = 1, .height = std::vector<double>(lags)};
   for (std::size_t i = 0; i < object.x.size(); ++i)
@@ -97,7 +97,7 @@ Scene forward_box(double width, double depth, double optical_depth) {
 
 }  // namespace
 
-TEST_CASE("points are found in what their autocorrelation would be without noise") {
+TEST_CASE("sparse search: noise-free autocorrelation gives the points") {
   std::mt19937 random(1);
   for (const std::size_t points : {2, 3, 4, 6, 8, 10}) {
     CAPTURE(points);
@@ -115,7 +115,7 @@ TEST_CASE("points are found in what their autocorrelation would be without noise
   }
 }
 
-TEST_CASE("grains are those of the peak about lag 0, whatever its wide base and the noise are") {
+TEST_CASE("grain size: the fitted peak at lag 0 is unaffected by a wide base and noise") {
   std::mt19937 random(6);
   std::normal_distribution<double> noise(0, 0.003);
   for (const double band : {1.0, 0.6, 0.3, 0.1}) {
@@ -127,13 +127,13 @@ TEST_CASE("grains are those of the peak about lag 0, whatever its wide base and 
   }
 }
 
-TEST_CASE("a search that cannot succeed finds nothing") {
+TEST_CASE("sparse search: an impossible task returns no points") {
   CHECK(sparse_search({1, std::vector<double>(8, 1.0), 1, 1}, {6, 1}).object.x.empty());
   const LineObject none;
   CHECK(score(object_of({0, 4, 9}), none, 1).found == 0);
 }
 
-TEST_CASE("an object, shifted and mirrored, is the same picture") {
+TEST_CASE("image score: invariant under shift and mirroring") {
   const LineObject truth{{0, 10, 25}, {1, 2, 3}}, image{{-7, -17, -32}, {1, 2, 3}};
   const LineObject mirrored{{57, 72, 82}, {3, 2, 1}}, other{{0, 10, 30}, {1, 2, 3}};
   for (const LineObject& same : {image, mirrored}) {
@@ -143,7 +143,7 @@ TEST_CASE("an object, shifted and mirrored, is the same picture") {
   CHECK(score(truth, other, 0.1).found == doctest::Approx(2.0 / 3));
 }
 
-TEST_CASE("peaks of pairs stand above the noise as predicted") {
+TEST_CASE("pair peaks: ratio of peak to noise agrees with the prediction") {
   std::mt19937 random(2);
   struct Case {
     std::size_t grains;
@@ -164,7 +164,7 @@ TEST_CASE("peaks of pairs stand above the noise as predicted") {
     CAPTURE(grains);
     CAPTURE(points);
     const std::size_t lags = grains > 5000 ? 128 : 32;
-    Positions x{0, 5};  // the others far away: their peaks are no noise
+    Positions x{0, 5};  // the other points are so far apart that their peaks lie beyond the lags
     for (int i = 2; i < points; ++i) x.push_back(static_cast<int>(4 * lags) * i + 5 * i * i);
     const int runs = (grains > 50000 ? 20 : grains > 5000 ? 60 : 300) / (is_night ? 1 : 2);
     double peak = 0, noise = 0;
@@ -173,7 +173,7 @@ TEST_CASE("peaks of pairs stand above the noise as predicted") {
       const auto beyond = std::span(found.autocorrelation).subspan(10);
       const double base =
           std::reduce(beyond.begin(), beyond.end()) / static_cast<double>(beyond.size());
-      peak += (found.autocorrelation[5] - base) / runs;  // the envelope takes a little everywhere
+      peak += (found.autocorrelation[5] - base) / runs;  // lowered a little with the envelope
       noise += found.noise * found.noise / runs;
     }
     const std::vector<double> all(static_cast<std::size_t>(points * (points - 1) / 2), correlation);
@@ -182,7 +182,7 @@ TEST_CASE("peaks of pairs stand above the noise as predicted") {
   }
 }
 
-TEST_CASE("a camera's noise lowers peaks as predicted") {
+TEST_CASE("pair peaks with camera noise: ratio of peak to noise agrees with the prediction") {
   std::mt19937 random(5);
   constexpr std::size_t pixels = 10000, lags = 128;
   const Positions x{0, 5, 600, 1325};
@@ -202,12 +202,12 @@ TEST_CASE("a camera's noise lowers peaks as predicted") {
       square += found.noise * found.noise / runs;
     }
     const double expected = peaks_over_noise(object_of(x), all, {pixels, noise, pixels})[0],
-                 chance = 4 / std::sqrt(runs);  // noise of the mean peak
-    CHECK(std::abs(peak / std::sqrt(square) - expected) < 0.1 * expected + chance);
+                 fluctuation = 4 / std::sqrt(runs);  // noise of the mean peak
+    CHECK(std::abs(peak / std::sqrt(square) - expected) < 0.1 * expected + fluctuation);
   }
 }
 
-TEST_CASE("points in the speckle of one frame are found") {
+TEST_CASE("sparse search: one speckle frame gives the points") {
   std::mt19937 random(3);
   int found = 0;
   constexpr int objects = 20;
@@ -223,7 +223,7 @@ TEST_CASE("points in the speckle of one frame are found") {
   CHECK(found >= 18);
 }
 
-TEST_CASE("a camera's noise is what was asked for, and leaves the contrast") {
+TEST_CASE("camera noise: variance agrees with the model, corrected contrast is unchanged") {
   std::mt19937 random(4);
   const auto clean = shifted_speckle({0}, 200000, 1, random);
   const CameraNoise noise{.photons = 5, .read_noise = 2, .background = 0.5};
@@ -242,7 +242,7 @@ TEST_CASE("a camera's noise is what was asked for, and leaves the contrast") {
   CHECK(frame_statistics(frame, 64, noise).contrast == doctest::Approx(1 / 1.5).epsilon(0.02));
 }
 
-TEST_CASE("contrast without the camera's noise does not depend on how many photons there are") {
+TEST_CASE("contrast corrected for camera noise: independent of the number of photons") {
   std::mt19937 random(7);
   constexpr std::size_t pixels = 2048;
   const int runs = is_night ? 300 : 100;
@@ -253,7 +253,7 @@ TEST_CASE("contrast without the camera's noise does not depend on how many photo
     for (int run = 0; run < runs; ++run) {
       auto frame = shifted_speckle({0, 5, 13, 31}, pixels, 1, random);
       for (std::size_t p = 0; p < pixels;
-           ++p)  // brighter in the middle, where the contrast is taken
+           ++p)  // brighter in the middle, where the contrast is measured
         frame[p] *=
             1 + 0.4 * std::cos(2 * std::numbers::pi * (static_cast<double>(p) / pixels - 0.5));
       RandomStream stream(2, static_cast<std::uint64_t>(Stream::camera),
@@ -267,7 +267,7 @@ TEST_CASE("contrast without the camera's noise does not depend on how many photo
   }
 }
 
-TEST_CASE("an uneven light leaves no pedestal under the peaks of far pairs") {
+TEST_CASE("autocorrelation: uneven illumination leaves no pedestal at large lags") {
   std::mt19937 random(8);
   constexpr std::size_t pixels = 8192, lags = 900;
   constexpr int runs = 20;
@@ -286,7 +286,7 @@ TEST_CASE("an uneven light leaves no pedestal under the peaks of far pairs") {
   CHECK(alone == doctest::Approx(0.25).epsilon(0.03));
 }
 
-TEST_CASE("the speckle of a point that moves is shifted, and as alike as predicted") {
+TEST_CASE("moved point: shift and correlation of its speckle agree with the prediction") {
   struct Case {
     bool near;
     double x;
@@ -305,7 +305,7 @@ TEST_CASE("the speckle of a point that moves is shifted, and as alike as predict
         fields_by_paths(line.scene, make_plan(line.scene, ReversedPaths::automatic), 1, 1000);
     // correlation of the two intensities by shift, over frames
     const int longest = static_cast<int>(2 * std::abs(shift));
-    std::vector<double> alike(2 * static_cast<std::size_t>(longest) + 1);
+    std::vector<double> correlations(2 * static_cast<std::size_t>(longest) + 1);
     const int frames = is_night ? 40 : 20;
     for (int frame = 0; frame < frames; ++frame) {
       std::vector<Complex> field(1400);
@@ -319,12 +319,12 @@ TEST_CASE("the speckle of a point that moves is shifted, and as alike as predict
       const auto first = of(0), second = of(1);
       for (int s = -longest; s <= longest; ++s)
         for (int p = 100; p < 600; ++p)
-          alike[static_cast<std::size_t>(s + longest)] += first[static_cast<std::size_t>(p)] *
-                                                          second[static_cast<std::size_t>(p + s)] /
-                                                          (500.0 * frames);
+          correlations[static_cast<std::size_t>(s + longest)] +=
+              first[static_cast<std::size_t>(p)] * second[static_cast<std::size_t>(p + s)] /
+              (500.0 * frames);
     }
-    const auto peak = std::max_element(alike.begin(), alike.end());
-    CHECK(std::abs(static_cast<double>(peak - alike.begin()) - longest - shift) < 1.5);
+    const auto peak = std::max_element(correlations.begin(), correlations.end());
+    CHECK(std::abs(static_cast<double>(peak - correlations.begin()) - longest - shift) < 1.5);
     CHECK(*peak == doctest::Approx(expected.correlation.value[0].real()).epsilon(0.2));
   }
 }

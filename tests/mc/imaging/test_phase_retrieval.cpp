@@ -1,4 +1,4 @@
-// Pictures whose autocorrelation is known.
+// Phase retrieval of pictures from their autocorrelation.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t lags = 100;
 
-/// Points as Gaussians.
+/// Renders points as Gaussians.
 std::vector<double> picture_of(const std::vector<double>& x,
                                const std::vector<double>& brightness) {
   std::vector<double> picture(lags);
@@ -32,7 +32,7 @@ std::vector<double> autocorrelation_of(const std::vector<double>& picture) {
 
 }  // namespace
 
-TEST_CASE("a picture is found from its autocorrelation, shifted and mirrored or not") {
+TEST_CASE("phase retrieval: a picture is recovered up to shift and mirroring") {
   const auto truth = picture_of({8, 19, 52}, {1, 3, 2});
   const auto found = retrieved_phases(autocorrelation_of(truth), {});
   CHECK(best_correlation(truth, found.picture) > 0.98);
@@ -40,7 +40,7 @@ TEST_CASE("a picture is found from its autocorrelation, shifted and mirrored or 
   CHECK(*std::min_element(found.picture.begin(), found.picture.end()) >= 0);
 }
 
-TEST_CASE("error reduction does what it says, and more starts are no worse") {
+TEST_CASE("phase retrieval: error reduction lowers the residual, more starts do not raise it") {
   const auto values = autocorrelation_of(picture_of({5, 13, 44, 61}, {1, 1, 1, 1}));
   const PhaseTask one{.starts = 1, .iterations = 200, .sparsity = 0};
   const auto few = retrieved_phases(values, one),
@@ -50,7 +50,7 @@ TEST_CASE("error reduction does what it says, and more starts are no worse") {
   CHECK(many.residual.back() <= few.residual.back());
 }
 
-TEST_CASE("pictures are compared at their best shift, mirrored or not") {
+TEST_CASE("picture correlation: maximum over shifts and mirroring") {
   const std::vector<double> truth{0, 1, 2, 0, 0, 5}, mirrored{5, 0, 0, 2, 1, 0, 0},
       other{1, 0, 0, 0, 0, 1};
   CHECK(best_correlation(truth, mirrored) == doctest::Approx(1));

@@ -1,4 +1,4 @@
-// Whether all points are found, predicted from the pairs' signals alone.
+// Predicted probability of finding all points, from the signals of the pairs alone.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -16,8 +16,8 @@ namespace {
 
 using flatspeckle::tests::is_night;
 
-/// Share of autocorrelations in which the search finds all points: peaks of this height in white
-/// noise of unit variance.
+/// Returns the share of searches that find all points, with peaks of height `signal` in white noise
+/// of unit variance.
 double found_share(const LineObject& object, double signal, std::size_t lags, int runs,
                    std::mt19937& random) {
   std::normal_distribution<double> noise(0, 1);
@@ -35,7 +35,7 @@ double found_share(const LineObject& object, double signal, std::size_t lags, in
   return found / runs;
 }
 
-/// Signal of all pairs at which half of the searches succeed.
+/// Returns the signal of all pairs at which half of the searches are predicted to succeed.
 double half(std::size_t points, double places) {
   double low = 0, high = 20;
   while (high - low > 1e-3) {
@@ -48,11 +48,11 @@ double half(std::size_t points, double places) {
 
 }  // namespace
 
-TEST_CASE("points are found from the signal on at which they are predicted to be") {
+TEST_CASE("predicted success: the threshold signal agrees with searches") {
   std::mt19937 random(1);
   constexpr std::size_t lags = 120;
   const int runs = is_night ? 40 : 25;
-  constexpr double white = 0.5;  // cycles per lag: all that there are
+  constexpr double white = 0.5;  // cycles per lag: the full band
   const LineObject four{{0, 13, 50, 96}, {1, 1, 1, 1}},
       six{{0, 9, 23, 53, 70, 95}, {1, 1, 1, 1, 1, 1}};
   for (const LineObject& object : {four, six}) {
@@ -64,7 +64,7 @@ TEST_CASE("points are found from the signal on at which they are predicted to be
   }
 }
 
-TEST_CASE("no two pairs of what is found share a peak") {
+TEST_CASE("sparse search: distances in the result differ by more than the resolution") {
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0, 1);
   constexpr double resolution = 3.2;
@@ -85,13 +85,13 @@ TEST_CASE("no two pairs of what is found share a peak") {
   }
 }
 
-TEST_CASE("who knows how far the memory effect reaches finds objects beyond") {
+TEST_CASE("sparse search: a known memory-effect range finds objects larger than it") {
   std::mt19937 random(2);
   std::normal_distribution<double> noise(0, 1);
   const LineObject object{{0, 41, 111, 163, 240}, {1, 1, 1, 1, 1}};
   constexpr double signal = 7, range = 120;
   const int runs = is_night ? 40 : 25;
-  double alike = 0, weighed = 0;
+  double unweighted = 0, weighted = 0;
   for (int run = 0; run < runs; ++run) {
     PairPeaks peaks{.step = 1, .height = std::vector<double>(300), .noise = 1, .alone = 5 * signal};
     for (double& value : peaks.height) value = noise(random);
@@ -105,28 +105,28 @@ TEST_CASE("who knows how far the memory effect reaches finds objects beyond") {
       const SparseFit fit = sparse_search(peaks, {.points = 5, .memory_range = known});
       return score(object, fit.object, 1).found == 1;
     };
-    alike += found(0);
-    weighed += found(range);
+    unweighted += found(0);
+    weighted += found(range);
   }
   CHECK(memory_correlation(range, range) == doctest::Approx(0.5).epsilon(1e-4));
-  CHECK(weighed > 0.7 * runs);
-  CHECK(weighed > alike + runs / 5);
+  CHECK(weighted > 0.7 * runs);
+  CHECK(weighted > unweighted + runs / 5);
 }
 
-TEST_CASE("of many equal points the whole object decides") {
+TEST_CASE("predicted success: threshold of equal points is sqrt(4 ln(places) / points)") {
   CHECK(half(10, 1e6) == doctest::Approx(std::sqrt(4 * std::log(1e6) / 10)).epsilon(0.2));
   CHECK(half(4, 1e8) == doctest::Approx(std::sqrt(4 * std::log(1e8) / 4)).epsilon(0.1));
 }
 
-TEST_CASE("groups without peaks between them, and points that may be mirrored, are not told") {
+TEST_CASE("predicted success: low for groups without mutual peaks and for mirror ambiguities") {
   std::vector<double> signals;  // 10 within two groups of three, none between them
   for (int i = 0; i < 6; ++i)
     for (int j = i + 1; j < 6; ++j) signals.push_back(i / 3 == j / 3 ? 10 : 0);
   const std::vector<double> x{0, 7, 10, 50, 61, 80};
   CHECK(predicted_success(signals, 6, 100, false, x) < 0.01);
   CHECK(predicted_success(std::vector<double>(15, 10.0), 6, 100, false, x) > 0.99);
-  // of four points the last has but two pairs with a peak, which its mirror image keeps
-  // (so few peaks in so many places that nothing else fails)
+  // The last of four points has only two pairs with a peak, which its mirror image keeps.
+  // Peaks are few among many places, so that nothing else fails.
   std::vector<double> mirrored(6, 10.0);
   CHECK(predicted_success(mirrored, 4, 1e4) > 0.99);
   mirrored.back() = 0;
@@ -134,11 +134,11 @@ TEST_CASE("groups without peaks between them, and points that may be mirrored, a
   CHECK(predicted_success(mirrored, 4, 10) < 0.7);
 }
 
-TEST_CASE("the dimmest point decides, and no signal is no success") {
+TEST_CASE("predicted success: limited by the dimmest point, zero without signal") {
   std::vector<double> signals(6, 10.0);
   CHECK(predicted_success(signals, 4, 100) > 0.999);
-  signals[2] = signals[4] = signals[5] = 0.1;        // of the last point
-  CHECK(predicted_success(signals, 4, 100) < 0.02);  // one in a hundred places by chance
+  signals[2] = signals[4] = signals[5] = 0.1;        // pairs of the last point
+  CHECK(predicted_success(signals, 4, 100) < 0.02);  // one of 100 places at random
   CHECK(predicted_success(std::vector<double>(6, 0.0), 4, 100) < 0.01);
   CHECK(predicted_success(std::vector<double>{5}, 2, 100) == doctest::Approx(1).epsilon(0.05));
 }

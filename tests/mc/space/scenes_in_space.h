@@ -8,7 +8,7 @@
 
 namespace flatspeckle::mc::tests {
 
-/// Henyey-Greenstein, wavelength 1.
+/// Returns a slab of Henyey-Greenstein scatterers; the wavelength is 1.
 inline SceneSpec hg_in_space(double depth, double optical_depth, double g, double albedo) {
   SceneSpec spec;
   spec.domain = "slab";
@@ -30,7 +30,7 @@ inline Refined by_transport(const Scene& scene, bool reversed, double tolerance)
   return slab_covariance(scene, reversed, {tolerance});
 }
 
-/// A light and a view against both moved by transverse momenta q; the intensity is that of q = 0.
+/// Pairs a light and a view with both tilted by transverse momenta q; q = 0 gives the intensity.
 inline CovarianceRequest tilted_pairs(double light, double view, const std::vector<double>& q) {
   const auto deflected = [](double angle, double by) {
     const double turned = std::asin(std::sin(angle) + by / (2 * pi));
@@ -42,7 +42,8 @@ inline CovarianceRequest tilted_pairs(double light, double view, const std::vect
   return pairs_request(pairs);
 }
 
-/// Both methods at four standard errors, which must be below a share of the largest entry.
+/// Checks that Monte Carlo and transport agree within four standard errors, each of which must be
+/// below `largest_error` times the first entry.
 inline void check_agreement(const Scene& scene, bool reversed, std::uint64_t paths,
                             double largest_error) {
   const auto walked = run(scene, reversed ? ReversedPaths::yes : ReversedPaths::no, paths, 1);

@@ -12,7 +12,7 @@ namespace flatspeckle::mc::tests {
 using SpaceSlab = SlabOf<SpaceGeometry, double>;
 using SpaceRequest = RequestOf<Eigen::Vector3d>;
 
-/// Henyey-Greenstein, wavelength 1.
+/// Returns a slab of Henyey-Greenstein scatterers; the wavelength is 1.
 inline SpaceSlab hg_space(double depth, double optical_depth, double g, double albedo) {
   const double mu_t = optical_depth / depth;
   const SpaceLaw law(
@@ -20,18 +20,19 @@ inline SpaceSlab hg_space(double depth, double optical_depth, double g, double a
   return {2 * std::numbers::pi, mu_t, depth, {{mu_t, depth, albedo, law}}};
 }
 
-/// A unit vector by its components along the slab, down into it.
+/// Returns the unit vector into the slab with these components along it.
 inline Eigen::Vector3d downward(double x, double y) {
   return {x, y, std::sqrt(1 - x * x - y * y)};
 }
 
-/// By the angle to z and the azimuth.
+/// Returns the unit vector at an angle to z and an azimuth.
 inline Eigen::Vector3d spherical(double angle, double azimuth) {
   return {std::sin(angle) * std::cos(azimuth), std::sin(angle) * std::sin(azimuth),
           std::cos(angle)};
 }
 
-/// Of channels (light, view): the covariance of each with the first, then all intensities.
+/// Requests, for channels (light, view), the covariance of each with the first, then all
+/// intensities.
 inline SpaceRequest against_first(const std::vector<Eigen::Vector3d>& lights,
                                   const std::vector<Eigen::Vector3d>& views) {
   SpaceRequest request{lights, views, {}, {}};

@@ -21,7 +21,7 @@ using tests::spherical;
 
 constexpr double usual_depth = 2000;
 
-/// Light and view along the normal: the intensity, then C_I at tilts of q L.
+/// Returns, for light and view along the normal, the intensity and then C_I at tilts of q L.
 std::vector<double> memory_effect(const SpaceSlab& slab, const std::vector<double>& turns,
                                   double tolerance) {
   std::vector<Vector3d> lights{downward(0, 0)};
@@ -35,7 +35,7 @@ std::vector<double> memory_effect(const SpaceSlab& slab, const std::vector<doubl
   return values;
 }
 
-/// The entry of two channels (light, view).
+/// Returns the covariance of two channels (light, view).
 Complex covariance(const SpaceSlab& slab, const SpacePair& lights, const SpacePair& views,
                    bool reversed, double tolerance) {
   const SpaceRequest request{{lights.first, lights.second},
@@ -45,8 +45,8 @@ Complex covariance(const SpaceSlab& slab, const SpacePair& lights, const SpacePa
   return slab_covariance(slab, request, reversed, {tolerance}).value[0];
 }
 
-/// Of an oblique light, tilted along x by q1 and along y by q2 over the depth, and a view at an
-/// angle and azimuth of its own that follows.
+/// Oblique light and a view at its own angle and azimuth, both tilted along x by q1 and along y by
+/// q2 over the depth.
 struct Tilted {
   SpacePair lights, views;
 };
@@ -64,7 +64,7 @@ Tilted tilted(const SpaceSlab& slab, const Vector3d& view, double q1, double q2)
 
 }  // namespace
 
-TEST_CASE("slabs in space: known intensities, correlations and ranges") {
+TEST_CASE("3D slab transport: intensities, correlations and ranges agree with known values") {
   const auto check = [](double g, const std::array<double, 4>& known, double range) {
     const auto found = memory_effect(hg_space(usual_depth, 10, g, 1), {1.2, 1.4, 1.6, range}, 1e-5);
     CHECK(std::abs(found[0] / known[0] - 1) < 5e-5);
@@ -75,8 +75,8 @@ TEST_CASE("slabs in space: known intensities, correlations and ranges") {
   check(0.5, {0.10584, 0.5627, 0.4675, 0.3820}, 1.3295);
 }
 
-TEST_CASE("slabs in space: exchanged ends see the same, whatever the azimuths") {
-  const auto slab = hg_space(200, 3, 0.5, 0.95);  // no foci: one grid
+TEST_CASE("3D slab transport: the covariance is reciprocal at any azimuth") {
+  const auto slab = hg_space(200, 3, 0.5, 0.95);  // the ordinates have no foci: both use one grid
   for (const double angle : {0.7, 2.4}) {
     const auto [lights, views] = tilted(slab, spherical(angle, 1.1), 1.5, -2.5);
     const Complex there = covariance(slab, lights, views, false, 1e-2),
@@ -85,7 +85,7 @@ TEST_CASE("slabs in space: exchanged ends see the same, whatever the azimuths") 
   }
 }
 
-TEST_CASE("slabs in space: the difference is more than the error") {
+TEST_CASE("3D slab transport: errors are below the tolerance") {
   const auto slab = hg_space(200, 4, 0.6, 0.97);
   const auto [lights, views] = tilted(slab, -spherical(0.5, 0.001), 1, 2);
   const Complex exact = covariance(slab, lights, views, true, 1e-5);
@@ -94,20 +94,20 @@ TEST_CASE("slabs in space: the difference is more than the error") {
           tolerance * std::abs(exact));
 }
 
-TEST_CASE("slabs in space: nine digits") {
+TEST_CASE("3D slab transport: converges to nine digits") {
   const auto slab = hg_space(usual_depth, 10, 0.5, 1);
   const auto rough = memory_effect(slab, {1.4}, 1e-6), exact = memory_effect(slab, {1.4}, 1e-9);
   for (std::size_t i = 0; i < 2; ++i) CHECK(std::abs(rough[i] / exact[i] - 1) < 1e-9);
 }
 
-TEST_CASE("slabs in space: the covariance of a walk at oblique lights, tilts along and across") {
+TEST_CASE("3D slab transport: covariance at oblique incidence agrees with walks of field pairs") {
   const std::uint64_t photons = tests::is_night ? 40000 : 10000;
   for (const auto& [g, optical_depth, albedo] :
        {std::array{0.0, 2.0, 1.0}, {0.6, 4.0, 0.95}, {0.9, 5.0, 0.99}}) {
     const auto slab = hg_space(200, optical_depth, g, albedo);
     for (const double angle : {0.7, 2.7})
       for (const bool reversed : {false, true}) {
-        if (reversed && angle > 1) continue;  // backscattering has an angle of its own
+        if (reversed && angle > 1) continue;  // backscattering is tested at one angle
         const Vector3d view = reversed ? Vector3d(-spherical(0.5, 0.001)) : spherical(angle, 1.1);
         const auto [lights, views] = tilted(slab, view, 1.5, -2.5);
         const oracles::SpacePairWalk ladder{
@@ -126,12 +126,13 @@ TEST_CASE("slabs in space: the covariance of a walk at oblique lights, tilts alo
             covariance(slab, lights, views, reversed, tests::is_night ? 1e-3 : 3e-3);
         CHECK(std::abs(found.real() - value.real()) < 4 * error);
         CHECK(std::abs(found.imag() - value.imag()) < 4 * error);
-        CHECK(error < (tests::is_night ? 0.15 : 0.22) * std::abs(found));  // or it would tell little
+        CHECK(error < (tests::is_night ? 0.15 : 0.22) * std::abs(found));  // a significant check
       }
   }
 }
 
-TEST_CASE("nightly: slabs in space: forward peaks and absorption as in a walk of pairs") {
+TEST_CASE(
+    "nightly: 3D slab transport: forward peaks and absorption agree with walks of field pairs") {
   constexpr double depth = 1000;
   for (const double g : {0.9, 0.98})
     for (const double albedo : {0.9, 1.0}) {
@@ -151,7 +152,7 @@ TEST_CASE("nightly: slabs in space: forward peaks and absorption as in a walk of
     }
 }
 
-TEST_CASE("nightly: slabs in space: Monte Carlo and transport agree, errors of 0.3 %") {
+TEST_CASE("nightly: 3D slabs: Monte Carlo agrees with transport to errors of 0.3 %") {
   for (const double g : {0.9, 0.98})
     for (const double optical_depth : {5.0, 20.0})
       for (const double albedo : {0.9, 1.0}) {

@@ -28,7 +28,7 @@ double lost(const Scene& scene, const FluxEstimates& flux) {
 
 }  // namespace
 
-TEST_CASE("flux in space: a known slab") {
+TEST_CASE("3D slab flux: reflectance and transmittance agree with van de Hulst (1980)") {
   const Scene scene = lit(tests::hg_in_space(1, 2, 0.75, 0.9), 0);
   const auto found = estimates(scene, 4, 1e-7);
   CHECK(std::abs(found.reflectance.value[0] - 0.09739) < 0.5e-5);  // van de Hulst 1980
@@ -36,7 +36,7 @@ TEST_CASE("flux in space: a known slab") {
   CHECK(found.absorptance.value[0].real() == doctest::Approx(lost(scene, found)));
 }
 
-TEST_CASE("flux in space: what does not absorb loses nothing, and bins hold all") {
+TEST_CASE("3D slab flux: lossless slabs conserve power, angle bins sum to the totals") {
   for (const double g : {-0.5, 0.9, 0.98})
     for (const double light : {0.0, -1.3}) {
       const Scene scene = lit(tests::hg_in_space(1, 5, g, 1), light);
@@ -52,7 +52,7 @@ TEST_CASE("flux in space: what does not absorb loses nothing, and bins hold all"
     }
 }
 
-TEST_CASE("flux in space: lossless spheres keep all power") {
+TEST_CASE("3D slab flux: lossless spheres conserve power") {
   SceneSpec spec = tests::hg_in_space(1, 5, 0, 1);
   spec.g = spec.albedo = std::nullopt;
   spec.scatterer = "mie";
@@ -63,7 +63,7 @@ TEST_CASE("flux in space: lossless spheres keep all power") {
   CHECK(std::abs(lost(scene, estimates(scene, 1, 1e-5))) < 1e-9);
 }
 
-TEST_CASE("flux in space: exits of photons by polar angle") {
+TEST_CASE("3D slab flux: exit radiance by polar angle agrees with counted photons") {
   constexpr double incidence = 0.6, wide = 1e5, optical_depth = 3, albedo = 0.9, g = 0.8;
   constexpr std::size_t bins = 8;
   constexpr std::uint64_t photons = 400000;

@@ -25,7 +25,7 @@ const std::vector<double> momenta = {0, 1 / depth, -3 / depth};
 
 }  // namespace
 
-TEST_CASE("slabs in space: Monte Carlo and transport agree") {
+TEST_CASE("3D slabs: Monte Carlo agrees with transport") {
   for (const auto& [g, optical_depth, albedo] :
        {std::array{0.0, 0.1, 0.7}, {-0.5, 2.0, 1.0}, {0.6, 8.0, 0.9}})
     for (const double view : {-0.3, 2.5})
@@ -36,19 +36,19 @@ TEST_CASE("slabs in space: Monte Carlo and transport agree") {
                   false, 60000, 0.05);
 }
 
-TEST_CASE("slabs in space: reversed paths of Monte Carlo and of transport agree") {
+TEST_CASE("3D slabs: Monte Carlo with reversed paths agrees with transport") {
   for (const double off : {0.0, 0.002, 0.02})
     check_agreement(tests::in_space(hg_in_space(depth, 4, 0.5, 0.98),
                                     tilted_pairs(0.1, pi + 0.1 + off, momenta)),
                     true, 40000, 0.05);
 }
 
-TEST_CASE("slabs in space: Monte Carlo and transport agree on a wide tilt") {
+TEST_CASE("3D slabs: Monte Carlo at a wide tilt agrees with transport") {
   check_agreement(tests::in_space(hg_in_space(20, 1, 0.8, 1), tilted_pairs(0, 0.5, {0, 0.5, -1.5})),
                   false, 100000, 0.05);
 }
 
-TEST_CASE("slabs in space: two terms, one after the other") {
+TEST_CASE("3D slabs of two-term Henyey-Greenstein scatterers: Monte Carlo agrees with transport") {
   SceneSpec spec = hg_in_space(depth, 3, 0, 0.95);
   spec.g = std::nullopt;
   spec.scatterer = "two_term_hg";
@@ -59,7 +59,7 @@ TEST_CASE("slabs in space: two terms, one after the other") {
   check_agreement(tests::in_space(spec, tilted_pairs(0.2, 0, momenta)), false, 40000, 0.05);
 }
 
-TEST_CASE("Rayleigh's phase function, in the plane and in space") {
+TEST_CASE("Rayleigh phase function: normalised in 2D, moments and Monte Carlo agree in 3D") {
   SceneSpec spec = hg_in_space(depth, 3, 0, 0.9);
   spec.g = std::nullopt;
   spec.scatterer = "rayleigh";
@@ -76,7 +76,7 @@ TEST_CASE("Rayleigh's phase function, in the plane and in space") {
   CHECK(moments[2] == doctest::Approx(0.1).epsilon(1e-12));
 }
 
-TEST_CASE("slabs in space: spheres") {
+TEST_CASE("3D slabs of spheres: Monte Carlo agrees with transport, bad parameters are rejected") {
   SceneSpec spec = hg_in_space(depth, 4, 0, 1);
   spec.g = spec.albedo = std::nullopt;
   spec.scatterer = "mie";
@@ -108,7 +108,7 @@ TEST_CASE("slabs in space: spheres") {
                        doctest::Contains("do not scatter"), InputError);
 }
 
-TEST_CASE("slabs in space: correlations after delays by both methods") {
+TEST_CASE("3D slabs: temporal correlation by Monte Carlo agrees with transport") {
   const std::vector<double> delays = {0.003, 0.03, 0.3};
   for (const double view : {0.3, pi + 0.1}) {
     const bool reversed = view > 1;
@@ -126,13 +126,13 @@ TEST_CASE("slabs in space: correlations after delays by both methods") {
   }
 }
 
-TEST_CASE("slabs in space: derivatives of Monte Carlo are differences of transport") {
+TEST_CASE("3D slabs: derivatives by Monte Carlo agree with differences of transport") {
   const auto at = [](double mu_t, double g, double albedo) {
     return tests::in_space(hg_in_space(depth, mu_t * depth, g, albedo),
                            intensity_request({0.1}, {far_view(-0.3)}));
   };
   constexpr double mu_t = 0.02, g = 0.6, albedo = 0.95, step = 1e-3;
-  const auto slope = [&](double by_mu_t, double by_g, double by_albedo) {
+  const auto derivative = [&](double by_mu_t, double by_g, double by_albedo) {
     const auto moved = [&](double by) {
       return by_transport(at(mu_t + by * by_mu_t, g + by * by_g, albedo + by * by_albedo), false,
                           1e-6)
@@ -140,7 +140,8 @@ TEST_CASE("slabs in space: derivatives of Monte Carlo are differences of transpo
     };
     return (moved(step) - moved(-step)) / (2 * step);
   };
-  const std::vector<Complex> expected = {slope(mu_t, 0, 0) / mu_t, slope(0, 1, 0), slope(0, 0, 1)};
+  const std::vector<Complex> expected = {derivative(mu_t, 0, 0) / mu_t, derivative(0, 1, 0),
+                                         derivative(0, 0, 1)};
   const Scene scene = at(mu_t, g, albedo);
   const auto job = gradient_job(scene, gradient_plan(scene, ReversedPaths::no), 3);
   const auto walked = jackknife(tests::summed(job.field.batches, 100000), job.gradient);

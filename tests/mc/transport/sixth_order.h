@@ -10,8 +10,8 @@
 
 namespace flatspeckle::mc::tests {
 
-/// Values, then derivatives, are those of values(step) by differences of sixth order. scale: the
-/// step over which the values change.
+/// Compares the derivatives in `found` (values, then derivatives) with sixth-order differences of
+/// values(step). `scale` is the step over which the values change.
 template <typename Values>
 void check_sixth_order(const std::vector<Complex>& found, double scale, const Values& values) {
   const double step = 0.02 * scale;

@@ -10,20 +10,20 @@ namespace flatspeckle::mc::tests {
 
 inline constexpr double wavenumber = 2 * pi;
 
-/// k sin larger by q, on the same side of the medium.
+/// Returns the angle whose k sin is larger by q, on the same side of the medium.
 inline double deflected(double angle, double q) {
   const double turned = std::asin(std::sin(angle) + q / wavenumber);
   return std::cos(angle) > 0 ? turned : pi - turned;
 }
 
-/// Of what random slabs are drawn.
+/// Parameter ranges of random slabs.
 struct SlabRanges {
   double thinnest = 0.3, thickest = 30;  ///< optical depths
   double least_g = -0.5, largest_g = 0.95;
 };
 
-/// A slab of any albedo above 0.5, of Henyey-Greenstein's function, points or cylinders, and pairs
-/// of channels: intensities, small and large tilts, seen in transmission and reflection, near exact
+/// Draws slabs of Henyey-Greenstein scatterers (albedo above 0.5) or cylinders, and pairs of
+/// channels: intensities, small and large tilts, in transmission and reflection, near exact
 /// backscattering and far from it.
 class RandomSlab {
  public:
@@ -36,7 +36,7 @@ class RandomSlab {
     spec.depth = std::exp(uniform(std::log(100.0), std::log(2000.0)));
     const double optical_depth =
         std::exp(uniform(std::log(ranges_.thinnest), std::log(ranges_.thickest)));
-    constexpr double thickest_of_disks = 30;  // they would not fit
+    constexpr double thickest_of_disks = 30;  // more would not fit
     if (uniform(0, 1) < 0.7 || optical_depth > thickest_of_disks) {
       spec.scatterer = "hg";
       spec.g = uniform(ranges_.least_g, ranges_.largest_g);
@@ -59,7 +59,7 @@ class RandomSlab {
     return std::uniform_real_distribution(from, to)(random_);
   }
 
-  /// Angles for which a pair stays above the horizon.
+  /// Returns pairs of angles whose tilted directions stay above the horizon.
   std::vector<AnglePair> pairs(double depth) {
     std::vector<AnglePair> list;
     const double light = uniform(-1.2, 1.2);

@@ -13,14 +13,14 @@ namespace {
 
 constexpr double precise = 1e-3;
 
-/// Largest error relative to the sizes of the entries, the roots of their two intensities.
+/// Returns the largest error relative to `size`, the roots of each entry's two intensities.
 double largest(const Estimate& found, const std::vector<double>& size) {
   double worst = 0;
   for (std::size_t e = 0; e < size.size(); ++e) worst = std::max(worst, found.error[e] / size[e]);
   return worst;
 }
 
-/// Of as many paths as every error asks for to be precise; each run tells how many the next takes.
+/// Increases the paths until every error is `precise`; each run sets the number of the next.
 Estimate precise_estimate(const Scene& scene, std::uint64_t seed, const std::vector<double>& size) {
   constexpr double margin = 1.2, most_growth = 50;
   double paths = 20000;
@@ -34,8 +34,8 @@ Estimate precise_estimate(const Scene& scene, std::uint64_t seed, const std::vec
   }
 }
 
-/// Distance of Kolmogorov and Smirnov from the standard normal distribution, with Stephens' (1970)
-/// factor for few samples.
+/// Returns the Kolmogorov-Smirnov distance from the standard normal distribution, with Stephens'
+/// (1970) factor for few samples.
 double distance_from_normal(std::vector<double> z) {
   std::ranges::sort(z);
   const boost::math::normal normal;
@@ -52,7 +52,8 @@ double distance_from_normal(std::vector<double> z) {
 
 namespace {
 
-/// One intensity of each slab, in standard errors from transport. Every entry is within four.
+/// Deviation of one intensity per slab from transport, in standard errors. Every entry must be
+/// within four.
 class Deviations {
  public:
   void add(const Scene& scene, std::uint64_t seed, const std::vector<Complex>& expected,
@@ -69,8 +70,8 @@ class Deviations {
   }
 
   void check_normal() const {
-    constexpr double one_percent = 1.628;  // of Kolmogorov's distribution
-    MESSAGE(z_.size(), " slabs, Kolmogorov-Smirnov ", distance_from_normal(z_));
+    constexpr double one_percent = 1.628;  // quantile of Kolmogorov's distribution
+    MESSAGE(z_.size(), " slabs, Kolmogorov-Smirnov distance ", distance_from_normal(z_));
     CHECK(distance_from_normal(z_) < one_percent);
   }
 
@@ -80,7 +81,7 @@ class Deviations {
 
 }  // namespace
 
-TEST_CASE("nightly: Monte Carlo on sixty random slabs is normal about transport, to 0.1 %") {
+TEST_CASE("nightly: sixty random slabs: Monte Carlo is normal about transport to 0.1 %") {
   Deviations deviations;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const Scene scene = tests::RandomSlab(flatspeckle::tests::fresh_seed(seed)).scene();
@@ -91,14 +92,12 @@ TEST_CASE("nightly: Monte Carlo on sixty random slabs is normal about transport,
   deviations.check_normal();
 }
 
-TEST_CASE(
-    "nightly: Monte Carlo on slabs from optical depth 1e-3 to 100 is within its errors of "
-    "transport") {
+TEST_CASE("nightly: slabs of optical depth 1e-3 to 100: Monte Carlo agrees with transport") {
   Deviations deviations;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
     const Scene scene =
         tests::RandomSlab(flatspeckle::tests::fresh_seed(seed), {1e-3, 100, -0.9, 0.99}).scene();
-    // in thin slabs rare paths along the slab carry the error
+    // in thin slabs rare paths along the slab dominate the error
     const double optical_depth = scene.medium.mu_t * scene.domain.depth,
                  paths = 20000 + 400000 / (1 + optical_depth);
     deviations.add(

@@ -15,10 +15,10 @@ namespace {
 
 using std::numbers::pi;
 
-/// Reflectance, transmittance, absorptance and what is not scattered, of one light.
+/// Reflectance, transmittance, absorptance and unscattered share of one light.
 struct Shares {
   double reflectance, transmittance, absorptance, direct;
-  double error;  ///< the largest that is stated, relative
+  double error;  ///< largest stated error, relative
 
   double sum() const { return reflectance + transmittance + absorptance + direct; }
 };
@@ -42,7 +42,7 @@ Shares shares(const Scene& scene, double tolerance) {
           direct_transmittance(scene, scene.request.lights[0].angle), error};
 }
 
-/// The share of one scattering that goes into the hemisphere behind.
+/// Returns the share of single scattering into the backward hemisphere.
 double backward_share(int dimension, double g) {
   if (dimension == 2) return 2 / pi * std::atan((1 - g) / (1 + g));
   return (1 - g) / (2 * g) * ((1 + g) / std::sqrt(1 + g * g) - 1);
@@ -50,7 +50,7 @@ double backward_share(int dimension, double g) {
 
 }  // namespace
 
-TEST_CASE("moments of phase functions are kept as far as they are above rounding") {
+TEST_CASE("phase moments: kept as far as they exceed rounding errors") {
   for (const int dimension : {2, 3})
     for (const double g : {0.5, -0.9, 0.9, 0.98}) {
       CAPTURE(dimension);
@@ -67,7 +67,7 @@ TEST_CASE("moments of phase functions are kept as far as they are above rounding
     }
 }
 
-TEST_CASE("slab transport: the balance of power closes, and shows what is missing") {
+TEST_CASE("slab transport: the power balance closes and detects an error of 1 %") {
   const Scene scene = slab(2, 2, 0.9, 0.9, 0.5);
   const FluxJob job = slab_flux_job(scene, 1, {1e-6});
   for (const double factor : {1.0, 1.01}) {
@@ -82,7 +82,7 @@ TEST_CASE("slab transport: the balance of power closes, and shows what is missin
   }
 }
 
-TEST_CASE("slab transport: light that hardly turns is only absorbed") {
+TEST_CASE("slab transport: extreme forward peaks act as absorption alone") {
   for (const int dimension : {2, 3})
     for (const double g : {1 - 1e-7, 1 - 1e-9})
       for (const double optical_depth : {1e-6, 10.0})
@@ -96,7 +96,7 @@ TEST_CASE("slab transport: light that hardly turns is only absorbed") {
         }
 }
 
-TEST_CASE("slab transport: a thin slab reflects what one scattering sends back") {
+TEST_CASE("slab transport: reflectance of a thin slab agrees with single scattering") {
   for (const int dimension : {2, 3})
     for (const double g : {0.9, 0.999, 1 - 1e-9}) {
       const double optical_depth = 1e-6;
@@ -107,7 +107,7 @@ TEST_CASE("slab transport: a thin slab reflects what one scattering sends back")
     }
 }
 
-TEST_CASE("slab transport: oblique light on a forward peak in space agrees with photons") {
+TEST_CASE("slab transport: oblique light on a 3D forward peak agrees with counted photons") {
   constexpr double incidence = 1.2, wide = 1e5, g = 0.999;
   constexpr std::uint64_t photons = 400000;
   oracles::WalkScene walk{{{-wide, -wide, 0}, {wide, wide, 1}}};
@@ -123,7 +123,7 @@ TEST_CASE("slab transport: oblique light on a forward peak in space agrees with 
   CHECK(std::abs(found.reflectance - share) < 4 * error);
 }
 
-/// Stated errors cover what a tolerance a hundred times smaller changes.
+/// Checks that stated errors cover the change to a tolerance a hundred times smaller, and power.
 void check_errors(int dimension, double optical_depth, double g, double albedo, double light) {
   CAPTURE(dimension);
   CAPTURE(optical_depth);
@@ -140,14 +140,14 @@ void check_errors(int dimension, double optical_depth, double g, double albedo, 
   CHECK(std::abs(sum - 1) < 1e-9);
 }
 
-TEST_CASE("slab transport: power is kept and errors are true over g, depth and albedo") {
+TEST_CASE("slab transport: power is conserved and errors hold over g, depth and albedo") {
   for (const int dimension : {2, 3})
     for (const double g : {-0.9, 0.99, 0.9999})
       for (const double optical_depth : {0.1, 1e4})
         check_errors(dimension, optical_depth, g, 0.99, 1);
 }
 
-TEST_CASE("nightly: slab transport: power is kept and errors are true everywhere") {
+TEST_CASE("nightly: slab transport: power is conserved and errors hold on the whole grid") {
   for (const int dimension : {2, 3})
     for (const double g :
          {0.0, 0.5, 0.9, 0.99, 0.999, 1 - 1e-5, 1 - 1e-7, 1 - 1e-9, -0.5, -0.9, -0.99})

@@ -27,7 +27,7 @@ Scene seen(double depth, const tests::HgBulk& bulk, double light, double view) {
   return hg_slab(depth, bulk, intensity_request({light}, {far_view(view)}));
 }
 
-/// Two fields along the same walks of photons, isotropic: C14 by collisions, a mean free path 1.
+/// Photon walks with two fields, isotropic scattering: C14 scored at collisions, mean free path 1.
 class PhotonWalks {
  public:
   PhotonWalks(double depth, double albedo, double light, double view, double k, double shift)
@@ -41,7 +41,7 @@ class PhotonWalks {
     loss_ = (1 / first.z + 1 / second.z) / 2;
   }
 
-  /// Mean and standard error, per illuminated length.
+  /// Returns mean and standard error, per illuminated length.
   std::pair<Complex, double> mean(int walks) {
     Complex sum = 0;
     double squares = 0;
@@ -54,17 +54,17 @@ class PhotonWalks {
   }
 
  private:
-  double flight() { return std::exponential_distribution(1.0)(random_); }
+  double free_flight() { return std::exponential_distribution(1.0)(random_); }
 
   Complex walk() {
-    Vec2 x{0, flight() * light_.z};  // seen from where the phase is that of the origin
+    Vec2 x{0, free_flight() * light_.z};  // origin moved so that the phase is 0 at the entry
     double weight = light_.z, phase = difference_ * light_.z * x.z;
     Complex sum = 0;
     while (x.z > 0 && x.z < depth_) {
       weight *= albedo_;
       sum += weight / (2 * pi) * std::exp(-loss_ * (depth_ - x.z)) *
              std::polar(1.0, phase - exit_.x * x.x - exit_.z * x.z);
-      const double s = flight();
+      const double s = free_flight();
       x = x + s * direction(std::uniform_real_distribution(-pi, pi)(random_));
       phase += difference_ * s;
     }
@@ -81,7 +81,7 @@ class PhotonWalks {
 
 }  // namespace
 
-TEST_CASE("two frequencies along the same walks") {
+TEST_CASE("frequency correlation of slabs: transport agrees with photon walks") {
   constexpr double free_path = 30, k = wavenumber * free_path;
   for (const double light : {0.0, 0.3}) {
     for (const double shift : {0.3 / k, -2 / k}) {
@@ -99,24 +99,24 @@ TEST_CASE("two frequencies along the same walks") {
   }
 }
 
-TEST_CASE("a small shift turns the phase by the mean path, which absorption measures too") {
+TEST_CASE("frequency correlation: phase derivative agrees with the mean path by absorption") {
   constexpr double depth = 60, mu_t = 0.05, albedo = 0.9;
-  for (const double view : {0.0, pi}) {  // on the way back with reversed paths
+  for (const double view : {0.0, pi}) {  // backscattering with reversed paths
     const bool reversed = view > 1;
     const Scene scene = seen(depth, {1 / mu_t, 0.6, albedo}, 0, view);
-    const auto by_mu_t = slab_slopes(scene, reversed, {1e-8}, BulkParameter::mu_t).value,
-               by_albedo = slab_slopes(scene, reversed, {1e-8}, BulkParameter::albedo).value;
+    const auto by_mu_t = slab_derivatives(scene, reversed, {1e-8}, BulkParameter::mu_t).value,
+               by_albedo = slab_derivatives(scene, reversed, {1e-8}, BulkParameter::albedo).value;
     const double intensity = by_mu_t[0].real(),
                  lengths = -(by_mu_t[1] - albedo / mu_t * by_albedo[1]).real(),
                  beyond = lengths - (reversed ? 0 : depth) * intensity;
     const double step = 1e-3 / (wavenumber * depth);
-    const Complex slope =
+    const Complex derivative =
         (shifted(scene, step, reversed) - shifted(scene, -step, reversed)) / (2 * step);
-    CHECK(std::abs(slope - Complex(0, -wavenumber * beyond)) < 1e-4 * std::abs(slope));
+    CHECK(std::abs(derivative - Complex(0, -wavenumber * beyond)) < 1e-4 * std::abs(derivative));
   }
 }
 
-TEST_CASE("a thin slab: one scattering at two frequencies") {
+TEST_CASE("frequency correlation of a thin slab: agrees with single scattering") {
   constexpr double depth = 50, light = 0.4, view = -0.3, optical_depth = 1e-5;
   const Scene scene = seen(depth, {depth / optical_depth, 0.5}, light, view);
   for (const double shift : {1e-3, 0.02}) {
@@ -132,13 +132,13 @@ TEST_CASE("a thin slab: one scattering at two frequencies") {
   }
 }
 
-TEST_CASE("a thick slab: paths as long as diffusion has them") {
+TEST_CASE("frequency correlation of a thick slab: agrees with diffusion theory") {
   constexpr double depth = 1000;  // mean free paths
   const Scene scene = seen(depth, {1, 0}, 0, 0);
   const double intensity = shifted(scene, 0).real();
   for (const double turns : {1.0, 10.0}) {
     const double difference = turns / (depth * depth), shift = -difference / wavenumber;
-    // kappa^2 = 2 mu_a / l* (C20), mu_a = -i (k1 - k2); the phase is that beyond the depth
+    // kappa^2 = 2 mu_a / l* (C20), mu_a = -i (k1 - k2); phases are relative to the straight path
     const auto f = [&](Complex q) {
       return std::sinh(0.818 * q) * std::sinh(1.818 * q) / (q * std::sinh((depth + 1.636) * q));
     };
@@ -149,7 +149,8 @@ TEST_CASE("a thick slab: paths as long as diffusion has them") {
   }
 }
 
-TEST_CASE("the second view turns to keep transverse momenta, as far as there is one") {
+TEST_CASE(
+    "frequency shifts: the second view keeps transverse momenta, impossible ones are rejected") {
   const Scene scene = seen(100, {20}, 0.9, -1.5);
   CHECK_THROWS_AS(check_frequency_shifts(scene.request, {-0.05}), InputError);
   CHECK_THROWS_AS(check_frequency_shifts(scene.request, {0.2}), InputError);

@@ -23,7 +23,8 @@ using tests::is_night;
 using tests::pi;
 using tests::wavenumber;
 
-/// Depth 2000, light along the normal: intensity, C_E for q L = 2, reflected ladder at pi - 0.2.
+/// Returns, for depth 2000 and light along the normal, the intensity, C_E for q L = 2 and the
+/// reflected ladder at pi - 0.2.
 std::vector<double> intensity_correlation_ladder(double optical_depth, double g, double albedo,
                                                  const Refinement& refinement) {
   constexpr double depth = 2000;
@@ -36,7 +37,7 @@ std::vector<double> intensity_correlation_ladder(double optical_depth, double g,
           field_correlation(request, tilted.value)[0].real(), back.value[0].real()};
 }
 
-/// Where C_I falls to 1/2 for light along the normal, q L.
+/// Returns q L at which C_I falls to 1/2 for light along the normal.
 double half_width(double optical_depth, double g, double albedo) {
   constexpr double depth = 2000;
   std::vector<double> tilts;
@@ -54,7 +55,7 @@ oracles::PairTransport::Medium oracle_medium(double depth, double optical_depth,
           }};
 }
 
-/// Intensity along the normal, and C_E where light and view are tilted by q L, by another program.
+/// Returns the intensity along the normal and C_E for light and view tilted by q L, by the oracle.
 std::vector<double> by_ordinates(double optical_depth, double g, double albedo, double q_depth) {
   constexpr double depth = 2000;
   const int panels = g < 0.8 ? 5 : 8;
@@ -85,7 +86,8 @@ struct DeepSlab {
 
 }  // namespace
 
-TEST_CASE("slab transport: intensities and correlations of deep slabs as by discrete ordinates") {
+TEST_CASE(
+    "slab transport: intensities and correlations of deep slabs agree with discrete ordinates") {
   for (const DeepSlab& slab : {DeepSlab{10, 0, 1}, DeepSlab{10, 0.8, 1}, DeepSlab{30, 0.9, 0.99}}) {
     CAPTURE(slab.g);
     const auto found =
@@ -100,7 +102,7 @@ TEST_CASE("slab transport: intensities and correlations of deep slabs as by disc
       doctest::Approx(theory.without_reversed({0, pi - 0.2}, {0, pi - 0.2}).real()).epsilon(3e-4));
 }
 
-TEST_CASE("slab transport: the memory effect ends where discrete ordinates have C_I = 1/2") {
+TEST_CASE("slab transport: memory-effect range agrees with discrete ordinates") {
   for (const DeepSlab& slab : {DeepSlab{10, 0, 1}, DeepSlab{10, 0.5, 1}, DeepSlab{10, 0.9, 1},
                                DeepSlab{10, 0, 0.9}, DeepSlab{40, 0, 1}}) {
     if (!is_night && (slab.optical_depth < 40) == (slab.g < 0.9 && slab.albedo == 1)) continue;
@@ -112,7 +114,7 @@ TEST_CASE("slab transport: the memory effect ends where discrete ordinates have 
   }
 }
 
-TEST_CASE("slab transport: the cone of coherent backscattering") {
+TEST_CASE("slab transport: the cone of coherent backscattering agrees with Monte Carlo") {
   // exactly backwards, reversed paths double all that is scattered twice or more
   constexpr double optical_depth = 4, g = 0.5, albedo = 0.98;
   const double once =
@@ -133,7 +135,7 @@ TEST_CASE("slab transport: the cone of coherent backscattering") {
   }
 }
 
-TEST_CASE("slab transport converges to nine digits") {
+TEST_CASE("slab transport: converges to nine digits") {
   for (const double g : {0.0, 0.9, -0.5}) {
     const auto fine = intensity_correlation_ladder(10, g, 0.99, {1e-12, 20}),
                coarse = intensity_correlation_ladder(10, g, 0.99, {1e-9});
@@ -142,7 +144,7 @@ TEST_CASE("slab transport converges to nine digits") {
   }
 }
 
-TEST_CASE("slab transport: entries are right to the tolerance") {
+TEST_CASE("slab transport: entries are accurate to the tolerance") {
   constexpr double tolerance = 1e-3;
   for (const double g : {0.0, 0.8, 0.98}) {
     if (g != 0.8 && !is_night) continue;
@@ -158,7 +160,7 @@ TEST_CASE("slab transport: entries are right to the tolerance") {
   }
 }
 
-TEST_CASE("slab transport agrees with other solutions of the same equation") {
+TEST_CASE("slab transport: tilts agree with the integral equation and pair transport") {
   constexpr double depth = 1000;
   for (const double light : {0.0, 0.4}) {
     for (const double tilt : {0.0, 1.0, -5.0, 20.0}) {  // q L
@@ -183,7 +185,7 @@ TEST_CASE("slab transport agrees with other solutions of the same equation") {
   }
 }
 
-TEST_CASE("reversed paths of isotropic slabs as by the integral equation") {
+TEST_CASE("slab transport: reversed paths of isotropic slabs agree with the integral equation") {
   for (const double d : {0.0, 0.004, 0.03}) {
     const double light = 0.2, view = pi + light - d;
     const Scene scene = hg_slab(200, {50, 0, 0.95}, intensity_request({light}, {far_view(view)}));
@@ -193,7 +195,7 @@ TEST_CASE("reversed paths of isotropic slabs as by the integral equation") {
   }
 }
 
-TEST_CASE("thin and thick slabs, also without absorption") {
+TEST_CASE("slab transport: thin and thick slabs agree with single scattering and diffusion") {
   const auto intensity = [](double optical_depth, double g, double albedo, double view) {
     const auto request = intensity_request({0.0}, {far_view(view)});
     return slab_covariance(hg_slab(1000, {1000 / optical_depth, g, albedo}, request), false, {})
@@ -208,13 +210,13 @@ TEST_CASE("thin and thick slabs, also without absorption") {
                  twice = intensity(1e4 / (1 - g), g, 1, 0);
     CHECK(once / twice == doctest::Approx((1e4 + 2 * 0.8181) / (5e3 + 2 * 0.8181)).epsilon(1e-6));
   }
-  // absorption: by the same factor for each length
+  // absorption: the same factor for equal lengths
   const double one = intensity(40, 0, 0.9, 0), two = intensity(60, 0, 0.9, 0),
                three = intensity(80, 0, 0.9, 0);
   CHECK(one / two == doctest::Approx(two / three).epsilon(1e-6));
 }
 
-TEST_CASE("very deep slabs that absorb lose what diffuse light loses") {
+TEST_CASE("slab transport: very deep absorbing slabs attenuate at the diffusion rate") {
   const auto intensity = [](double optical_depth) {
     const auto request = intensity_request({0.0}, {far_view(0)});
     return slab_covariance(hg_slab(1000, {1000 / optical_depth, 0, 0.9}, request), false, {1e-8})
@@ -228,7 +230,7 @@ TEST_CASE("very deep slabs that absorb lose what diffuse light loses") {
           doctest::Approx(100 * rate).epsilon(1e-9));
 }
 
-TEST_CASE("the transport job states values with their errors") {
+TEST_CASE("slab transport: values and errors of the job equal those of the solution") {
   const auto request = intensity_request({0, 0.2}, {far_view(0), far_view(2.5)});
   const Scene scene = hg_slab(1000, {200, 0.5, 1}, request);
   const auto refined = slab_covariance(scene, false, {});
@@ -240,7 +242,7 @@ TEST_CASE("the transport job states values with their errors") {
   }
 }
 
-TEST_CASE("fields of diffusing scatterers at two times, as by Monte Carlo") {
+TEST_CASE("slab transport: temporal correlation agrees with Monte Carlo") {
   const std::vector<double> delays = {0.003, 0.03, 0.3};
   for (const double g : {0.0, 0.8}) {
     const auto request = intensity_request({0.2}, {far_view(0.5), far_view(pi + 0.2)});
@@ -260,7 +262,7 @@ TEST_CASE("fields of diffusing scatterers at two times, as by Monte Carlo") {
   }
 }
 
-TEST_CASE("tilts and delays of a thick slab together, as diffusion theory has them") {
+TEST_CASE("slab transport: tilts with delays of a thick slab agree with diffusion theory") {
   constexpr double depth = 1000, optical_depth = 1000;
   const std::vector<double> tilts = {0, 1e-4, 3e-4}, delays = {0, 2e-7, 1e-6};
   const auto request = memory_effect_request(wavenumber, 0, {0}, tilts);
@@ -276,7 +278,7 @@ TEST_CASE("tilts and delays of a thick slab together, as diffusion theory has th
     for (std::size_t t = 0; t < delays.size(); ++t) {
       CAPTURE(i);
       CAPTURE(t);
-      // as absorption, a delay is added to the square of a tilt (C20)
+      // like absorption, a delay adds to the square of a tilt (C20)
       const double loss = 2 * delays[t] * (1 - scene.medium.g) * scene.medium.mu_s,
                    l = scene.medium.transport_mean_free_path(), q = request.tilt_q[i],
                    expected = diffusion_field_correlation(scene.medium, depth,
@@ -287,8 +289,8 @@ TEST_CASE("tilts and delays of a thick slab together, as diffusion theory has th
   }
 }
 
-TEST_CASE("slab transport: errors of few ordinates are true, and those of quotients") {
-  // in a thin slab two solutions agree by chance, and fields that change little err alike
+TEST_CASE("slab transport: errors hold for few ordinates, also those of correlations") {
+  // in a thin slab two solutions may agree by accident; fields that change little err alike
   for (const double optical_depth : {1e-3, 1.0, 30.0})
     for (const double g : {-0.9, 0.0, 0.5, 0.9, 0.98}) {
       if (!is_night && (optical_depth > 1 || g > 0)) continue;
@@ -313,19 +315,20 @@ TEST_CASE("slab transport: errors of few ordinates are true, and those of quotie
 
 namespace {
 
-/// Of the scenes `at` steps away. scale: over which the values change.
+/// Checks derivatives against differences of the scenes at(step); `scale` is the step over which
+/// the values change.
 template <typename At>
-void check_slopes(BulkParameter parameter, double scale, bool reversed, const At& at) {
+void check_derivatives(BulkParameter parameter, double scale, bool reversed, const At& at) {
   CAPTURE(static_cast<int>(parameter));
   const Refinement refinement{is_night ? 1e-9 : 1e-8, 8};
   tests::check_sixth_order(
-      slab_slopes(at(0), reversed, refinement, parameter).value, scale,
+      slab_derivatives(at(0), reversed, refinement, parameter).value, scale,
       [&](double step) { return slab_covariance(at(step), reversed, refinement).value; });
 }
 
 }  // namespace
 
-TEST_CASE("derivatives of the doubling are finite differences of converged solutions") {
+TEST_CASE("slab transport: derivatives agree with finite differences of converged solutions") {
   struct Case {
     double optical_depth, g, albedo, view;
     bool reversed;
@@ -339,17 +342,17 @@ TEST_CASE("derivatives of the doubling are finite differences of converged solut
       return hg_slab(depth, {1 / mu_t, g, albedo}, request);
     };
     const double mu_t = slab.optical_depth / depth;
-    check_slopes(BulkParameter::mu_t, mu_t, slab.reversed,
-                 [&](double step) { return scene(mu_t + step, slab.g, slab.albedo); });
-    check_slopes(BulkParameter::g, 1 - std::abs(slab.g), slab.reversed,
-                 [&](double step) { return scene(mu_t, slab.g + step, slab.albedo); });
+    check_derivatives(BulkParameter::mu_t, mu_t, slab.reversed,
+                      [&](double step) { return scene(mu_t + step, slab.g, slab.albedo); });
+    check_derivatives(BulkParameter::g, 1 - std::abs(slab.g), slab.reversed,
+                      [&](double step) { return scene(mu_t, slab.g + step, slab.albedo); });
     if (slab.albedo < 1)
-      check_slopes(BulkParameter::albedo, slab.albedo, slab.reversed,
-                   [&](double step) { return scene(mu_t, slab.g, slab.albedo + step); });
+      check_derivatives(BulkParameter::albedo, slab.albedo, slab.reversed,
+                        [&](double step) { return scene(mu_t, slab.g, slab.albedo + step); });
   }
 }
 
-TEST_CASE("derivatives by the radius and the index of cylinders") {
+TEST_CASE("slab transport: derivatives by radius and index of cylinders agree with differences") {
   constexpr double depth = 200, radius = 0.2, index = 1.4;
   for (const char* kind : {"te", "soft"}) {
     CAPTURE(kind);
@@ -366,14 +369,15 @@ TEST_CASE("derivatives by the radius and the index of cylinders") {
       made.request = request;
       return made;
     };
-    check_slopes(BulkParameter::radius, radius / 4, false,
-                 [&](double step) { return scene(step, 0); });
+    check_derivatives(BulkParameter::radius, radius / 4, false,
+                      [&](double step) { return scene(step, 0); });
     if (scene(0, 0).scatterer.is_penetrable())
-      check_slopes(BulkParameter::index, 0.1, false, [&](double step) { return scene(0, step); });
+      check_derivatives(BulkParameter::index, 0.1, false,
+                        [&](double step) { return scene(0, step); });
   }
 }
 
-TEST_CASE("Monte Carlo on random slabs agrees with transport") {
+TEST_CASE("random slabs: Monte Carlo agrees with transport") {
   for (std::uint64_t seed = 1; seed <= (is_night ? 5 : 2); ++seed) {
     const Scene scene = tests::RandomSlab(seed).scene();
     const auto expected = slab_covariance(scene, true, {is_night ? 1e-5 : 1e-4}).value;

@@ -42,7 +42,7 @@ TEST_CASE("flux by transport: shares agree with adding and doubling") {
   }
 }
 
-TEST_CASE("flux by transport: thick slabs without absorption lose nothing") {
+TEST_CASE("flux by transport: thick lossless slabs conserve power") {
   for (const double g : {0.0, 0.9}) {
     const auto flux = estimates(lit_slab(1e4, 1, g, {0.3}), 1);
     CHECK(flux.reflectance.value[0].real() + flux.transmittance.value[0].real() ==
@@ -55,7 +55,7 @@ TEST_CASE("flux by transport: thick slabs without absorption lose nothing") {
   }
 }
 
-TEST_CASE("flux by transport: exits by angle are those of Monte Carlo") {
+TEST_CASE("flux by transport: exit radiance agrees with Monte Carlo") {
   constexpr std::size_t bins = 12;
   const Scene scene = lit_slab(5, 0.95, 0.8, {0.7});
   const auto found = tests::run_flux(scene, tests::paths(200000), 3, bins).flux;
@@ -72,7 +72,7 @@ TEST_CASE("flux by transport: exits by angle are those of Monte Carlo") {
                        expected.absorptance.value[0], 0);
 }
 
-TEST_CASE("flux by transport of what does not scatter") {
+TEST_CASE("flux by transport: without scattering only absorption") {
   const auto flux = estimates(lit_slab(0.7, 0, 0, {0.0}), 4);
   CHECK(flux.absorptance.value[0].real() == doctest::Approx(1 - std::exp(-0.7)));
   CHECK(flux.reflectance.value[0] == 0.0);

@@ -5,7 +5,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
-#include "mc/paths/bent/graded_ends.h"
+#include "mc/paths/bent/graded_endpoints.h"
 #include "mc/paths/bent/linear_medium.h"
 #include "mc/paths/walk/first_scatterer.h"
 #include "mc/paths/walk/scene_scattering.h"
@@ -22,7 +22,7 @@ using Kind = IndexField::Kind;
 IndexField linear(Vec2 slope) {
   IndexField field;
   field.kind = Kind::linear;
-  field.slope = slope;
+  field.gradient = slope;
   return field;
 }
 
@@ -56,8 +56,8 @@ Scene graded(const IndexField& field) {
   return graded(field, near_request());
 }
 
-/// Of a wave at x: the eikonal's gradient is n w, and its amplitude carries the power of a tube of
-/// rays, div(amplitude^2 n w) = 0. By central differences.
+/// Checks a wave at x by central differences: the eikonal's gradient is n w, and the amplitude
+/// conserves the power of a tube of rays, div(amplitude^2 n w) = 0.
 void check_eikonal(const GradedMedium& medium, const Wavefront& wave, Vec2 x, double tolerance) {
   const double h = 1e-3;
   const auto path = [&](Vec2 at) { return wave.at(at)->path; };
@@ -80,7 +80,7 @@ void check_eikonal(const GradedMedium& medium, const Wavefront& wave, Vec2 x, do
 
 }  // namespace
 
-TEST_CASE("Waves satisfy the eikonal equation and carry their power") {
+TEST_CASE("graded index: waves satisfy the eikonal equation and conserve power") {
   const std::vector<std::pair<IndexField, double>> fields = {{linear({0, 0.06}), 1e-6},
                                                              {linear({0.03, -0.05}), 1e-6},
                                                              {parabolic(0.06), 2e-3},
@@ -93,15 +93,15 @@ TEST_CASE("Waves satisfy the eikonal equation and carry their power") {
     std::vector<std::shared_ptr<const Wavefront>> waves;
     waves.push_back(medium->from_point({0, -2}));
     waves.push_back(medium->from_point({0.5, 7}));
-    if (field.slope.x == 0) waves.push_back(medium->from_afar(0.3));
-    if (field.slope.x == 0) waves.push_back(medium->from_afar(pi - 0.2));
+    if (field.gradient.x == 0) waves.push_back(medium->from_afar(0.3));
+    if (field.gradient.x == 0) waves.push_back(medium->from_afar(pi - 0.2));
     for (const auto& wave : waves)
       for (const Vec2 x : {Vec2{0.3, 0.4}, {-3.1, 2.2}, {2.7, 4.6}})
         check_eikonal(*medium, *wave, x, tolerance);
   }
 }
 
-TEST_CASE("A plane wave enters as one in index 1, with all its power") {
+TEST_CASE("graded index: a plane wave enters as in index 1, with its full power") {
   const Scene scene = graded(linear({0, 0.06}));
   const auto medium = graded_medium(scene);
   const auto wave = medium->from_afar(0.4);
@@ -114,22 +114,22 @@ TEST_CASE("A plane wave enters as one in index 1, with all its power") {
   CHECK(std::sqrt(1.3) * deep.w.x == doctest::Approx(std::sin(0.4)));
 }
 
-TEST_CASE("Steps and tables give what closed forms do") {
+TEST_CASE("graded index: stepped rays and tables agree with closed forms") {
   const double alpha = 0.12;
   const Scene scene = graded(parabolic(alpha));
   const auto medium = graded_medium(scene);
-  const auto flown = medium->flown({0.5, 0.2}, direction(0.3), 3);
-  REQUIRE(flown);
+  const auto after_flight = medium->after_flight({0.5, 0.2}, direction(0.3), 3);
+  REQUIRE(after_flight);
   const double n = std::sqrt(1 - alpha * alpha * 0.25), vx = n * std::sin(0.3);
   CHECK(
-      flown->x.x ==
+      after_flight->x.x ==
       doctest::Approx(0.5 * std::cos(3 * alpha) + vx * std::sin(3 * alpha) / alpha).epsilon(1e-6));
-  CHECK(flown->x.z == doctest::Approx(0.2 + 3 * n * std::cos(0.3)).epsilon(1e-6));
-  CHECK_FALSE(medium->flown({0.5, 0.2}, direction(0.3), 20));
+  CHECK(after_flight->x.z == doctest::Approx(0.2 + 3 * n * std::cos(0.3)).epsilon(1e-6));
+  CHECK_FALSE(medium->after_flight({0.5, 0.2}, direction(0.3), 20));
   CHECK(medium->inside({0, 1}, {0, 1}) == doctest::Approx(4).epsilon(1e-6));
 }
 
-TEST_CASE("A ray that leaves and comes back counts what is inside alone") {
+TEST_CASE("graded index: a ray that leaves and returns counts only its length inside") {
   const LinearMedium medium({Domain::Kind::box, 30, 5}, linear({0, 0.2}));
   const double n = std::sqrt(1 + 0.2 * 0.05);
   const Vec2 w{std::sqrt(1 - 0.04), -0.2};
@@ -139,12 +139,12 @@ TEST_CASE("A ray that leaves and comes back counts what is inside alone") {
                second = (0.2 * n + square) / 0.1,
                top = (0.2 * n + std::sqrt(0.04 * n * n + 0.2 * 4.95)) / 0.1;
   CHECK(inside == doctest::Approx(top - (second - first)));
-  const auto place = medium.flown({-14, 0.05}, w, first + 0.5);
+  const auto place = medium.after_flight({-14, 0.05}, w, first + 0.5);
   REQUIRE(place);
   CHECK(place->x.x == doctest::Approx(-14 + w.x * n * (second + 0.5)));
 }
 
-TEST_CASE("First scatterers have the density that is told") {
+TEST_CASE("graded index: first scatterers follow the stated density") {
   for (const IndexField& field : {linear({0.02, 0.06}), blobs(0.06)}) {
     const Scene scene =
         graded(field, intensity_request({point_source({1, -2})}, {near_sensor({0.5, 7})}), {1.5});
@@ -179,7 +179,7 @@ TEST_CASE("First scatterers have the density that is told") {
   }
 }
 
-TEST_CASE("Hardly any field gives what none does, path by path") {
+TEST_CASE("graded index: a negligible gradient gives the paths of a constant index") {
   for (const double g : {0.0, 0.6}) {
     Scene scene = graded(linear({0, 1e-9}), near_request(), {4, g});
     const auto bent = tests::run(scene, ReversedPaths::yes, 4000, 5).entries();
@@ -190,7 +190,7 @@ TEST_CASE("Hardly any field gives what none does, path by path") {
   }
 }
 
-TEST_CASE("Source and sensor may change places") {
+TEST_CASE("graded index: exchanged source and sensor give the same intensity") {
   for (const IndexField& field : {linear({0, 0.1}), parabolic(0.1), blobs(0.08)}) {
     CAPTURE(field.describe());
     const Vec2 a{0, -2}, b{1, 7};
@@ -208,14 +208,14 @@ TEST_CASE("Source and sensor may change places") {
   }
 }
 
-TEST_CASE("A slab with a gradient transmits into matched views") {
+TEST_CASE("graded index: a slab transmits into matched views") {
   SceneSpec spec;
   spec.domain = "slab";
   spec.depth = 20;
   spec.scatterer = "hg";
   spec.optical_depth = 2;
   spec.index_field = "linear";
-  spec.index_slope = {0, 0.01};
+  spec.index_gradient = {0, 0.01};
   spec.covariance = "memory_effect";
   spec.tilts = {0, 0.01};
   spec.view_angles = {0.1, 3};
@@ -224,8 +224,8 @@ TEST_CASE("A slab with a gradient transmits into matched views") {
   CHECK(std::abs(bent.value[0]) > 10 * bent.error[0]);
 }
 
-TEST_CASE("Caustics before the medium's end are refused") {
-  // Parallel light meets at z = pi / (2 alpha).
+TEST_CASE("graded index: caustics and turning rays inside the medium are rejected") {
+  // Parallel light is focused at z = pi / (2 alpha).
   const Scene scene = graded(parabolic(0.45), intensity_request({0.0}, {near_sensor({0, 8})}));
   CHECK_THROWS_AS(tests::run(scene, ReversedPaths::no, 400, 1), InputError);
   Scene turning = graded(linear({0, -0.15}), intensity_request({1.2}, {near_sensor({0, 8})}));

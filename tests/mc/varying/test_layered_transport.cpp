@@ -1,4 +1,4 @@
-// Layers by transport: divided slabs against undivided ones, different ones against Monte Carlo.
+// Layers by transport: divided slabs against undivided ones, different layers against Monte Carlo.
 #include <cmath>
 #include <memory>
 
@@ -20,10 +20,10 @@ using tests::Layer;
 using tests::layered;
 using tests::pi;
 
-/// Relative error of transport, less than those of the walks beside it.
+/// Relative error of transport, below the errors of the Monte Carlo runs.
 const double precision = is_night ? 1e-4 : 1e-3;
 
-/// Intensities and a tilt, in transmission, reflection and near backscattering.
+/// Requests intensities and a tilt in transmission, reflection and near backscattering.
 CovarianceRequest some_pairs() {
   const double light = 0.3, q = 0.004;
   const auto tilted = [&](double angle) {
@@ -40,7 +40,7 @@ CovarianceRequest some_pairs() {
 
 }  // namespace
 
-TEST_CASE("a slab cut into layers is the slab") {
+TEST_CASE("layered transport: a divided slab equals the undivided one") {
   for (const auto& [g, albedo] : {std::pair{0.0, 1.0}, {0.7, 0.95}}) {
     const Scene whole = tests::hg_slab(60, {10, g, albedo}, some_pairs());
     const Scene cut =
@@ -57,7 +57,7 @@ TEST_CASE("a slab cut into layers is the slab") {
   }
 }
 
-TEST_CASE("different layers, absorbing ones among them, agree with paths") {
+TEST_CASE("layered transport: different layers, some absorbing, agree with Monte Carlo") {
   const Scene scene = layered({{20, 2, 0.8, 0.99}, {30, 0.5, 0, 0}, {10, 1, 0, 1}}, some_pairs());
   const auto expected = slab_covariance(scene, true, {precision}).value;
   const auto found = tests::run(scene, ReversedPaths::yes, is_night ? 60000 : 20000, 3).entries();
@@ -69,7 +69,7 @@ TEST_CASE("different layers, absorbing ones among them, agree with paths") {
   }
 }
 
-TEST_CASE("fields of two times: a cut slab is the slab, layers with shares of diffusion as paths") {
+TEST_CASE("layered transport: temporal correlation of a divided slab equals the undivided one's") {
   const double delay = 0.03;
   const Scene whole = tests::hg_slab(60, {10, 0.7, 0.95}, some_pairs());
   const Scene cut = layered({{20, 2, 0.7, 0.95}, {40, 4, 0.7, 0.95}}, some_pairs());
@@ -81,7 +81,7 @@ TEST_CASE("fields of two times: a cut slab is the slab, layers with shares of di
   }
 }
 
-TEST_CASE("layers that diffuse unlike each other agree with paths") {
+TEST_CASE("layered transport: layers of different diffusion agree with Monte Carlo") {
   const double delay = 0.05;
   Scene scene = layered({{20, 2, 0.8, 0.99}, {10, 1, 0, 1}},
                         intensity_request({0.3}, tests::far_views({0.1, pi - 0.5})));
@@ -100,8 +100,8 @@ TEST_CASE("layers that diffuse unlike each other agree with paths") {
   }
 }
 
-/// Discrete ordinates by adding and doubling, to six digits; direct light left out.
-TEST_CASE("what three layers reflect and let through, without chance") {
+// expected: discrete ordinates by adding and doubling, to six digits, without direct light.
+TEST_CASE("layered transport: flux of three layers agrees with adding and doubling") {
   Scene scene = layered({{20, 2, 0.9, 0.99}, {30, 3, 0.7, 0.9}, {10, 1, 0, 1}},
                         intensity_request({0, 1}, tests::far_views({0})));
   const auto found = slab_flux(scene, 4, {1e-6}).value;
@@ -115,7 +115,7 @@ TEST_CASE("what three layers reflect and let through, without chance") {
   }
 }
 
-TEST_CASE("near ends and density maps are refused") {
+TEST_CASE("layered transport: near endpoints are rejected") {
   const Scene near = layered({{20, 2, 0.8, 1}}, intensity_request({0.0}, {near_sensor({0, 80})}));
   CHECK_THROWS_AS(slab_covariance_job(near, false, {1e-4}), InputError);
 }

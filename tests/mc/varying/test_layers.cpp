@@ -26,7 +26,7 @@ oracles::SlabTransport theory_of(const std::vector<Layer>& layers,
 
 }  // namespace
 
-TEST_CASE("a way through layers and how far an optical depth reaches are inverse") {
+TEST_CASE("layers: optical depth along a ray and its inverse, the reach, agree") {
   const Scene scene = layered(three, intensity_request({0}, tests::far_views({0})));
   const MediumProfile& profile = *scene.profile;
   for (const Vec2 x : {Vec2{0, 0}, {0, 19.999}, {3, 35}, {0, 60}})
@@ -42,7 +42,7 @@ TEST_CASE("a way through layers and how far an optical depth reaches are inverse
   CHECK(profile.optical_depth({0, 10}, {0, 1}, 45) == doctest::Approx(1 + 3 + 0.5));
 }
 
-TEST_CASE("adding unequal parts of one medium gives the whole") {
+TEST_CASE("adding and doubling: unequal parts of one medium give the whole") {
   const std::vector<double> angles = {0.3, 1.0};
   const auto whole = theory_of({{0, 5, 0.5, 0.95}}, angles),
              parts =
@@ -55,7 +55,7 @@ TEST_CASE("adding unequal parts of one medium gives the whole") {
   }
 }
 
-TEST_CASE("flux of three layers agrees with adding and doubling") {
+TEST_CASE("layers: flux of three layers agrees with adding and doubling") {
   const std::vector<double> lights = {0, 1.0};
   const Scene scene = layered(three, intensity_request(lights, tests::far_views({0})));
   const FluxEstimates flux =
@@ -73,8 +73,8 @@ TEST_CASE("flux of three layers agrees with adding and doubling") {
   }
 }
 
-TEST_CASE("intensities of three layers agree with adding and doubling") {
-  // Reversed paths: in transmission they only change how paths are weighed.
+TEST_CASE("layers: intensities of three layers agree with adding and doubling") {
+  // In transmission reversed paths change only the weights of paths.
   const std::vector<double> views = {0.1, -0.8, 1.2};
   for (const auto reversed : {ReversedPaths::no, ReversedPaths::yes}) {
     auto layers = three;
@@ -90,7 +90,7 @@ TEST_CASE("intensities of three layers agree with adding and doubling") {
   }
 }
 
-TEST_CASE("equal layers give the undivided slab's covariance") {
+TEST_CASE("layers: equal layers give the covariance of the undivided slab") {
   const auto request = memory_effect_request(2 * pi, 0.2, {0.1, pi - 0.3}, {0, 0.01, 0.05});
   const Scene parts =
                   layered({{2, 1, 0.5, 0.95}, {1, 0.5, 0.5, 0.95}, {7, 3.5, 0.5, 0.95}}, request),
@@ -101,7 +101,7 @@ TEST_CASE("equal layers give the undivided slab's covariance") {
     CHECK_WITHIN_4_SIGMA(a.value[e], std::hypot(a.error[e], b.error[e]), b.value[e], 0);
 }
 
-TEST_CASE("derivatives by each layer agree with those of adding and doubling") {
+TEST_CASE("layers: derivatives by each layer agree with adding and doubling") {
   const double light = 0.3;
   const std::vector<double> views = {0.1, -0.8};
   const Scene scene = layered(three, intensity_request({light}, tests::far_views(views)));

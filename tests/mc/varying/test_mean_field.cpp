@@ -13,7 +13,7 @@ namespace {
 constexpr double k = 2 * std::numbers::pi;
 const Domain box{Domain::Kind::box, 2.1, 1.2};
 
-/// f(u) du from 0 to 1, by Gauss.
+/// Integrates f(u) du from 0 to 1 by Gauss quadrature.
 template <typename F>
 Complex integral(const F& f) {
   using Rule = boost::math::quadrature::gauss<double, 30>;
@@ -24,16 +24,16 @@ Complex integral(const F& f) {
   return sum;
 }
 
-/// int (i/4) H_0(k |x - y|) exp(i k w.y) dy over the box, by parts that have x as a corner: there
-/// u^3 and v^3 take out the logarithm.
+/// Returns int (i/4) H_0(k |x - y|) exp(i k w.y) dy over the box, by parts that have x as a corner:
+/// there the substitutions u^3 and v^3 remove the logarithm.
 Complex scattered_once(Vec2 x, Vec2 w) {
   const auto part = [&](Vec2 size) {
     return std::abs(size.x * size.z) * integral([&](double u) {
              return integral([&](double v) {
-               const Vec2 way{u * u * u * size.x, v * v * v * size.z};
-               const double r = k * length(way);
+               const Vec2 offset{u * u * u * size.x, v * v * v * size.z};
+               const double r = k * length(offset);
                return 9 * u * u * v * v * Complex(0, 0.25) * Complex(::j0(r), ::y0(r)) *
-                      std::polar(1.0, k * dot(w, x + way));
+                      std::polar(1.0, k * dot(w, x + offset));
              });
            });
   };
@@ -45,7 +45,7 @@ Complex scattered_once(Vec2 x, Vec2 w) {
 
 }  // namespace
 
-TEST_CASE("A box that hardly differs adds one scattering, cells of any shape") {
+TEST_CASE("homogenised box: a small index difference adds single scattering, cells of any shape") {
   constexpr double differs = 1e-3, angle = 0.7;
   const HomogenisedBox more(box, k, k * (1 + differs)), less(box, k, k * (1 - differs));
   const auto added = more.field(angle), taken = less.field(angle);
