@@ -157,10 +157,13 @@ void print_map(const ResultReader& file) {
 }
 
 /// Adds the plot scripts for results of `render`: images, and profiles over rings, with more than
-/// one pixel.
+/// one pixel; pulses of named sensors, with the flag that names the sensor.
 void note_pictures(const ResultReader& file, const std::string& group,
                    std::vector<std::string>& scripts) {
-  const std::string image = group + "image";
+  const std::string sensors = "sensors/", image = group + "image";
+  if (group.starts_with(sensors) && file.has(group + "pulse"))
+    scripts.push_back("render_time --sensor " +
+                      group.substr(sensors.size(), group.size() - sensors.size() - 1));
   if (!file.has_attribute(image, "long_name")) return;
   const auto shape = file.shape(image);
   if (shape.size() == 1 && shape[0] > 1) scripts.push_back("ring_profile");
@@ -189,7 +192,9 @@ void print_drawings(const ResultReader& file) {
   std::set<std::string> printed;
   for (const std::string& script : scripts_for(file)) {
     if (!printed.insert(script).second) continue;
-    std::cout << title << "  plots/" << script << ".py " << file.path().string() << '\n';
+    const std::size_t name = std::min(script.find(' '), script.size());
+    std::cout << title << "  plots/" << script.substr(0, name) << ".py " << file.path().string()
+              << script.substr(name) << '\n';
     title = "";
   }
   if (printed.empty()) std::cout << "\nNo plot script draws this file.\n";

@@ -91,7 +91,8 @@ void print_summary(const DesignState& state, const DesignCheck& check) {
       std::printf("%s miss their targets by %.3g (RMS), with half the ray step by %.3g\n", what,
                   *rms, *half);
     else
-      std::printf("%s: some do not reach their target\n", what);
+      std::printf("%s: some do not reach their target; a smaller aperture excludes grazing rays\n",
+                  what);
   };
   std::printf("%zu coefficients, each ray traced %.0f times\n", state.search.coefficients.size(),
               state.history.traces.back());
