@@ -38,7 +38,7 @@ struct MultipoleRing {
 
 /// Product M x of WaveEquations, as the sum of two parts: a far sum between multipole rings on a
 /// grid and, for near pairs of bodies, blocks that contain the difference between M and that sum.
-/// Of the two blocks of a pair only one is stored; the other is its transpose.
+/// Only one of the two blocks of a pair is stored; the other is its transpose.
 class RingProduct {
  public:
   /// range: range of the KernelSplit. Two rings are a near pair if they are closer to each other
