@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # check.sh [PART...]: runs checks that take too long for every change. By default it runs all parts, which takes
 # hours.
+#   words      plain words: comments, names, messages, sentences of guides
 #   gcc clang  builds without warnings, every file by itself
 #   asan       address and undefined-behaviour sanitizers, all tests but the slow and nightly ones
 #   tsan       thread sanitizer, the tests labelled parallel
@@ -43,6 +44,10 @@ fuzz() {
   done
 }
 
+words() {
+  python3 -B tests/verify/test_words.py
+}
+
 nightly() {
   build_release all -DFLATSPECKLE_TESTS=ON
   export FLATSPECKLE_TEST_SEED=${FLATSPECKLE_TEST_SEED:-$(date +%Y%m%d)}
@@ -53,14 +58,14 @@ nightly() {
 install_build_packages
 install_test_packages
 install_missing clang clang-tidy libomp-dev libbenchmark-dev
-[[ $# -gt 0 ]] || set -- gcc clang asan tsan tidy fuzz nightly
+[[ $# -gt 0 ]] || set -- words gcc clang asan tsan tidy fuzz nightly
 for part in "$@"; do
   printf '\n== %s\n' "$part"
   case $part in
     gcc) without_warnings dev ;;
     clang) without_warnings clang ;;
     asan | tsan) sanitized "$part" ;;
-    tidy | fuzz | nightly) "$part" ;;
+    words | tidy | fuzz | nightly) "$part" ;;
     *) echo "no such part: $part" >&2; exit 2 ;;
   esac
 done
