@@ -1,7 +1,10 @@
 #include <algorithm>
+#include <compare>
 #include <filesystem>
 #include <iostream>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "apps/command/subcommands.h"
 #include "apps/results/datasets.h"
@@ -156,31 +159,39 @@ void print_map(const ResultReader& file) {
               << " --value NAME, where NAME is a dataset of the file, over the swept keys\n";
 }
 
+/// A plot script and the flags that follow the name of the result.
+struct PlotCommand {
+  std::string script, flags = {};
+
+  auto operator<=>(const PlotCommand&) const = default;
+};
+
 /// Adds the plot scripts for results of `render`: images, and profiles over rings, with more than
 /// one pixel; pulses of named sensors, with the flag that names the sensor.
 void note_pictures(const ResultReader& file, const std::string& group,
-                   std::vector<std::string>& scripts) {
+                   std::vector<PlotCommand>& scripts) {
   const std::string sensors = "sensors/", image = group + "image";
   if (group.starts_with(sensors) && file.has(group + "pulse"))
-    scripts.push_back("render_time --sensor " +
-                      group.substr(sensors.size(), group.size() - sensors.size() - 1));
+    scripts.push_back(
+        {"render_time",
+         " --sensor " + group.substr(sensors.size(), group.size() - sensors.size() - 1)});
   if (!file.has_attribute(image, "long_name")) return;
   const auto shape = file.shape(image);
-  if (shape.size() == 1 && shape[0] > 1) scripts.push_back("ring_profile");
-  if (shape.size() == 2 && shape[0] * shape[1] > 1) scripts.push_back("render");
+  if (shape.size() == 1 && shape[0] > 1) scripts.push_back({"ring_profile"});
+  if (shape.size() == 2 && shape[0] * shape[1] > 1) scripts.push_back({"render"});
 }
 
 /// Adds the plot script for results of `field` with more than one detection direction.
-void note_fields(const ResultReader& file, std::vector<std::string>& scripts) {
+void note_fields(const ResultReader& file, std::vector<PlotCommand>& scripts) {
   if (!file.has("field")) return;
   const auto shape = file.shape("field");
-  if (shape.size() == 3 && shape[2] > 1) scripts.push_back("speckle_field");
+  if (shape.size() == 3 && shape[2] > 1) scripts.push_back({"speckle_field"});
 }
 
-std::vector<std::string> scripts_for(const ResultReader& file) {
-  std::vector<std::string> scripts;
+std::vector<PlotCommand> scripts_for(const ResultReader& file) {
+  std::vector<PlotCommand> scripts;
   for (const Drawing& drawing : all_drawings())
-    if (can_draw(drawing, file)) scripts.push_back(drawing.script);
+    if (can_draw(drawing, file)) scripts.push_back({drawing.script});
   note_fields(file, scripts);
   for (const std::string& group : groups_of(file)) note_pictures(file, group, scripts);
   return scripts;
@@ -189,12 +200,11 @@ std::vector<std::string> scripts_for(const ResultReader& file) {
 void print_drawings(const ResultReader& file) {
   if (file.has_attribute("/", "of")) return print_map(file);
   const char* title = "\nTo plot it\n";
-  std::set<std::string> printed;
-  for (const std::string& script : scripts_for(file)) {
-    if (!printed.insert(script).second) continue;
-    const std::size_t name = std::min(script.find(' '), script.size());
-    std::cout << title << "  plots/" << script.substr(0, name) << ".py " << file.path().string()
-              << script.substr(name) << '\n';
+  std::set<PlotCommand> printed;
+  for (const PlotCommand& plot : scripts_for(file)) {
+    if (!printed.insert(plot).second) continue;
+    std::cout << title << "  plots/" << plot.script << ".py " << file.path().string() << plot.flags
+              << '\n';
     title = "";
   }
   if (printed.empty()) std::cout << "\nNo plot script draws this file.\n";
