@@ -220,8 +220,8 @@ void print_all(const std::string& path) {
   print_drawings(file);
 }
 
-int explain_file(const Subcommand&, OneWord& values) {
-  const std::string& path = values.word;
+int explain_file(const Subcommand&, Words& values) {
+  const std::string path = values.text();
   if (path.empty()) throw InputError("explain: must have exactly one result file");
   if (!std::filesystem::exists(path)) throw InputError("explain", path, "no such file");
   read_in_child(path, [&] { const ResultReader file(path); });
@@ -232,7 +232,7 @@ int explain_file(const Subcommand&, OneWord& values) {
 }  // namespace
 
 std::unique_ptr<Call> explain(const std::string&) {
-  return call_with<OneWord>("explain", "Describes a result file: explain FILE.h5", explain_file);
+  return call_with<Words>("explain", "Describes a result file: explain FILE.h5", explain_file);
 }
 
 }  // namespace flatspeckle::apps

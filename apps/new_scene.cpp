@@ -95,8 +95,8 @@ std::string words() {
   return all;
 }
 
-int print_scene(const Subcommand&, OneWord& values) {
-  const std::string& word = values.word;
+int print_scene(const Subcommand&, Words& values) {
+  const std::string word = values.text();
   if (word.empty()) throw InputError("new: must have one purpose, one of" + words());
   const auto* const found = std::ranges::find(purposes, word, &Purpose::word);
   if (found == std::end(purposes)) throw InputError("new", word, "must be one of" + words());
@@ -108,8 +108,8 @@ int print_scene(const Subcommand&, OneWord& values) {
 }  // namespace
 
 std::unique_ptr<Call> new_scene(const std::string&) {
-  return call_with<OneWord>(
-      "new", "Prints a commented example scene: new PURPOSE, one of" + words(), print_scene);
+  return call_with<Words>("new", "Prints a commented example scene: new PURPOSE, one of" + words(),
+                          print_scene);
 }
 
 }  // namespace flatspeckle::apps

@@ -1,29 +1,50 @@
 #!/usr/bin/env python3
-"""Diffusing-wave spectroscopy: field correlation of light transmitted through slabs against delay, from any number of
-`covariance --delays` results."""
+"""Diffusing-wave spectroscopy: field correlation of light transmitted or reflected by slabs against delay, from any
+number of `covariance --delays` results. Delays are in seconds if all results have them in seconds, and otherwise scaled
+as in diffusion theory."""
 
 from lib import decay, script, theory
 
 import numpy as np
 
-# By dimension d; None for results of different dimensions.
-LABELS = {2: r"scaled delay $x = 2\,k\sqrt{D\tau}\,L/\ell^*$",
-          3: r"scaled delay $x = \sqrt{6}\,k\sqrt{D\tau}\,L/\ell^*$",
-          None: r"scaled delay $x = \sqrt{2d}\,k\sqrt{D\tau}\,L/\ell^*$"}
+
+def rate(result):
+    """Returns k^2 D, by which delays are multiplied to give t = k^2 D tau."""
+    return result.attribute("k2_diffusion", 1, "delay")
 
 
-def scaled_delay(result, delay):
-    """Returns Q L of diffusion theory without absorption: Q l* = sqrt(2 dimension t), with t = k^2 D tau. If
-    `diffusion` is given, it multiplies the delays; otherwise the delays are t."""
-    delay = result.scene.get("diffusion", 1) * delay
-    transport = result.attribute("transport_mean_free_path")
-    return np.sqrt(2 * theory.dimension(result) * delay) * result.attribute("depth") / transport
+def scaled_delay(result, delay, reflected):
+    """Returns Q l* = sqrt(2 dimension t) of diffusion theory without absorption; if no light is reflected, Q L."""
+    root = np.sqrt(2 * theory.dimension(result) * rate(result) * delay)
+    return root if reflected else root * result.attribute("depth") / result.attribute("transport_mean_free_path")
 
 
-DELAYS = decay.Decay("field_correlation", "--delays", "diffusion_theory", theory.delayed_diffusion,
-                     lambda result: 1, scaled_delay, LABELS, r"field correlation $g_1$")
+def scaled_label(dimension, reflected):
+    root = {2: r"2\,k\sqrt{D\tau}", 3: r"\sqrt{6}\,k\sqrt{D\tau}", None: r"\sqrt{2d}\,k\sqrt{D\tau}"}[dimension]
+    return rf"scaled delay $x = {root}" + ("$" if reflected else r"\,L/\ell^*$")
+
+
+def seconds(result):
+    return 1 if result.unit("delay") == "s" else None
+
+
+def closed_form(curves):
+    """Returns the limit of thick slabs: x/sinh x in transmission; exp(-gamma x) if all light is reflected alike."""
+    if not any(curve.reflected for curve in curves):
+        return lambda x: x / np.sinh(x), r"$x/\sinh x$"
+    factors = [1 + curve.result.attribute("extrapolation_length", np.nan) /
+               curve.result.attribute("transport_mean_free_path") for curve in curves]
+    if all(curve.reflected for curve in curves) and np.allclose(factors, factors[0], rtol=1e-3):
+        return lambda x: np.exp(-factors[0] * x), rf"$e^{{-\gamma x}}$, $\gamma = {factors[0]:.3g}$"
+    return None
+
+
+DELAYS = decay.Decay("field_correlation", "--delays",
+                     lambda reflected: "reflected_diffusion_theory" if reflected else "diffusion_theory",
+                     theory.delayed_diffusion, rate, scaled_delay, seconds, r"delay $\tau$ (s)", scaled_label,
+                     r"field correlation $g_1$")
 
 
 @script.plot(several=True)
 def draw(results):
-    return decay.draw(results, DELAYS, (lambda x: x / np.sinh(x), r"$x/\sinh x$"))
+    return decay.draw(results, DELAYS, closed_form)

@@ -132,7 +132,7 @@ def say(figure, axis, number, grid, lens, best, star, at_edge, words):
             if error > 0 else "")
     missing = int(np.isnan(values).sum())
     style.caption(figure, [f"star: {words[0]}, {place}, {value:.4g}{bias}",
-                           *([f"white cells: {missing} of {values.size} points are missing"] if missing else []),
+                           *([f"white cells: {missing} of {values.size} points are missing or only bounds"] if missing else []),
                            *(f"the star is {text}; a better value may exist beyond it" for text in edge),
                            *([lens_text(lens, values, value)] if lens else [])])
 

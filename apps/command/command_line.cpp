@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -125,91 +124,12 @@ void refuse_long_numbers(const std::string& key, const std::string& text) {
   }
 }
 
-const std::map<std::string, double> sizes = {{"nm", 1e-9}, {"um", 1e-6}, {"mm", 1e-3},
-                                             {"cm", 1e-2}, {"m", 1},     {"km", 1e3}};
-
-/// A number with a unit of length found in a text, such as 532nm, 10/mm or 0.05/um^2: its position,
-/// its number, its unit, and the power of the unit (1, -1 or -2).
-struct LengthText {
-  std::size_t begin, end;
-  double number, unit;  ///< `unit`: the unit of length in metres
-  int power;
-};
-
-/// Returns the first length that begins at or after the position `from`: a number, a slash or
-/// nothing, a unit, ^2 or nothing, and no letter after it.
-std::optional<LengthText> next_length(const std::string& text, std::size_t from) {
-  const auto is_space = [](unsigned char c) { return std::isspace(c) != 0; };
-  const auto is_letter = [](unsigned char c) { return std::isalpha(c) != 0; };
-  for (; (from = text.find_first_of(".0123456789", from)) != std::string::npos; ++from) {
-    double number;
-    const char* const end = text.data() + text.size();
-    const auto [behind, error] = std::from_chars(text.data() + from, end, number);
-    const char* at = std::find_if_not(behind, end, is_space);
-    const bool inverse = at != end && *at == '/';
-    if (inverse) at = std::find_if_not(at + 1, end, is_space);
-    const char* const letters = std::exchange(at, std::find_if_not(at, end, is_letter));
-    const auto unit = sizes.find(std::string(letters, at));
-    const bool square = std::string_view(at, end).starts_with("^2");
-    if (square) at += 2;
-    const bool goes_on = at != end && (*at == '^' || std::isalnum(static_cast<unsigned char>(*at)));
-    if (error == std::errc() && unit != sizes.end() && !goes_on)
-      return LengthText{from, std::size_t(at - text.data()), number, unit->second,
-                        (inverse ? -1 : 1) * (square ? 2 : 1)};
-  }
-  return std::nullopt;
-}
-
-/// Whether the values of a key may be given with a unit of length to this power. Keys whose values
-/// are rows of positions and other numbers, such as "x y z power", accept lengths and inverse
-/// lengths.
-bool may_have(const Key& key, int power) {
-  const std::string& unit = key.unit();
-  const bool row =
-      unit.empty() && key.is_list() && key.accepted().find("numbers") != std::string::npos;
-  if (row) return power == 1 || power == -1;
-  if (unit == "1/length or length") return power == 1 || power == -1;
-  return (unit == "length" && power == 1) || (unit == "1/length" && power == -1) ||
-         (unit == "1/length^2" && power == -2);
-}
-
-/// Returns the value as text with 15 digits, which hides rounding errors of the conversion of
-/// units.
-std::string to_15_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.15g", value);
-  return text;
-}
-
 /// Returns the length that a text such as "um", "0.5mm" or "1e-6" means, in metres; nullopt for any
 /// other text.
 std::optional<double> metres_of(const std::string& text) {
-  if (const auto number = read_number(text)) return number;
-  if (const auto size = sizes.find(text); size != sizes.end()) return size->second;
-  const auto found = next_length(text, 0);
-  if (!found || found->begin > 0 || found->end < text.size() || found->power != 1)
-    return std::nullopt;
-  return found->number * found->unit;
-}
-
-/// Converts lengths such as "532nm", "10/mm" or "0.05/um^2" in a text to the scene's unit of
-/// length; returns other texts unchanged. metres: the scene's unit of length in metres. Throws
-/// InputError if the scene has no unit of length.
-std::string in_unit_of_length(const Key& key, const std::string& text,
-                              const std::optional<double>& metres) {
-  std::string numbers;
-  std::size_t done = 0;
-  while (const auto found = next_length(text, done)) {
-    if (!may_have(key, found->power)) return text;
-    if (!metres)
-      throw InputError(key.name(), text,
-                       "has a unit: also give length_unit, such as length_unit = um, the unit of "
-                       "all lengths given without one");
-    numbers += text.substr(done, found->begin - done) +
-               to_15_digits(found->number * std::pow(found->unit / *metres, found->power));
-    done = found->end;
-  }
-  return numbers + text.substr(done);
+  const KeyUnit metres("m");
+  const auto unit = unit_of(text);
+  return unit && metres.accepts(*unit) ? unit->size : written_number(text, metres);
 }
 
 constexpr const char* length_unit_key = "length_unit";
@@ -223,9 +143,11 @@ const std::map<std::string, std::string> gone{
 /// Returns "0-.4" for the number -.4 and "0-pi" for -pi, because CLI11 would parse these arguments
 /// as flags "." and "p".
 std::string with_figure(const std::string& argument) {
-  const bool number = argument.starts_with("-.") || argument.starts_with("-pi");
-  const std::string first = argument.substr(0, argument.find_first_of(",:"));
-  return number && written_number(first, Written::angle) ? "0" + argument : argument;
+  const bool is_pi =
+      argument.starts_with("-pi") &&
+      (argument.size() == 3 || !std::isalpha(static_cast<unsigned char>(argument[3])));
+  const bool number = is_pi || argument.starts_with("-.");
+  return number ? "0" + argument : argument;
 }
 
 /// Returns the arguments after the subcommand in reverse order, as CLI11 requires.
@@ -297,6 +219,16 @@ Subcommand::Subcommand(std::string name, std::string purpose)
 
 Subcommand::~Subcommand() = default;
 
+void add_length_unit_key(Keys& keys, std::optional<double>& metres) {
+  keys.group("Units");
+  keys.add(length_unit_key, metres,
+           "Unit of lengths that are given without a unit: um, or 1e-6 (metres); required if any "
+           "length is given with a unit, such as 532nm")
+      .positive()
+      .unit("m")
+      .effort();
+}
+
 /// Adds the key length_unit if any key is a length and the subcommand does not define length_unit
 /// itself.
 void Subcommand::add_length_unit() {
@@ -304,14 +236,7 @@ void Subcommand::add_length_unit() {
   const bool lengths =
       std::any_of(rows.begin(), rows.end(), [](const Key& key) { return key.unit() == "length"; });
   if (!lengths || keys_.find(length_unit_key) != nullptr) return;
-  keys_.group("Units");
-  keys_
-      .add(length_unit_key, length_unit_,
-           "Unit of lengths that are given without a unit: um, or 1e-6 (metres); required if any "
-           "length is given with a unit, such as 532nm")
-      .positive()
-      .unit("m")
-      .effort();
+  add_length_unit_key(keys_, length_unit_);
   keys_.read(length_unit_);
 }
 
@@ -357,15 +282,19 @@ std::optional<double> Subcommand::take_length_unit() {
   return metres;
 }
 
-/// Returns the value of a key with all lengths converted to numbers, also in values such as
-/// depth=10um:1mm that assign values to another key.
+/// Returns a value such as depth=10um:1mm, which assigns values to another key, with the numbers in
+/// the unit of that key; returns the values of other keys unchanged.
 std::string Subcommand::in_numbers(const Key& key, const std::string& text,
                                    const std::optional<double>& metres) const {
-  if (!assigning.contains(key.name())) return in_unit_of_length(key, text, metres);
-  const Key* const other = keys_.find(text.substr(0, text.find_first_of(".=")));
   const auto equals = text.find('=');
-  if (other == nullptr || equals == std::string::npos) return text;
-  return text.substr(0, equals + 1) + in_unit_of_length(*other, text.substr(equals + 1), metres);
+  if (!assigning.contains(key.name()) || equals == std::string::npos) return text;
+  const std::string name = text.substr(0, equals);
+  const auto dot = std::min(name.find('.'), name.size());
+  const Key* const other = keys_.find(name.substr(0, dot));
+  if (other == nullptr) return text;
+  const auto position = read_whole_number(name.substr(std::min(dot + 1, name.size())));
+  const KeyUnit unit = other->number_unit(metres, static_cast<std::size_t>(position.value_or(0)));
+  return text.substr(0, equals + 1) + without_units(text.substr(equals + 1), unit);
 }
 
 void Subcommand::take_results() {
@@ -375,7 +304,7 @@ void Subcommand::take_results() {
     if (given.empty() || key.name() == length_unit_key) continue;
     for (std::string& text : given) text = in_numbers(key, text, metres);
     try {
-      key.set(given);
+      key.set(given, metres);
     } catch (const InputError& error) {
       const std::string table = key.name() + "_table";
       if (keys_.find(table) == nullptr) throw;
@@ -408,11 +337,11 @@ const Keys& Subcommand::all_keys() {
 }
 
 /// Returns the arguments in reverse order, as CLI11 requires, without the words before the first
-/// flag, which are stored in *word_.
+/// flag, which are stored in *words_.
 Arguments Subcommand::flags_of(const Arguments& arguments) {
   Arguments flags = reversed(arguments);
-  for (; word_ != nullptr && !flags.empty() && !flags.back().starts_with('-'); flags.pop_back())
-    *word_ += (word_->empty() ? "" : " ") + flags.back();
+  for (; words_ != nullptr && !flags.empty() && !flags.back().starts_with('-'); flags.pop_back())
+    words_->push_back(flags.back());
   return flags;
 }
 

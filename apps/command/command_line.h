@@ -30,8 +30,8 @@ class Subcommand {
   /// called after all other keys are added.
   const Keys& all_keys();
 
-  /// Makes parse() store the words before the flags, such as FILE in `explain FILE`, in `word`.
-  void take_word(std::string& word) { word_ = &word; }
+  /// Makes parse() store the words before the flags, such as FILE in `explain FILE`, in `words`.
+  void take_words(std::vector<std::string>& words) { words_ = &words; }
 
   /// Sets the variables of all keys and checks their values. Returns false if there is nothing more
   /// to do, for example after --help. Throws InputError.
@@ -62,12 +62,16 @@ class Subcommand {
   void parse_by(const Parser& parser);
 
   std::string name_, purpose_, text_;
-  std::string* word_ = nullptr;
+  std::vector<std::string>* words_ = nullptr;
   std::unique_ptr<CLI::App> app_;
   Keys keys_;
   std::optional<double> length_unit_;
   bool print_config_ = false;
 };
+
+/// Adds the key length_unit. The subcommand adds it by itself if any key is a length; an experiment
+/// whose result depends on it adds it to its own keys.
+void add_length_unit_key(Keys& keys, std::optional<double>& metres);
 
 /// Returns the value of a key before the other keys are defined, for the key `of`, on which the set
 /// of other keys depends. The value is taken from the flags or from the scene file named by

@@ -238,8 +238,8 @@ void print_heading(const std::string& form, const SubcommandEntry& entry) {
 
 /// Prints the keys of all subcommands in the format that the user has named. JSON also contains the
 /// version and the purpose of each subcommand.
-int print_all_keys(const Subcommand&, OneWord& values) {
-  const std::string form = values.word.empty() ? "json" : values.word;
+int print_all_keys(const Subcommand&, Words& values) {
+  const std::string form = values.words.empty() ? "json" : values.text();
   const Frame& frame = frame_named(form);
   if (form == "json")
     std::cout << "{\"version\": " << quoted(version()) << ", \"commit\": " << quoted(git_commit())
@@ -278,10 +278,10 @@ void print_help_lines(const Keys& keys) {
 }
 
 std::unique_ptr<Call> list_keys(const std::string&) {
-  return call_with<OneWord>("keys",
-                            "Lists the keys of all subcommands: keys FORMAT, one of json markdown "
-                            "man dictionary completion zsh (default: json)",
-                            print_all_keys);
+  return call_with<Words>("keys",
+                          "Lists the keys of all subcommands: keys FORMAT, one of json markdown "
+                          "man dictionary completion zsh (default: json)",
+                          print_all_keys);
 }
 
 }  // namespace flatspeckle::apps

@@ -11,6 +11,7 @@
 #include "core/error.h"
 #include "core/keys/csv.h"
 #include "core/keys/number_text.h"
+#include "core/keys/written_number.h"
 #include "core/result/result_reader.h"
 
 namespace flatspeckle::apps {
@@ -53,7 +54,8 @@ void note_excess(const Key& key) {
 void note_key(const Key& key) {
   const std::string& name = key.name();
   if (name == "count" && key.shown() == "0") std::cerr << "note: count = 0: no scatterers\n";
-  if (name == "index" && !key.is_list()) note_index(key, {parse_complex(name, key.shown())});
+  if ((name == "index" || name == "particle_index") && !key.is_list())
+    note_index(key, {parse_complex(name, key.shown())});
   if (name == "grid" || name == "index_grid") note_excess(key);
   const bool may_be_table = name == "placement" || name == "index_table" || name == "layers";
   if (!may_be_table || !std::filesystem::is_regular_file(key.shown())) return;

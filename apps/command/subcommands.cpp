@@ -23,6 +23,7 @@ std::unique_ptr<Call> bench(const std::string& of);
 std::unique_ptr<Call> list_keys(const std::string& of);
 std::unique_ptr<Call> new_scene(const std::string& of);
 std::unique_ptr<Call> explain(const std::string& of);
+std::unique_ptr<Call> export_csv(const std::string& of);
 std::unique_ptr<Call> datasets(const std::string& of);
 
 std::span<const SubcommandEntry> subcommands() {
@@ -67,6 +68,7 @@ std::span<const SubcommandEntry> subcommands() {
       {"keys", "list the keys of all subcommands: json, markdown, man, completion", list_keys},
       {"new", "print a commented example scene for a purpose", new_scene},
       {"explain", "describe a result file: its medium, datasets and plot scripts", explain},
+      {"export", "print datasets of a result file with their axes as CSV", export_csv},
       {"datasets", "list the datasets of result files, as in docs/format.md", datasets},
   };
   return entries;

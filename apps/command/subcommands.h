@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/command/command_line.h"
+#include "core/keys/number_text.h"
 #include "core/session/session.h"
 
 namespace flatspeckle::apps {
@@ -24,7 +25,7 @@ class Call {
 
 /// Call whose values are the members of a struct. The keys that set the members are added by the
 /// function add_keys(keys, values) in the namespace of the struct. If the struct has a member
-/// `word`, it receives the words before the flags, such as FILE in `explain FILE`.
+/// `words`, it receives the words before the flags, such as FILE in `explain FILE`.
 template <typename Values>
 class CallWith : public Call {
  public:
@@ -33,7 +34,7 @@ class CallWith : public Call {
   CallWith(const char* name, const std::string& title, Run work)
       : command_(name, title), work_(work) {
     add_keys(command_.keys(), values_);
-    if constexpr (requires { values_.word; }) command_.take_word(values_.word);
+    if constexpr (requires { values_.words; }) command_.take_words(values_.words);
   }
   Subcommand& command() override { return command_; }
   int run() override { return work_(command_, values_); }
@@ -53,8 +54,11 @@ std::unique_ptr<Call> call_with(const char* name, const std::string& title,
 struct NoKeys {
   friend void add_keys(Keys&, NoKeys&) {}
 };
-struct OneWord : NoKeys {
-  std::string word;
+struct Words : NoKeys {
+  std::vector<std::string> words;
+
+  /// Returns all words with blanks between them, for subcommands that accept one word.
+  std::string text() const { return join_texts(words, " "); }
 };
 
 /// A subcommand of the program. It is defined either by `make`, which makes its call, or by

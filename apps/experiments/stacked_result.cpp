@@ -373,21 +373,25 @@ class Stack {
     for (const auto& [place, found] : attributes_) {
       const auto& [object, name] = place;
       if (found.points < store_.finished() || (object != "/" && !file_.has(object))) continue;
+      const std::string dataset = object == "/" ? name : object + '_' + name;
       if (found.same)
         file_.attribute(object, name, found.first.value);
-      else if (is_number(found.first.value) && object == "/" && !file_.has(name))
-        begin_attribute(name);
+      else if (is_number(found.first.value) && !file_.has(dataset))
+        begin_attribute(object, name, dataset);
     }
   }
 
-  /// Begins a dataset with the value at each point of an attribute of the root that differs between
-  /// points.
-  void begin_attribute(const std::string& name) {
-    add_column({name, false, {}, "", "attribute of each point", std::vector<double>(1)},
-               [name](StackedDataset& all, std::size_t, const FinishedPoint& point) {
+  /// Begins a dataset with the value at each point of an attribute, of the root or of a dataset,
+  /// that differs between points, such as `censored` of a range.
+  void begin_attribute(const std::string& object, const std::string& name,
+                       const std::string& dataset) {
+    const std::string long_name =
+        object == "/" ? "attribute of each point" : "attribute " + name + " of " + object;
+    add_column({dataset, false, {}, "", long_name, std::vector<double>(1)},
+               [object, name](StackedDataset& all, std::size_t, const FinishedPoint& point) {
                  const auto own = std::ranges::find_if(
                      point.result.attributes, [&](const CollectedAttribute& attribute) {
-                       return attribute.object == "/" && attribute.name == name;
+                       return attribute.object == object && attribute.name == name;
                      });
                  all.add(number_of(own->value));
                });

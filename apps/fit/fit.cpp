@@ -10,6 +10,7 @@
 #include "apps/command/subcommands.h"
 #include "apps/fit/fit_summary.h"
 #include "apps/fit/measurement_file.h"
+#include "apps/results/estimation.h"
 #include "apps/results/view_power.h"
 #include "apps/sweep/sweep_points.h"
 #include "core/error.h"
@@ -118,6 +119,7 @@ void add_keys(Keys& keys, FitKeys& values) {
   for (const char* of_placements : {"count", "placement"}) keys.remove(of_placements);
   add_structure_key(keys, values.medium);
   add_dimension_key(keys, values.medium);
+  add_faces_keys(keys, values.medium);
   mc::add_motion_keys(keys, values.medium);
   add_output_key(keys, values.run);
   add_seed_key(keys, values.run, "Random seed of a Monte Carlo model");
@@ -154,13 +156,19 @@ void read_scene(const Keys& keys, const SceneSpec& scene) {
   keys.merge_reads(keyed.keys);
 }
 
-/// Checks the scenes of all measurements, with lights and views from the measurements and the free
+/// Returns the scenes of all measurements, with lights and views from the measurements and the free
 /// parameters in the middle of their bounds.
-void check_scenes(const Keys& keys, const mc::FitTask& task) {
+std::vector<SceneSpec> middle_scenes(const mc::FitTask& task) {
   const Eigen::VectorXd middle = (lower_coordinates(task.free) + upper_coordinates(task.free)) / 2;
+  std::vector<SceneSpec> scenes;
   for (const auto& measurement : task.measurements)
     for (const auto& curve : measurement.curves)
-      read_scene(keys, mc::with_parameters(curve.scene, task.free, middle));
+      scenes.push_back(mc::with_parameters(curve.scene, task.free, middle));
+  return scenes;
+}
+
+void check_scenes(const Keys& keys, const mc::FitTask& task) {
+  for (const SceneSpec& scene : middle_scenes(task)) read_scene(keys, scene);
 }
 
 mc::PlanTask plan_of(const Keys& keys, const FitKeys& values, const mc::MovingSpec& medium) {
@@ -281,6 +289,19 @@ int run_plan(const Session& session, const Subcommand& command, const FitKeys& v
   });
 }
 
+/// Prints a note if tables of a laboratory are fitted by scenes in the plane that could be in
+/// space.
+void note_if_flat(const FitKeys& values, const mc::FitTask& task) {
+  const auto is_table = [](const std::string& path) { return !path.ends_with(".h5"); };
+  const auto is_flat = [](const SceneSpec& scene) {
+    const Keyed<SceneSpec> keyed(scene);
+    return scene.dimension == 2 && could_be_in_space(make_scene(keyed.keys, keyed.values));
+  };
+  if (std::ranges::any_of(values.measurements, is_table) &&
+      std::ranges::any_of(middle_scenes(task), is_flat))
+    note_plane();
+}
+
 void note_guessed_errors(const mc::FitTask& task) {
   for (const auto& measurement : task.measurements)
     if (measurement.guessed_independent)
@@ -310,6 +331,7 @@ int run_fit(const Session& session, const Subcommand& command, const FitKeys& va
   mc::FitTask task = task_of(command.keys(), values, session);
   if (!command.settle()) return ExitStatus::done;
   note_guessed_errors(task);
+  note_if_flat(values, task);
   // Journal of the steps of the search, from which an interrupted search continues. It is removed
   // when the result is written.
   const std::filesystem::path path = session.out() + ".search";

@@ -26,9 +26,10 @@ using mc::Observable;
 
 /// Keys that describe the arrangement of a measurement (domain, lights, views ...), not the medium.
 const std::set<std::string> arrangement = {
-    "wavelength",   "domain",         "width",      "depth",        "dimension",  "light_angles",
-    "near_sources", "beam_waist",     "beam_depth", "view_angles",  "covariance", "tilts",
-    "shifts",       "beam_positions", "pairs",      "near_sensors",
+    "wavelength",   "domain",       "width",         "depth",          "dimension",
+    "light_angles", "near_sources", "beam_waist",    "beam_depth",     "view_angles",
+    "covariance",   "tilts",        "shifts",        "beam_positions", "pairs",
+    "near_sensors", "medium_index", "outside_index", "polarisation",
 };
 
 /// Values of an observable in a result file, with their errors and the variable (tilt, delay ...)
@@ -179,6 +180,7 @@ mc::MovingSpec arranged(const std::string& path, const std::string& config, cons
   SceneSpec measured;
   add_keys(there.keys(), measured);
   add_dimension_key(there.keys(), measured);
+  add_faces_keys(there.keys(), measured);
   there.parse_config(arrangement_of(config));
   check_same(path, fit_keys, there.keys());
   Keyed<mc::MovingSpec> keyed(medium);

@@ -10,6 +10,7 @@
 #include "flatland/scene/scene_datasets.h"
 #include "mc/paths/estimators/reflection_theory.h"
 #include "mc/slab/refinement.h"
+#include "mc/theory/diffusion.h"
 
 namespace flatspeckle::apps {
 
@@ -21,6 +22,7 @@ void print_medium(const Scene& scene) {
               medium.mu_t * scene.domain.depth);
   if (medium.mu_t > 0) std::printf(", k x mean free path %.5g", scene.k * medium.mean_free_path());
   std::printf("\n");
+  print_suspension(scene);
 }
 
 /// Whether the forward peak of the phase function is so narrow that transport needs long to resolve
@@ -57,6 +59,7 @@ class CovarianceExperiment : public Experiment {
     add_wave_keys(keys, methods_);
     add_transport_keys(keys, methods_);
     add_dimension_key(keys, spec_);
+    add_faces_keys(keys, spec_);
     add_run_keys(keys, run_);
   }
 
@@ -69,15 +72,16 @@ class CovarianceExperiment : public Experiment {
         method_ == "wave" ? mc::ReversedPaths::no : reversed_paths(keys, methods_);
     if (method_ == "wave") keys.read(methods_.wave_tolerance);
     if (method_ != "wave") keys.read(spec_.dimension);
-    read_extras(keys, extras_, method_);
+    read_extras(keys, extras_, spec_, method_);
     take_q_depths(keys, q_depths_, spec_);
     choose_tilts(keys, tilt_count_, spec_, method_, run_, seed());
     scene_ = with_dimension(make_scene(keys, spec_), spec_);
     if (!only_prints_) estimation_ = made_estimation(reversed);
     disregard_unused(keys, spec_, {method_});
     neglected_ = Neglected(*scene_);
+    is_flat_sample_ = method_ != "wave" && is_flat_sample(keys, *scene_);
     if (method_ != "wave") refuse_absurd(methods_, neglected_);
-    inputs_ = inputs_text(*scene_) + inputs_text(keys);
+    inputs_ = inputs_text(*scene_) + inputs_text(keys) + extras_.identity();
   }
 
   void note() const override {
@@ -85,6 +89,7 @@ class CovarianceExperiment : public Experiment {
       apps::note(neglected_);
     else
       note_rounding(*scene_);
+    if (is_flat_sample_) note_plane();
   }
 
   PlannedExperiment plan() const override {
@@ -113,6 +118,7 @@ class CovarianceExperiment : public Experiment {
       if (method_ != "transport") print_errors(request, moments.covariance);
     }
     write_medium(file, *scene_);
+    mc::write_extrapolation_length(file, *scene_);
     write_axes(file, *scene_);
     const auto moves = mc::write_moments(file, "", job, *scene_, sums, moments);
     if (prints) print_moves(request, moves);
@@ -132,6 +138,7 @@ class CovarianceExperiment : public Experiment {
   std::optional<Scene> scene_;
   Estimation estimation_;
   Neglected neglected_;
+  bool is_flat_sample_ = false;
 };
 
 }  // namespace

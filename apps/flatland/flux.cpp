@@ -18,17 +18,19 @@ namespace {
 
 void print_table(const Scene& scene, const mc::FluxEstimates& flux) {
   const bool box = scene.domain.kind == Domain::Kind::box;
-  const auto direct = mc::direct_transmittances(scene);
-  std::printf("%8s  %-22s %-22s %-12s %s%s\n", "light", "reflectance", "diffuse transmittance",
-              "direct", box ? "side_loss              " : "", "absorptance");
+  std::printf("%8s  %-22s %-22s %-12s %s%s%s\n", "light", "reflectance", "diffuse transmittance",
+              "direct", scene.faces ? "specular     " : "", box ? "side_loss              " : "",
+              "absorptance");
   const auto print = [](const Estimate& share, std::size_t light) {
     std::printf("%-12.6g %-9.2g ", share.value[light].real(), share.error[light]);
   };
-  for (std::size_t light = 0; light < direct.size(); ++light) {
-    std::printf("%8.4f  ", scene.request.lights[light].angle);
+  for (std::size_t light = 0; light < scene.request.lights.size(); ++light) {
+    const double angle = scene.request.lights[light].angle;
+    std::printf("%8.4f  ", angle);
     print(flux.reflectance, light);
     print(flux.transmittance, light);
-    std::printf("%-12.6g ", direct[light]);
+    std::printf("%-12.6g ", mc::direct_transmittance(scene, angle));
+    if (scene.faces) std::printf("%-12.6g ", mc::specular_reflectance(scene, angle));
     if (box) print(flux.side_loss, light);
     print(flux.absorptance, light);
     std::printf("\n");
@@ -55,6 +57,7 @@ class FluxExperiment : public Experiment {
     add_scatterer_keys(keys, spec_);
     add_bulk_keys(keys, spec_);
     add_medium_keys(keys, spec_);
+    add_structure_key(keys, spec_);
     add_profile_keys(keys, spec_);
     keys.group("Lights and views");
     keys.add("light_angles", spec_.light_angles, "Directions of the plane waves, angles from +z")
@@ -63,6 +66,7 @@ class FluxExperiment : public Experiment {
              "Number of equal bins of the exit angle, over (-pi, pi] or in 3D over (0, pi)")
         .from(1, 100000);
     add_dimension_key(keys, spec_);
+    add_faces_keys(keys, spec_);
     keys.add("method", method_,
              "mc: Monte Carlo; transport: deterministic, for slabs; auto: transport for slabs "
              "unless samples or seconds are given, else mc")
@@ -82,8 +86,15 @@ class FluxExperiment : public Experiment {
       throw InputError("dimension", 3,
                        "requires method = transport with a tolerance; leave out method = mc, "
                        "samples and seconds");
+    if (scene_->faces && scene_->domain.kind == Domain::Kind::box)
+      throw InputError("medium_index", scene_->faces->inside, "requires domain = slab in flux");
     job_ = made_job();
+    is_flat_sample_ = is_flat_sample(keys, *scene_);
     inputs_ = inputs_text(*scene_) + inputs_text(keys);
+  }
+
+  void note() const override {
+    if (is_flat_sample_) note_plane();
   }
 
   PlannedExperiment plan() const override {
@@ -105,14 +116,14 @@ class FluxExperiment : public Experiment {
 
   void write(ResultFile& file, const GroupedSums& sums, bool prints) const {
     const auto estimates = mc::flux_estimates(job_, sums);
+    if (prints) print_suspension(*scene_);
     if (prints) print_table(*scene_, estimates);
     if (prints) note_bins(estimates);
     if (prints && by_mc()) note_unreached(*scene_, estimates);
     write_medium(file, *scene_);
     mc::write_flux(file, *scene_, estimates);
     ResultGroup(file, mc::flux_table)
-        .check("invariants/power",
-               mc::power_balance(job_, sums, mc::direct_transmittances(*scene_)));
+        .check("invariants/power", mc::power_balance(job_, sums, mc::unscattered_shares(*scene_)));
     if (!by_mc()) mc::write_numerical(file);
   }
 
@@ -134,6 +145,7 @@ class FluxExperiment : public Experiment {
   std::int64_t angle_bins_ = 90;
   std::optional<Scene> scene_;
   mc::FluxJob job_;
+  bool is_flat_sample_ = false;
 };
 
 }  // namespace

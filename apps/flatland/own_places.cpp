@@ -12,6 +12,7 @@
 #include "core/result/result_group.h"
 #include "flatland/request/request.h"
 #include "flatland/scene/scene_datasets.h"
+#include "flatland/scene/scene_density.h"
 #include "mc/theory/allowance.h"
 #include "mc/theory/moments_datasets.h"
 #include "wave_solver/solutions/wave_solution.h"
@@ -74,20 +75,18 @@ void require_in_box(const Placement& placement, const Domain& box, const std::st
 
 /// Throws InputError if a key gives the number or density of scatterers, because the table
 /// determines it.
-void refuse_numbers(const Keys& keys, const SceneSpec& spec) {
-  if (keys.given(spec.count) || keys.given(spec.density) || keys.given(spec.mean_free_path) ||
-      keys.given(spec.optical_depth))
+void refuse_numbers(const SceneSpec& spec) {
+  if (const auto given = given_densities(spec); !given.empty())
     throw InputError("placement", *spec.placement,
-                     "determines the number of scatterers: leave out count, density, "
-                     "mean_free_path and optical_depth");
+                     "determines the number of scatterers: leave out " + join_texts(given, ", "));
 }
 
 void require_simple(const Scene& scene) {
-  if (scene.profile || scene.index || !scene.medium.has_scatterers ||
+  if (scene.profile || scene.index || scene.faces || !scene.medium.has_scatterers ||
       has_near_endpoints(scene.request) || scene.request.kind != CovarianceRequest::Kind::intensity)
     throw InputError(
-        "placement: a table of positions requires a homogeneous box, plane waves, far views and "
-        "covariance = intensity");
+        "placement: a table of positions requires a homogeneous box without medium_index, plane "
+        "waves, far views and covariance = intensity");
 }
 
 /// Returns the request of the covariances of all pairs of channels, from which the number of
@@ -215,7 +214,7 @@ OwnPlaces::OwnPlaces(const Keys& keys, SceneSpec& spec, const MethodSettings& me
                          ", or the name of a CSV file (no such file)");
   if (spec.domain != "box")
     throw InputError("domain", spec.domain, "must be box for a table of positions (placement)");
-  refuse_numbers(keys, spec);
+  refuse_numbers(spec);
   const std::optional<std::string> path = keys.read(spec.placement);
   placement_ = read_places(*path, make_scatterer(keys, spec));
   spec.placement.reset();  // for Monte Carlo, the scene describes random placements

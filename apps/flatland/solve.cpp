@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "apps/command/experiment.h"
+#include "apps/flatland/map_settings.h"
 #include "apps/flatland/own_places.h"
 #include "apps/results/wavelengths.h"
 #include "core/error.h"
@@ -25,58 +26,13 @@
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/clusters/cluster_solution.h"
 #include "wave_solver/graded/graded_fields.h"
+#include "wave_solver/layered/layer_fields.h"
 #include "wave_solver/maps/field_map.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::apps {
 
 namespace {
-
-/// Values of the keys of the field map: the field on a grid of points.
-struct MapSettings {
-  std::vector<double> map;  ///< bounds of the map: x0, x1, z0, z1; empty if there is no map
-  /// Numbers of pixels nx, nz; if empty, ten pixels per wavelength.
-  std::vector<std::int64_t> map_pixels;
-};
-
-std::size_t pixels_along(const MapSettings& settings, std::size_t side, double extent,
-                         double wavelength) {
-  constexpr double per_wavelength = 10, most = 100'000;
-  if (!settings.map_pixels.empty()) return static_cast<std::size_t>(settings.map_pixels[side]);
-  const double wanted = std::max(1.0, std::round(per_wavelength * extent / wavelength));
-  if (wanted > most)
-    throw InputError("map", extent,
-                     "is too wide for the default of ten pixels per wavelength: give map_pixels");
-  return static_cast<std::size_t>(wanted);
-}
-
-void add_map_keys(Keys& keys, MapSettings& settings) {
-  keys.group("Map");
-  keys.add("map", settings.map,
-           "Also write a map of the total field over the rectangle x0 x1 z0 z1")
-      .exactly(4, "x0 x1 z0 z1 with x0 < x1 and z0 < z1")
-      .unit("length");
-  keys.add("map_pixels", settings.map_pixels,
-           "Numbers of pixels of the map, nx nz (default: ten pixels per wavelength)")
-      .exactly(2, "two whole numbers nx nz from 1 to 100000")
-      .from(1, 100'000)
-      .only_of("a map");
-}
-
-/// Returns the grid of the field map; nullopt if no map is requested. Throws InputError.
-std::optional<wave::MapGrid> map_grid(const Keys& keys, const MapSettings& settings,
-                                      double wavelength) {
-  const auto& map = keys.read(settings.map);
-  if (map.empty()) return std::nullopt;
-  if (!(map[0] < map[1] && map[2] < map[3]) || !std::isfinite(map[1] - map[0]) ||
-      !std::isfinite(map[3] - map[2]))
-    throw InputError("map", number_text(map), "must be x0 x1 z0 z1 with x0 < x1 and z0 < z1");
-  keys.read(settings.map_pixels);
-  return wave::MapGrid{{map[0], map[2]},
-                       {map[1], map[3]},
-                       pixels_along(settings, 0, map[1] - map[0], wavelength),
-                       pixels_along(settings, 1, map[3] - map[2], wavelength)};
-}
 
 /// Values of the keys of the subcommand `solve`.
 struct SolveKeys {
@@ -99,6 +55,7 @@ void add_solve_keys(Keys& keys, SolveKeys& values) {
   add_medium_keys(keys, values.spec);
   add_profile_keys(keys, values.spec);
   add_index_keys(keys, values.spec);
+  add_faces_keys(keys, values.spec);
   keys.remove("placement");
   keys.add("placement", values.spec.placement,
            "CSV file with columns x, z [, radius [, index_re, index_im]]; or poisson, hard_disk or "
@@ -145,7 +102,10 @@ Placement placement_of_file(const Keys& keys, const SceneSpec& spec) {
   }
   Placement placement = read_placement(path, scatterer);
   const Table table = read_csv(path);
-  if (table.has("radius")) keys.disregard(spec.radius);
+  if (table.has("radius")) {
+    keys.disregard(spec.radius);
+    keys.disregard(spec.diameter);
+  }
   if (table.has("index_re")) keys.disregard(spec.index);
   return placement;
 }
@@ -262,13 +222,29 @@ std::vector<Vec2> corners_around(const Placement& placement) {
   return {low, {high.x, low.z}, {low.x, high.z}, high};
 }
 
-/// Solver for point scatterers in a medium of varying index, with the lights and views of the
-/// scene.
+/// Solver for point scatterers in a medium of varying index, with its lights and views.
 struct GradedWork {
   std::optional<wave::GradedFields> fields;
-  Lights lights;
-  std::vector<View> views;
+  CovarianceRequest request;
 };
+
+/// Returns a scene without bulk properties: an infinite layer with reflecting faces that contains
+/// these point scatterers. Throws InputError if a scatterer is not a point of the layer.
+Scene layer_around(const Faces& faces, const SceneSpec& spec, const Placement& placement) {
+  Scene scene;
+  scene.faces = faces;
+  refuse_unpolarised(scene);
+  scene.wavelength = spec.inside_wavelength();
+  scene.k = 2 * std::numbers::pi / scene.wavelength;
+  if (placement.empty() || placement.front().scatterer.is_disk())
+    throw InputError("medium_index", *spec.medium_index, "requires at least one point scatterer");
+  const auto [low, high] = bounds_of(placement, &PlacedScatterer::position);
+  scene.domain = Domain{Domain::Kind::slab, high.x - low.x, *spec.depth};
+  if (!(low.z > 0 && high.z < scene.domain.depth))
+    throw InputError("placement", *spec.placement, "must have all z between 0 and depth");
+  scene.request = intensity_request(spec.light_angles, far_views(spec.view_angles));
+  return scene;
+}
 
 class SolveExperiment : public OneShot {
  public:
@@ -284,6 +260,7 @@ class SolveExperiment : public OneShot {
     // the seed has no effect, because the placement is not random
     if (has_own_places(values_.spec)) keys.disregard(run_.seed);
     if (keys.read(values_.spec.index_field) != "homogeneous") return read_graded(keys);
+    if (keys.read(values_.spec.medium_index)) return read_layered(keys);
     keys.read(values_.tolerance);
     keys.read(values_.solver);
     if (!values_.spec.near_sources.empty())
@@ -336,14 +313,13 @@ class SolveExperiment : public OneShot {
       read_drawn_graded(keys);
     else
       read_graded_file(keys);
-    for (const View& view : graded_->views) require_outside(placement_, view.point);
+    for (const View& view : graded_->request.views) require_outside(placement_, view.point);
   }
   void read_drawn_graded(const Keys& keys) {
     const Scene scene = make_scene(keys, values_.spec);
     placement_ = drawn_placement(values_.spec, scene, seed());
     graded_->fields = wave::graded_fields(scene);
-    graded_->lights = scene.request.lights;
-    graded_->views = scene.request.views;
+    graded_->request = scene.request;
   }
   void read_graded_file(const Keys& keys) {
     const SceneSpec& spec = values_.spec;
@@ -355,8 +331,25 @@ class SolveExperiment : public OneShot {
     if (placement_.empty() || placement_.front().scatterer.is_disk())
       throw InputError("index_field", spec.index_field, "requires at least one point scatterer");
     graded_->fields.emplace(*field, k, sources, sensors, corners_around(placement_));
-    for (const Vec2 source : sources) graded_->lights.push_back(point_source(source));
-    for (const Vec2 sensor : sensors) graded_->views.push_back(near_sensor(sensor));
+    graded_->request =
+        intensity_request(column(sources, point_source), column(sensors, near_sensor));
+  }
+
+  void read_layered(const Keys& keys) {
+    const SceneSpec& spec = values_.spec;
+    if (has_own_places(spec)) {
+      keys.read(spec.wavelength);
+      keys.required(spec.depth);
+      keys.read(spec.light_angles);
+      keys.read(spec.view_angles);
+      const auto faces = make_faces(keys, spec);
+      placement_ = placement_of_file(keys, spec);
+      scene_ = layer_around(*faces, spec, placement_);
+    } else {
+      scene_ = make_scene(keys, spec);
+      placement_ = drawn_placement(spec, *scene_, seed());
+    }
+    layered_ = wave::layer_fields(*scene_);
   }
 
   void note() const override {
@@ -373,18 +366,36 @@ class SolveExperiment : public OneShot {
   Made make(ResultFile& file, bool prints) const override {
     blas_single_thread();  // called here so that missing memory is reported before the slow work
     if (graded_) return make_graded(file, prints);
+    if (layered_) return make_layered(file, prints);
     if (cluster_) return make_clusters(file, prints);
     return wavelengths_->values.empty() ? make_fields(file, prints) : make_spectrum(file, prints);
   }
 
   Made make_graded(ResultFile& file, bool prints) const {
-    write_light_axis(file, graded_->lights);
-    write_view_axis(file, graded_->views);
-    ResultGroup(file, wave::graded_table).put("near_source_field", graded_->fields->of(placement_));
-    wave::write_placement(file, placement_);
     ResultGroup(file, scene_table).attribute("wavelength", values_.spec.wavelength);
-    const std::string plan = std::to_string(placement_.size()) +
-                             " points in a graded medium, coupled by its Green function";
+    return made_points(file, graded_->request, prints, "graded medium", [&] {
+      ResultGroup(file, wave::graded_table)
+          .put("near_source_field", graded_->fields->of(placement_));
+    });
+  }
+
+  Made make_layered(ResultFile& file, bool prints) const {
+    has_own_places(values_.spec) ? write_domain(file, *scene_) : write_medium(file, *scene_);
+    return made_points(file, scene_->request, prints, "layer with reflecting faces", [&] {
+      ResultGroup(file, wave::solution_table).put("far_field", layered_->of(placement_));
+    });
+  }
+
+  /// Writes the axes, the fields and the positions of points in a medium with a Green function.
+  template <typename PutFields>
+  Made made_points(ResultFile& file, const CovarianceRequest& request, bool prints,
+                   const std::string& medium, const PutFields& put_fields) const {
+    write_light_axis(file, request.lights);
+    write_view_axis(file, request.views);
+    put_fields();
+    wave::write_placement(file, placement_);
+    const std::string plan = std::to_string(placement_.size()) + " points in a " + medium +
+                             ", coupled by its Green function";
     if (prints) std::printf("%s\n", plan.c_str());
     return Made{plan, 1};
   }
@@ -446,6 +457,7 @@ class SolveExperiment : public OneShot {
   std::optional<wave::KeptCluster> cluster_;
   std::vector<wave::ClusterPlace> places_;
   std::optional<GradedWork> graded_;
+  std::optional<wave::LayerFields> layered_;
 };
 
 }  // namespace

@@ -16,11 +16,11 @@
 #include "apps/results/tilt_search.h"
 #include "apps/results/view_power.h"
 #include "core/error.h"
+#include "core/keys/number_text.h"
 #include "core/numbers/statistics.h"
 #include "core/result/result_group.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
-#include "mc/paths/dynamics/frequency_shifts.h"
 #include "mc/paths/estimators/reflection_theory.h"
 #include "mc/slab/refinement.h"
 #include "mc/theory/allowance.h"
@@ -199,6 +199,8 @@ std::string allowance_text(const Scene& scene) {
   add(part.crossed_paths,
       "crossed paths: 2/(k mfp), k mfp =", scene.k * scene.medium.mean_free_path());
   add(part.k_shift, "refraction: 2 |k_shift|/k, k_shift/k =", scene.medium.k_shift / scene.k);
+  add(part.faces,
+      "interference of waves that the faces reflect, k depth =", scene.k * scene.domain.depth);
   add(part.guided, "guiding by the box, depth / width =", scene.domain.depth / scene.domain.width);
   add(part.correlations, "correlated positions, packing", packing);
   return text;
@@ -251,21 +253,21 @@ void write_comparison(ResultFile& file, const Comparison& comparison) {
 }
 
 /// Compares the field correlations after frequency shifts from both methods, and writes them.
-void compare_frequencies(ResultFile& file, const Scene& scene, const std::vector<double>& shifts,
+void compare_frequencies(ResultFile& file, const Scene& scene, const mc::FrequencyShifts& shifts,
                          const std::string& name, const mc::ChangeEstimates& mc,
                          const mc::ChangeEstimates& reference, double bias) {
   const Comparison comparison{name, reference.correlation, mc.correlation, bias, true};
-  print_agreement(scene, comparison, shift_names(scene.request, shifts),
+  print_agreement(scene, comparison, shift_names(scene.request, shifts.relative),
                   mc.correlation.value.size());
   mc::write_shift_axis(file, shifts);
-  mc::write_frequency_shifts(file, "mc", scene, shifts, mc);
-  mc::write_frequency_shifts(file, name, scene, shifts, reference);
+  mc::write_frequency_shifts(file, "mc", scene, shifts.relative, mc);
+  mc::write_frequency_shifts(file, name, scene, shifts.relative, reference);
   ResultGroup(file, validate_table)
       .put(scene.request.has_reference() ? "frequency_tilt_deviation" : "frequency_deviation",
            comparison.deviations());
 }
 
-using Shifts = std::vector<double>;
+using Shifts = std::vector<double>;  // relative to the frequency
 using Refer = std::function<Reference(const Scene&, const Shifts&)>;
 
 ChangeEstimation without_change(const Estimation& estimation) {
@@ -310,7 +312,7 @@ struct ValidateKeys {
   SceneSpec spec;
   RunSettings run;
   MethodSettings methods;
-  Shifts shifts;
+  std::vector<std::string> frequency_shifts;
   std::vector<double> q_depths;
 };
 
@@ -318,16 +320,17 @@ void add_keys(Keys& keys, ValidateKeys& values) {
   add_keys(keys, values.spec);
   add_places_key(keys, values.spec);
   add_q_depths_key(keys, values.q_depths);
-  add_frequency_key(keys, values.shifts);
+  add_frequency_key(keys, values.frequency_shifts);
   add_mc_keys(keys, values.methods);
   add_wave_keys(keys, values.methods);
   add_transport_keys(keys, values.methods);
   add_dimension_key(keys, values.spec);
+  add_faces_keys(keys, values.spec);
   add_run_keys(keys, values.run);
 }
 
 int compare_methods(const Subcommand& command, ValidateKeys& values) {
-  auto& [spec, run, methods, shifts, q_depths] = values;
+  auto& [spec, run, methods, shift_texts, q_depths] = values;
   const Keys& keys = command.keys();
   Session session(command.text(), keys, run, command.only_prints());
   take_q_depths(keys, q_depths, spec);
@@ -342,7 +345,8 @@ int compare_methods(const Subcommand& command, ValidateKeys& values) {
   const auto refer = slab ? by_transport(keys, methods, spec, run, reversed)
                           : by_waves(keys, methods, run, session.seed());
   if (slab) keys.read(spec.dimension);
-  keys.read(shifts);
+  const mc::FrequencyShifts all_shifts = frequency_shifts(keys, shift_texts, spec);
+  const Shifts& shifts = all_shifts.relative;
   const Scene given = make_scene(keys, spec);
   note_rounding(given);
   const Scene scene = with_dimension(rounded_scene(given, spec), spec);
@@ -361,8 +365,9 @@ int compare_methods(const Subcommand& command, ValidateKeys& values) {
       mc.plan + "\n" + reference.plan,
       {{"mc", "mc", mc.job.field.batches, stop},
        {name, name, reference.job.field.batches, chosen.stop}},
-      inputs_text(scene) + inputs_text(keys),
-      [&, &shifts = shifts, &methods = methods](ResultFile& file) {
+      inputs_text(scene) + inputs_text(keys) +
+          (all_shifts.optical ? number_text(*all_shifts.optical) + '\n' : ""),
+      [&, &methods = methods](ResultFile& file) {
         const GroupedSums &mc_sums = session.sums("mc"), &reference_sums = session.sums(name);
         const FieldMoments mc_moments = field_moments(mc.job.field, mc_sums),
                            reference_moments = field_moments(reference.job.field, reference_sums);
@@ -384,7 +389,7 @@ int compare_methods(const Subcommand& command, ValidateKeys& values) {
         write_comparison(file, comparison);
         if (shifts.empty()) return;
         compare_frequencies(
-            file, scene, shifts, name, mc::change_estimates(scene.request, mc.job, mc_sums),
+            file, scene, all_shifts, name, mc::change_estimates(scene.request, mc.job, mc_sums),
             mc::change_estimates(scene.request, reference.job, reference_sums), chosen.bias);
       });
 }

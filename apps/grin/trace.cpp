@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "apps/command/experiment.h"
+#include "core/numbers/constants.h"
 #include "core/result/result_group.h"
 #include "grin/media/geometry/vector_values.h"
 #include "grin/rays/marching/ray.h"
@@ -41,7 +42,7 @@ std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
     text << std::setprecision(3) << ", spread " << size * (path.max - path.min) << unit;
   };
   range("optical path ", 1, "");
-  if (length_unit != 1) range("time ", length_unit / grin::light_speed, " s");
+  if (length_unit != 1) range("time ", length_unit / light_speed, " s");
   return text.str();
 }
 

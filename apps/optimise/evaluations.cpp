@@ -49,8 +49,8 @@ SearchAxis between(const Keys& of, const std::string& text, const std::string& n
                    const std::vector<std::string>& parts) {
   const Key& key = varied_key(of, name, text);
   if (!key.is_number()) refuse(text);
-  const auto low = written_number(parts[0], written_kind(key.unit()));
-  const auto high = written_number(parts[1], written_kind(key.unit()));
+  const auto low = written_number(parts[0], key.number_unit());
+  const auto high = written_number(parts[1], key.number_unit());
   const bool is_log = parts.size() == 3;
   if (!low || !high || !(*low < *high) || (is_log && *low <= 0) || !std::isfinite(*high - *low))
     refuse(text);

@@ -18,10 +18,10 @@ extern const DatasetTable solution_table, spectrum_table, cluster_table, cluster
 }
 
 namespace mc {
-extern const DatasetTable mean_table, intensity_table, full_table, pairs_table, moves_table,
-    reflection_theory_table, gradient_table, delays_table, contrast_table, frequency_table,
-    numerical_table, flux_table, field_table, imaging_table, picture_table, blinking_table,
-    recovery_table, separation_table, fit_table, plan_table;
+extern const DatasetTable diffusion_table, mean_table, intensity_table, full_table, pairs_table,
+    moves_table, reflection_theory_table, gradient_table, delays_table, contrast_table,
+    frequency_table, numerical_table, flux_table, field_table, imaging_table, picture_table,
+    blinking_table, recovery_table, separation_table, fit_table, plan_table;
 }
 
 namespace grin {
@@ -100,6 +100,7 @@ std::vector<const DatasetTable*> all_tables() {
                                              &axes_table,
                                              &beams_table,
                                              &trace_table,
+                                             &mc::diffusion_table,
                                              &mc::mean_table,
                                              &mc::intensity_table,
                                              &mc::full_table,

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <iostream>
 #include <sstream>
 
 #include "core/error.h"
 #include "core/numbers/blas.h"
+#include "flatland/scene/scene_density.h"
 #include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/slab/adding/space.h"
 #include "mc/slab/slab_jobs.h"
@@ -97,6 +99,7 @@ void note_rounding(const Scene& scene) {
 void Neglected::add(const Scene& scene) {
   refracted = scene.index && !scene.index->is_around();
   phase = std::max(phase, std::abs(scene.medium.k_shift) * scene.domain.depth);
+  dimension = scene.medium.dimension;
   if (!scene.profile) return add(scene.medium, scene.k);
   for (const Material& material : scene.profile->materials()) add(material.medium, scene.k);
 }
@@ -123,9 +126,11 @@ void note(const Neglected& neglected) {
     std::cerr << "note: k x mean free path is only " << neglected.k_mean_free_path
               << "; Monte Carlo neglects terms of order 1/(k x mean free path)\n";
   if (neglected.packing > dense)
-    std::cerr << "note: disks fill " << neglected.packing
-              << " of the medium; Monte Carlo assumes independent positions, which neglects terms "
-                 "of that order (structure = hard_disks includes them)\n";
+    std::cerr << "note: " << (neglected.dimension == 3 ? "spheres" : "disks") << " fill "
+              << neglected.packing
+              << " of the medium; independent positions are assumed, which neglects terms of that "
+                 "order (structure = "
+              << (neglected.dimension == 3 ? "hard_spheres" : "hard_disks") << " includes them)\n";
   if (neglected.k_shift > much_shift && !neglected.refracted)
     std::cerr
         << "note: the scatterers shift the wavenumber by " << neglected.k_shift << " (relative), "
@@ -134,13 +139,41 @@ void note(const Neglected& neglected) {
            "the mean field in a box narrower than deep; index_field = mean_field includes both)\n";
 }
 
+bool could_be_in_space(const Scene& scene) {
+  return scene.medium.dimension == 2 && scene.domain.kind == Domain::Kind::slab &&
+         scene.scatterer.is_bulk() && !scene.profile && !scene.index &&
+         !has_near_endpoints(scene.request);
+}
+
+bool is_flat_sample(const Keys& keys, const Scene& scene) {
+  const auto given = [&](const char* name) {
+    const Key* const key = keys.find(name);
+    return key != nullptr && key->given();
+  };
+  return (given("length_unit") || given("delays")) && could_be_in_space(scene);
+}
+
+void note_plane() {
+  std::cerr << "note: the scene is in the plane (2D): its intensities, ranges and decay rates are "
+               "not those of a sample in space, for which give dimension = 3\n";
+}
+
 Scene rounded_scene(const Scene& scene, const SceneSpec& spec) {
   if (scene.placement.kind == PlacementRule::Kind::poisson || spec.count || scene.profile)
     return scene;
   SceneSpec rounded = spec;
-  rounded.density = rounded.mean_free_path = rounded.optical_depth = std::nullopt;
+  remove_densities(rounded);
   rounded.count = std::llround(scene.placement.mean_count);
   return make_scene(rounded);
+}
+
+void print_suspension(const Scene& scene) {
+  const BulkMedium& medium = scene.medium;
+  if (scene.profile || !(medium.packing_fraction > 0)) return;
+  std::printf("suspension: diameter %.6g, %s fraction %.5g, mu_s' %.5g, l* %.5g\n",
+              2 * scene.scatterer.radius, medium.dimension == 3 ? "volume" : "area",
+              medium.packing_fraction, medium.reduced_scattering(),
+              medium.transport_mean_free_path());
 }
 
 Scene with_dimension(const Scene& scene, const SceneSpec& spec) {
@@ -170,7 +203,9 @@ Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, 
 
 std::string wave_plan(const Scene& scene, double tolerance) {
   std::ostringstream plan;
-  plan << "wave: dense T-matrix solutions of " << placement_word(scene.placement.kind)
+  const char* method = scene.faces ? "Foldy-Lax solutions with the Green function of the layer"
+                                   : "dense T-matrix solutions";
+  plan << "wave: " << method << " of " << placement_word(scene.placement.kind)
        << " placements, tolerance " << tolerance << "; sample mean removed";
   return plan.str();
 }

@@ -69,7 +69,8 @@ void note_rounding(const Scene& scene);
 /// each parameter has its worst value.
 struct Neglected {
   double k_mean_free_path = std::numeric_limits<double>::infinity();
-  double packing = 0;  ///< packing fraction of disks whose correlations are neglected
+  double packing = 0;  ///< packing fraction of disks or spheres whose correlations are neglected
+  int dimension = 2;
   double k_shift = 0;  ///< relative shift of the wavenumber by the scatterers (C15)
   /// Phase, in radians, that the shift of the wavenumber adds over the depth of the medium.
   double phase = 0;
@@ -89,9 +90,21 @@ void refuse_absurd(const MethodSettings& settings, const Neglected& neglected);
 /// Prints notes on standard error about neglected effects that are large.
 void note(const Neglected& neglected);
 
+/// Whether a scene in the plane probably stands for a sample of a laboratory, and could be in
+/// space: a slab with a phase function, for which the keys give a unit of length, or delays.
+bool is_flat_sample(const Keys& keys, const Scene& scene);
+/// Whether a scene in the plane could be in space: a slab with a phase function and without layers.
+bool could_be_in_space(const Scene& scene);
+/// Prints a note on standard error that the scene is in the plane, and what differs in space.
+void note_plane();
+
 /// Returns the scene with the number of disks, rounded to an integer, instead of their density, so
 /// that Monte Carlo and exact solutions use the same number.
 Scene rounded_scene(const Scene& scene, const SceneSpec& spec);
+
+/// Prints diameter, packing fraction, reduced scattering and transport mean free path, in the unit
+/// of length of the scene. Prints nothing if the scatterers have no size or vary.
+void print_suspension(const Scene& scene);
 
 /// Returns `scene` if dimension = 2. If dimension = 3, returns the three-dimensional scene with the
 /// same keys, which must be a slab (InputError).

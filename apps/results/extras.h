@@ -1,29 +1,42 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "apps/results/estimation.h"
-#include "mc/jobs/contrast.h"
+#include "mc/jobs/delay_results.h"
+#include "mc/jobs/frequency_results.h"
 #include "mc/jobs/path_job.h"
 
 namespace flatspeckle::apps {
 
-/// Optional results besides the covariance: derivatives (gradient), and correlations over delays,
-/// frequency shifts and motion.
+/// Optional results besides the covariance: derivatives (gradient), and correlations over delays
+/// and frequency shifts.
 struct Extras {
   bool gradient = false;
-  std::vector<double> delays, frequency_shifts;
-  std::vector<double> velocity;
-  std::optional<double> diffusion, shear;
-  mc::Exposure exposure;
+  mc::DynamicsValues moving;
+  std::vector<std::string> frequency_shifts;
+  mc::LineValues source;
+  std::optional<double> length_unit;
+  // The following members are set by read_extras().
+  mc::Dynamics dynamics;
+  mc::FrequencyShifts shifts;
+  std::vector<mc::SourceLine> lines;
+
+  /// Returns the values that depend on the unit of length, for the identity of a run.
+  std::string identity() const;
 };
-void add_frequency_key(Keys& keys, std::vector<double>& shifts);
+void add_frequency_key(Keys& keys, std::vector<std::string>& shifts);
 void add_extra_keys(Keys& keys, Extras& extras);
 
-/// Marks the keys of the optional results that the method can compute as read. Throws InputError
-/// for optional results that exclude each other.
-void read_extras(const Keys& keys, const Extras& extras, const std::string& method);
+/// Reads the keys of the optional results that the method can compute. Throws InputError for
+/// optional results that exclude each other.
+void read_extras(const Keys& keys, Extras& extras, const SceneSpec& spec,
+                 const std::string& method);
+/// Returns the frequency shifts that the key gives. Reads the key.
+mc::FrequencyShifts frequency_shifts(const Keys& keys, const std::vector<std::string>& texts,
+                                     const SceneSpec& spec);
 
 /// Estimation of the covariance of fields, and of their correlation with the fields after changes
 /// such as frequency shifts (changed_fields.h).

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "mc/slab/refinement.h"
 
@@ -72,14 +73,18 @@ namespace {
 /// Prints memory-effect ranges. group: group of the result file that contains them; empty for the
 /// root.
 void print_ranges_of(const std::string& group, const std::vector<mc::WrittenRange>& ranges) {
-  for (const auto& [long_name, estimate, few_steps] : ranges) {
+  for (const auto& [long_name, estimate, few_steps, is_angle] : ranges) {
     if (few_steps)
       std::fputs(
           "note: a range is interpolated with fewer than four points below it; its error excludes "
           "the interpolation error: add points\n",
           stderr);
-    std::printf("%s%s%s: %s\n", group.c_str(), group.empty() ? "" : "/", long_name.c_str(),
+    std::printf("%s%s%s: %s", group.c_str(), group.empty() ? "" : "/", long_name.c_str(),
                 range_text(estimate.range, estimate.error).c_str());
+    if (is_angle)
+      std::printf(" rad = %.4g mrad = %.4g deg", 1e3 * estimate.range.value,
+                  180 / std::numbers::pi * estimate.range.value);
+    std::printf("\n");
   }
 }
 

@@ -102,7 +102,8 @@ void add_q_depths_key(Keys& keys, std::vector<double>& q_depths) {
 void take_q_depths(const Keys& keys, std::vector<double>& q_depths, SceneSpec& spec) {
   if (!keys.given(q_depths)) return;
   if (!spec.tilts.empty()) throw InputError("tilts, q_depths: exactly one must be given");
-  const double per_sine = 2 * pi / keys.read(spec.wavelength) * keys.required(spec.depth);
+  keys.read(spec.wavelength);
+  const double per_sine = 2 * pi / spec.outside_wavelength() * keys.required(spec.depth);
   const double light = keys.required(spec.light_angles).front();
   for (const double q_depth : keys.read(q_depths)) {
     if (std::abs(std::sin(light) + q_depth / per_sine) >= 1)
@@ -120,7 +121,7 @@ void choose_tilts(const Keys& keys, std::optional<std::int64_t>& count, SceneSpe
     throw InputError("tilt_count", *count, "requires covariance = memory_effect");
   if (!spec.tilts.empty()) throw InputError("tilts, tilt_count: exactly one must be given");
   const double light = keys.required(spec.light_angles).front(), largest = largest_sine_step(spec),
-               k = 2 * pi / spec.wavelength;
+               k = 2 * pi / spec.outside_wavelength();
   const double range =
       found_range(spec, largest, method == "transport", threads_of(keys, run), seed);
   const double end = std::min(2 * range / k, largest);

@@ -8,6 +8,7 @@
 #include "apps/sweep/point_store.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "core/keys/written_number.h"
 #include "core/result/result_group.h"
 #include "core/result/run_state_file.h"
 #include "flatland/scene/scene_datasets.h"
@@ -20,8 +21,8 @@ namespace flatspeckle::apps {
 
 const DatasetTable sweep_axes_table{
     "sweep axes",
-    {{"density", Data::scale, "", "1/length^2", "scatterers per area"},
-     {"radius", Data::scale, "", "length", "radius of the disks"},
+    {{"density", Data::scale, "", "PER_SPACE", "scatterers per area, in 3D per volume"},
+     {"radius", Data::scale, "", "length", "radius of the cylinders or spheres"},
      {"index", Data::scale, "", "1", "relative index, real part"},
      {"optical_depth", Data::scale, "", "1", "optical depth mu_t L"},
      {"g", Data::scale, "", "1", "mean cosine of scattering"},
@@ -32,8 +33,8 @@ const DatasetTable sweep_axes_table{
 
 const DatasetTable sweep_table{
     .name = "sweep",
-    .rows = {{"density", Data::real, "GRID", "1/length^2", "scatterers per area"},
-             {"radius", Data::real, "GRID", "length", "radius of the disks"},
+    .rows = {{"density", Data::real, "GRID", "PER_SPACE", "scatterers per area, in 3D per volume"},
+             {"radius", Data::real, "GRID", "length", "radius of the cylinders or spheres"},
              {"index", Data::real, "GRID", "1", "relative index, real part"},
              {"index_imaginary", Data::real, "GRID", "1", "relative index, imaginary part"},
              {"optical_depth", Data::real, "GRID", "1", "optical depth mu_t L"},
@@ -80,7 +81,8 @@ const DatasetTable sweep_table{
                    {"", "ranks", "int64", "number of processes (MPI)"},
                    {"", "target_error", "float64", "target error of each point, if any"},
                    {"single_scattering_range", "censored", "uint64", mc::censored_meaning}},
-    .roles = {{"GRID", {"density radius index optical_depth g albedo", "point"}}}};
+    .roles = {{"GRID", {"density radius index optical_depth g albedo", "point"}},
+              {"PER_SPACE", {"1/length^2", "1/length^3"}}}};
 
 namespace {
 
@@ -148,6 +150,7 @@ std::vector<double> swept_values(const CurveSweep& sweep, const std::string& key
 /// the points are written as a list, to `point`. scenes: scenes of the points to be written.
 void write_sweep_grid(ResultFile& file, const CurveSweep& sweep, const std::vector<Scene>& scenes,
                       bool as_list) {
+  file.bind("PER_SPACE", {scenes.front().medium.dimension == 3 ? "1/length^3" : "1/length^2"});
   const ResultGroup axes(file, sweep_axes_table), root(file, sweep_table);
   std::vector<Axis> grid;
   std::vector<Quantity> beside{small_parameter};
@@ -251,11 +254,10 @@ class SweepWriter {
     write_single_scattering(root, request, depth);
     std::vector<double> curves;
     for (const Scene& scene : scenes_)
-      for (double q : request.tilt_q)
-        curves.push_back(mc::diffusion_field_correlation(scene.medium, depth, q));
+      for (double q : request.tilt_q) curves.push_back(mc::diffusion_field_correlation(scene, q));
     root.put("diffusion_theory", curves);
     root.put("diffusion_range", column(scenes_, [&](const Scene& scene) {
-               return mc::diffusion_range(scene.medium, depth) * depth;
+               return mc::diffusion_range(scene) * depth;
              }));
   }
 

@@ -67,6 +67,7 @@ CurveSweep::CurveSweep()
   add_wave_keys(keys, methods);
   add_transport_keys(keys, methods);
   add_dimension_key(keys, base);
+  add_faces_keys(keys, base);
   add_run_keys(keys, run_);
   keys.remove("keep_state");  // this key applies only to a single run
   keys.group("Sweep of another subcommand");
@@ -108,10 +109,12 @@ void CurveSweep::check_points() {
   // Checks the values of the keys at all points before any scene is made.
   each_run([](std::size_t, const Keyed<SceneSpec>&) {});
   Neglected neglected;
+  bool flat_sample = false;
   each_run([&](std::size_t run, const Keyed<SceneSpec>& point) {
     const Scene scene = scene_of(point);
     keys().merge_reads(point.keys);
     check_scene(scene);
+    flat_sample = flat_sample || (method(run) != "wave" && is_flat_sample(keys(), scene));
     if (method(run) == "wave") note_rounding(scene);
     if (method(run) == "wave" || point_of(run) == 0)
       estimation(run, scene);
@@ -121,6 +124,7 @@ void CurveSweep::check_points() {
   });
   if (method_ != "wave") refuse_absurd(methods, neglected);
   note(neglected);
+  if (flat_sample) note_plane();
 }
 
 /// Calls `use` for each run, with the keys of its point. For points from a table, messages of

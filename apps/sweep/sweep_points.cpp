@@ -31,9 +31,9 @@ std::vector<std::string> texts_of(std::span<const double> values) {
 AxisValues values_of(const Key& key, const std::string& values) {
   if (key.is_number()) {
     const std::string name = "vary " + key.name();
-    const Written kind = written_kind(key.unit());
-    if (const auto range = written_range(name, values, kind)) return AxisValues(*range);
-    return texts_of(written_numbers(name, values, kind));
+    const KeyUnit unit = key.number_unit();
+    if (const auto range = written_range(name, values, unit)) return AxisValues(*range);
+    return texts_of(written_numbers(name, values, unit));
   }
   std::vector<std::string> texts;
   std::istringstream words(values);

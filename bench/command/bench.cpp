@@ -17,8 +17,7 @@ namespace flatspeckle::apps {
 
 namespace {
 
-struct BenchKeys {
-  std::string word;
+struct BenchKeys : Words {
   bool quick = false;
   long every = 1;
   RunSettings run;
@@ -217,8 +216,8 @@ void add_keys(Keys& keys, BenchKeys& values) {
 
 int run_benchmark(const Subcommand& command, BenchKeys& values) {
   const Keys& keys = command.keys();
-  if (values.word.empty()) throw InputError("bench: must be followed by error, stability or plan");
-  const Report kind = report_named(values.word);
+  if (values.words.empty()) throw InputError("bench: must be followed by error, stability or plan");
+  const Report kind = report_named(values.text());
   const Session session(command.text(), keys, values.run, command.only_prints());
   keys.read(values.quick);
   keys.read(values.every);

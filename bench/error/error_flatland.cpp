@@ -246,6 +246,15 @@ std::vector<ErrorRun> plane_runs() {
   return runs_on({flat, by_transport(flat.scene), 1e-10, 1e-8}, path_methods(flat));
 }
 
+/// The slab behind faces of index 1.33.
+std::vector<ErrorRun> faces_runs() {
+  Scene scene = make_scene(slab());
+  scene.faces = Faces{1.33, 1};
+  const FlatScene flat{"slab_hg, faces", std::make_shared<const Scene>(scene)};
+  return runs_on({flat, by_transport(flat.scene), 1e-10, 1e-8},
+                 {{.scene = flat.name, .name = "ours", .trial = our_paths(flat.scene)}});
+}
+
 std::vector<ErrorRun> space_runs() {
   const FlatScene flat{"slab_hg, in space",
                        std::make_shared<const Scene>(mc::in_space(make_scene(slab()), slab()))};
@@ -341,7 +350,8 @@ std::vector<LongRun> box_long_runs() {
 std::vector<ErrorRun> slab_error_runs() {
   std::vector<ErrorRun> runs = plane_runs();
   runs.push_back(two_term_run());
-  for (ErrorRun& run : space_runs()) runs.push_back(std::move(run));
+  for (auto* more : {faces_runs, space_runs})
+    for (ErrorRun& run : more()) runs.push_back(std::move(run));
   runs.push_back(flow_run());
   return runs;
 }

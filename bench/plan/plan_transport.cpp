@@ -31,6 +31,12 @@ std::vector<Complex> one_by_one(const Scene& slab, const CovarianceOf& covarianc
   return values;
 }
 
+/// Solves transport with faces that hardly reflect.
+std::vector<Complex> with_faces(Scene slab) {
+  slab.faces = Faces{1, 1 + 1e-12};
+  return covariance(slab);
+}
+
 std::vector<Complex> with_derivatives(const Scene& slab) {
   auto values = mc::slab_derivatives(slab, false, {tolerance}, mc::BulkParameter::mu_t).value;
   values.resize(slab.request.entries.size());
@@ -64,6 +70,7 @@ std::vector<PlanCase> transport_plan_cases() {
               }),
           // a tiny frequency shift makes all numbers complex
           on_slab("a second frequency", [=] { return covariance(slab, {.shift = 1e-14}); }),
+          on_slab("faces", [=] { return with_faces(slab); }),
           on_slab("derivatives", [=] { return with_derivatives(slab); })};
 }
 

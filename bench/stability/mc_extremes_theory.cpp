@@ -42,7 +42,7 @@ Finding diffusion_row(double optical_depth, double g, double albedo, double q) {
     return sinh(rate * z0) * sinh(rate * (transport + z0)) / (rate * sinh(rate * deep));
   };
   const Wide exact = f(Wide(q) * q + kappa2) / f(kappa2);
-  const double found = diffusion_field_correlation(medium, 1, q);
+  const double found = diffusion_field_correlation({medium, 1}, q);
   return {static_cast<double>(abs(found / exact - 1)), 1e-9};
 }
 

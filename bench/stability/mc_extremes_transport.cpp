@@ -53,6 +53,30 @@ Finding by_paths(const Bulk& bulk, int dimension) {
                    mc::slab_covariance(scene, false, {tolerance}).value, 0.1, tolerance);
 }
 
+/// Returns a slab behind faces, lit and seen at an angle outside.
+Scene faced(const Bulk& bulk, double index, double incidence, int dimension) {
+  Scene scene = viewed_slab(bulk, 0, dimension);
+  scene.faces = Faces{index, 1};
+  scene.request = intensity_request({incidence}, {far_view(incidence)});
+  return scene;
+}
+
+/// Checks conservation of power for a slab without absorption behind faces.
+Finding lossless_faces(const Bulk& bulk, double index, double incidence, int dimension) {
+  const Scene scene = faced(bulk, index, incidence, dimension);
+  const auto shares = mc::slab_flux(scene, 0, {1e-6}).value;
+  const Complex left = shares[mc::reflected] + shares[mc::transmitted];
+  return {std::abs(left + mc::unscattered_shares(scene).front() - 1.0), 1e-9};
+}
+
+/// Compares the intensity behind faces with Monte Carlo, in standard errors.
+Finding faces_by_paths(const Bulk& bulk, double index, double incidence, int dimension) {
+  const Scene scene = faced(bulk, index, incidence, dimension);
+  const double tolerance = dimension == 3 ? 1e-3 : 1e-4;
+  return in_errors(covariance(scene, ReversedPaths::no, 20000),
+                   mc::slab_covariance(scene, false, {tolerance}).value, 0.1, tolerance);
+}
+
 /// Checks conservation of power for spheres without absorption.
 Finding lossless_spheres(double optical_depth, double radius) {
   SceneSpec spec;
@@ -125,6 +149,24 @@ Finding diffusion_again(double optical_depth, const std::vector<double>& delays)
   return misfit(fit, Eigen::VectorXd{{1.0}}, fit.errors, 0.2);
 }
 
+void add_faces(ExtremeRows& rows) {
+  for (const double index : {0.5, 1.0001, 1.33, 4.0})
+    for (const double incidence : {0.0, 1.56}) {
+      if (std::sin(incidence) > index) continue;  // totally reflected
+      for (const int dimension : {2, 3})
+        for (const Bulk& bulk : {Bulk{1e-3, 0}, Bulk{10, 0.9}, Bulk{1e3, 0}}) {
+          const std::string name =
+              "faces, index " + short_number(index) + ", light at " + short_number(incidence) +
+              ", OD " + short_number(bulk.optical_depth) + (dimension == 3 ? ", in space" : "");
+          rows.add("transport, " + name, "all shares of power = 1", lossless_faces, bulk, index,
+                   incidence, dimension);
+          if (bulk.optical_depth == 10)
+            rows.add("paths, " + name, "paths, in errors", faces_by_paths, bulk, index, incidence,
+                     dimension);
+        }
+    }
+}
+
 void add_fits(ExtremeRows& rows) {
   const auto add = [&](const std::string& name, const Truth& truth,
                        const std::vector<std::string>& free) {
@@ -181,6 +223,7 @@ void mc_transport_extremes(ExtremeRows& rows) {
       rows.add("transport, two frequencies, OD " + short_number(bulk.optical_depth) + ", albedo " +
                    short_number(bulk.albedo) + (dimension == 3 ? ", in space" : ""),
                "shift 1e-18 = none", same_frequencies, bulk, dimension);
+  add_faces(rows);
   add_fits(rows);
 }
 

@@ -74,6 +74,18 @@ inline Dual<Matrix> identity_like(const Dual<Matrix>& a) {
   return {identity_like(a.value), Matrix::Zero(a.value.rows(), a.value.cols())};
 }
 
+/// Returns the rows of one matrix followed by those of another.
+inline Rows concatenated(const Rows& upper, const Rows& lower) {
+  Rows both(upper.rows() + lower.rows(), upper.cols());
+  both.topRows(upper.rows()) = upper;
+  both.bottomRows(lower.rows()) = lower;
+  return both;
+}
+
+inline Dual<Rows> concatenated(const Dual<Rows>& upper, const Dual<Rows>& lower) {
+  return {concatenated(upper.value, lower.value), concatenated(upper.derivative, lower.derivative)};
+}
+
 template <typename A, typename B>
 Dual<A> product(const Dual<A>& a, const Dual<B>& b) {
   return {product(a.value, b.value),

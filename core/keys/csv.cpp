@@ -29,7 +29,7 @@ class NumberReader {
   double read(const TableLine& line, const std::string& name, const std::string& field,
               bool angle) {
     const std::string number = with_point(line, field);
-    const auto value = angle ? written_number(number, Written::angle) : read_number(number);
+    const auto value = angle ? written_number(number, KeyUnit("rad")) : read_number(number);
     if (!value || !std::isfinite(*value))
       text_.fail(line, name + " = \"" + field + "\": must be a finite number");
     return *value;

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <sstream>
 #include <unistd.h>
 
@@ -48,12 +49,14 @@ std::vector<std::string> texts_of(const std::vector<Value>& values) {
 /// Parses texts and stores the values in the variable of a key, for each type of variable.
 class Setter {
  public:
-  Setter(const std::string& name, Written kind, const std::vector<std::string>& texts)
-      : name_(name), kind_(kind), texts_(texts) {}
+  /// metres: the scene's unit of length in metres, if known.
+  Setter(const Key& key, const std::optional<double>& metres, const std::vector<std::string>& texts)
+      : key_(key), metres_(metres), texts_(texts) {}
 
   template <typename Value>
   void operator()(Value* member) const {
-    if (texts_.size() != 1) throw InputError(name_ + ": must have one value, and be given once");
+    if (texts_.size() != 1)
+      throw InputError(key_.name() + ": must have one value, and be given once");
     read(texts_.front(), *member);
   }
   template <typename Value>
@@ -69,34 +72,41 @@ class Setter {
   }
   void operator()(std::vector<double>* member) const {
     member->clear();
-    for (const std::string& text : texts_)
-      for (const double value : written_numbers(name_, text, kind_)) member->push_back(value);
+    for (const std::string& text : texts_) {
+      const std::size_t before = member->size();
+      const auto unit = [&](std::size_t number) {
+        return key_.number_unit(metres_, before + number);
+      };
+      for (const double value : written_numbers(key_.name(), text, unit)) member->push_back(value);
+    }
   }
 
  private:
   void read(const std::string& text, bool& value) const {
-    if (text != "true" && text != "false") throw InputError(name_, text, "must be true or false");
+    if (text != "true" && text != "false")
+      throw InputError(key_.name(), text, "must be true or false");
     value = text == "true";
   }
   void read(const std::string& text, std::int64_t& value) const {
     const auto number = read_whole_number(text);
-    if (!number) throw InputError(name_, text, "must be a whole number of at most 18 digits");
+    if (!number) throw InputError(key_.name(), text, "must be a whole number of at most 18 digits");
     value = *number;
   }
   void read(const std::string& text, double& value) const {
-    const auto number = written_number(text, kind_);
-    if (!number) throw InputError(name_, text, must_be_number(kind_));
+    const KeyUnit unit = key_.number_unit(metres_);
+    const auto number = written_number(text, unit);
+    if (!number) throw InputError(key_.name(), text, must_be_number(text, unit));
     value = *number;
   }
   void read(const std::string& text, std::string& value) const {
     const auto is_odd = [](unsigned char c) { return std::iscntrl(c) || c == '"' || c == '\\'; };
     if (std::any_of(text.begin(), text.end(), is_odd))
-      throw InputError(name_, text, "must not contain control characters, \" or \\");
+      throw InputError(key_.name(), text, "must not contain control characters, \" or \\");
     value = text;
   }
 
-  const std::string& name_;
-  Written kind_;
+  const Key& key_;
+  const std::optional<double>& metres_;
   const std::vector<std::string>& texts_;
 };
 
@@ -187,10 +197,20 @@ std::string Key::line() const {
   return name_ + " = " + (is_list() ? '[' + all + ']' : all);
 }
 
-void Key::set(const std::vector<std::string>& given) const {
+Key& Key::units(const std::string& of_item) {
+  std::istringstream words(of_item);
+  units_.assign(std::istream_iterator<std::string>(words), {});
+  return *this;
+}
+
+KeyUnit Key::number_unit(const std::optional<double>& metres, std::size_t position) const {
+  return KeyUnit(units_.empty() ? unit_ : units_[position % units_.size()], metres);
+}
+
+void Key::set(const std::vector<std::string>& given, const std::optional<double>& metres) const {
   std::vector<std::string> texts = given;
   if (!former_.first.empty()) std::ranges::replace(texts, former_.first, former_.second);
-  std::visit(Setter(name_, written_kind(unit_), texts), member_);
+  std::visit(Setter(*this, metres, texts), member_);
 }
 
 void Key::check() const {

@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#include "core/keys/unit.h"
+
 namespace flatspeckle {
 
 /// Pointer to the variable that a key sets: a number, a text, a list of numbers or texts, or a
@@ -58,6 +60,10 @@ class Key {
   }
   // The following functions set further properties of the key.
   Key& unit(std::string text) { return with(unit_, std::move(text)); }
+  /// Sets the units of the numbers of an item of each_of() or exactly(), in their order and
+  /// separated by blanks, if they differ; 1 is the unit of a plain number: "length length length
+  /// 1".
+  Key& units(const std::string& of_item);
   /// States in which cases the key applies, if not in all: "soft, hard, tm and te".
   Key& only_of(std::string what) { return with(only_of_, std::move(what)); }
   /// Marks a key that sets run time or computing resources, such as threads. It is not part of the
@@ -103,9 +109,14 @@ class Key {
   /// Returns the line "key = value" of a scene file.
   std::string line() const;
 
-  /// Parses the texts and sets the variable. set() and check() throw InputError for values that are
-  /// not accepted; the message names the key, the value and the accepted values.
-  void set(const std::vector<std::string>& texts) const;
+  /// Returns the unit of the numbers of the key, for written_number(). metres: the scene's unit of
+  /// length in metres, if known. position: that of the number in a list.
+  KeyUnit number_unit(const std::optional<double>& metres = {}, std::size_t position = 0) const;
+
+  /// Parses the texts and sets the variable. metres: as above. set() and check() throw InputError
+  /// for values that are not accepted; the message names the key, the value and the accepted
+  /// values.
+  void set(const std::vector<std::string>& texts, const std::optional<double>& metres = {}) const;
   void check() const;
 
  private:
@@ -132,7 +143,7 @@ class Key {
   /// Former spelling of an accepted word, and the word that replaces it.
   std::pair<std::string, std::string> former_;
   KeyMember member_;
-  std::vector<std::string> default_, words_;
+  std::vector<std::string> default_, words_, units_;
   Range range_;
   bool effort_ = false, in_files_ = true, swept_ = false, file_ = false;
   std::size_t each_ = 0, exactly_ = 0;

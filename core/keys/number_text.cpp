@@ -6,8 +6,6 @@
 #include <cstdlib>
 #include <type_traits>
 
-#include "core/error.h"
-
 namespace flatspeckle {
 
 namespace {
@@ -34,29 +32,6 @@ std::string without_underscores(const std::string& text) {
     if (!divides) all += text[i];
   }
   return all;
-}
-
-/// Parses a number that is written with digits; does not accept inf and nan.
-std::optional<double> read_digits(std::string_view text) {
-  const std::string digits(trimmed(text));
-  if (digits.find_first_not_of("+-.eE0123456789") != digits.npos) return std::nullopt;
-  return read_number(digits);
-}
-
-std::optional<Complex> read_complex(std::string_view text) {
-  text = trimmed(text);
-  if (!text.ends_with('i') && !text.ends_with('j')) return read_digits(text);
-  text.remove_suffix(1);
-  std::size_t sign = text.find_last_of("+-");
-  if (sign != 0 && sign != text.npos &&
-      std::tolower(text[sign - 1]) == 'e')  // this sign belongs to an exponent
-    sign = text.find_last_of("+-", sign - 1);
-  if (sign == text.npos) return std::nullopt;
-  const auto size = trimmed(text.substr(sign + 1));
-  const auto real = read_digits(text.substr(0, sign));
-  const auto imaginary = size.empty() ? 1 : read_digits(size);
-  if (!real || !imaginary) return std::nullopt;
-  return Complex(*real, text[sign] == '-' ? -*imaginary : *imaginary);
 }
 
 }  // namespace
@@ -105,13 +80,6 @@ std::optional<std::int64_t> read_whole_number(const std::string& text) {
   const auto number = read_number(text);
   if (!number || std::abs(*number) > most || *number != std::floor(*number)) return std::nullopt;
   return static_cast<std::int64_t>(*number);
-}
-
-Complex parse_complex(const std::string& key, const std::string& text) {
-  const auto value = read_complex(text);
-  if (!value) throw InputError(key, '"' + text + '"', "must be a number such as 1.5 or 1.5+0.1i");
-  if (!std::isfinite(std::abs(*value))) throw InputError(key, text, "must be finite");
-  return *value;
 }
 
 }  // namespace flatspeckle

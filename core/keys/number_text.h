@@ -31,8 +31,5 @@ std::optional<double> read_number(const std::string& text);
 /// Parses a text that is an integer of up to 18 digits; "1e6" is also accepted. Returns nullopt for
 /// any other text.
 std::optional<std::int64_t> read_whole_number(const std::string& text);
-/// Parses a complex number such as "1.5", "1.5+0.1i" or "0.1 + 5i". Throws InputError for any other
-/// text.
-Complex parse_complex(const std::string& key, const std::string& text);
 
 }  // namespace flatspeckle

@@ -37,7 +37,8 @@ bool is_finite(const Attribute& value) {
 }
 
 bool is_role(const std::string& word) {
-  return !word.empty() && std::isupper(static_cast<unsigned char>(word.front())) != 0;
+  const auto is_capital = [](unsigned char letter) { return std::isupper(letter) != 0; };
+  return word.size() > 1 && is_capital(word[0]) && is_capital(word[1]);  // "Hz" is a unit
 }
 
 }  // namespace

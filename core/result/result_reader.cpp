@@ -50,6 +50,46 @@ class Reader {
     return values;
   }
 
+  std::vector<std::string> texts() const {
+    const Hdf5Handle set = dataset();
+    const Hdf5Handle stored = call_.handle(H5Dget_type(set.get()), H5Tclose);
+    if (H5Tis_variable_str(stored.get()) <= 0) refuse_type();
+    const Hdf5Handle type = hdf5_type<std::string>();
+    std::vector<char*> read(size(set.get(), H5Tget_size(stored.get())));
+    call_.check(H5Dread(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, read.data()));
+    std::vector<std::string> texts;
+    for (char* const text : read) {
+      texts.emplace_back(text == nullptr ? "" : text);
+      H5free_memory(text);
+    }
+    return texts;
+  }
+
+  StoredValues stored_values() const {
+    const Hdf5Handle set = dataset();
+    const Hdf5Handle stored = call_.handle(H5Dget_type(set.get()), H5Tclose);
+    const H5T_class_t type = H5Tget_class(stored.get());
+    if (type == H5T_COMPOUND) return StoredValues::complex;
+    return type == H5T_STRING ? StoredValues::text : StoredValues::real;
+  }
+
+  /// Returns the path of the dimension scale of each axis; empty if an axis has none.
+  std::vector<std::string> axes() const {
+    const Hdf5Handle set = dataset();
+    std::vector<std::string> axes(shape(set.get()).size());
+    const auto note = [](hid_t, unsigned, hid_t scale, void* axis) -> herr_t {
+      constexpr std::size_t longest = 1024;
+      char path[longest] = "";
+      if (H5Iget_name(scale, path, longest) < 0) return -1;
+      *static_cast<std::string*>(axis) = path[0] == '/' ? path + 1 : path;
+      return 1;  // ends the iteration: each axis has one scale
+    };
+    for (unsigned axis = 0; axis < axes.size(); ++axis)
+      if (H5DSget_num_scales(set.get(), axis) > 0)
+        call_.check(H5DSiterate_scales(set.get(), axis, nullptr, note, &axes[axis]));
+    return axes;
+  }
+
   Hdf5Handle attribute(const std::string& attribute) const {
     if (!exists(file_, name_)) throw InputError(path_ + ": has no " + name_);
     if (H5Aexists_by_name(file_, name_.c_str(), attribute.c_str(), H5P_DEFAULT) <= 0)
@@ -128,7 +168,10 @@ class Reader {
     if constexpr (std::is_same_v<Number, Complex>)
       right = type == H5T_COMPOUND && H5Tget_member_index(stored, "r") >= 0 &&
               H5Tget_member_index(stored, "i") >= 0;
-    if (!right) throw InputError(path_ + ": " + name_ + " is of another type than expected");
+    if (!right) refuse_type();
+  }
+  [[noreturn]] void refuse_type() const {
+    throw InputError(path_ + ": " + name_ + " is of another type than expected");
   }
 
   std::string name_, path_;
@@ -176,13 +219,41 @@ std::vector<std::size_t> ResultReader::shape(const std::string& name) const {
   return {extents.begin(), extents.end()};
 }
 
-template <typename Number>
-std::vector<Number> ResultReader::dataset(const std::string& name) const {
-  return Reader(*file_, path_.string(), name).values<Number>();
+std::vector<std::string> ResultReader::datasets() const {
+  std::vector<std::string> found;
+  const std::function<void(const std::string&)> search = [&](const std::string& group) {
+    for (const std::string& member : members(group.empty() ? "/" : group)) {
+      const std::string path = group.empty() ? member : group + '/' + member;
+      const Hdf5Handle object(H5Oopen(file_->get(), path.c_str(), H5P_DEFAULT), H5Oclose);
+      const H5I_type_t type = H5Iget_type(object.get());
+      if (type == H5I_DATASET) found.push_back(path);
+      if (type == H5I_GROUP) search(path);
+    }
+  };
+  search("");
+  return found;
+}
+
+StoredValues ResultReader::stored_values(const std::string& name) const {
+  return Reader(*file_, path_.string(), name).stored_values();
+}
+
+std::vector<std::string> ResultReader::axes(const std::string& name) const {
+  return Reader(*file_, path_.string(), name).axes();
+}
+
+template <typename Value>
+std::vector<Value> ResultReader::dataset(const std::string& name) const {
+  const Reader reader(*file_, path_.string(), name);
+  if constexpr (std::is_same_v<Value, std::string>)
+    return reader.texts();
+  else
+    return reader.values<Value>();
 }
 
 template std::vector<double> ResultReader::dataset(const std::string&) const;
 template std::vector<Complex> ResultReader::dataset(const std::string&) const;
+template std::vector<std::string> ResultReader::dataset(const std::string&) const;
 
 template <typename Value>
 Value ResultReader::attribute(const std::string& object, const std::string& name) const {

@@ -11,6 +11,9 @@ namespace flatspeckle {
 
 class Hdf5Handle;
 
+/// Type of the values of a dataset; whole numbers count as real.
+enum class StoredValues { real, complex, text };
+
 /// Reader of a result file. Throws InputError, which names the file, if the requested content is
 /// missing, of another type, truncated or damaged.
 class ResultReader {
@@ -30,12 +33,19 @@ class ResultReader {
   /// if the group does not exist.
   std::vector<std::string> members(const std::string& group) const;
 
+  /// Returns the paths of all datasets, group by group in alphabetical order.
+  std::vector<std::string> datasets() const;
+  StoredValues stored_values(const std::string& name) const;
+  /// Returns the path of the dimension scale of each axis of a dataset; empty if an axis has none.
+  std::vector<std::string> axes(const std::string& name) const;
+
   /// Returns the length of each axis of a dataset; an empty list for a scalar.
   std::vector<std::size_t> shape(const std::string& name) const;
 
-  /// Returns the values of a dataset in row-major order. Number: double or Complex.
-  template <typename Number>
-  std::vector<Number> dataset(const std::string& name) const;
+  /// Returns the values of a dataset in row-major order. Value: double, Complex or
+  /// std::string.
+  template <typename Value>
+  std::vector<Value> dataset(const std::string& name) const;
 
   /// Returns the value of an attribute. Value: bool, std::uint64_t, double, std::vector<double> or
   /// std::string.

@@ -74,7 +74,8 @@ const DatasetTable layers_table{
      {"layer_g", Data::real, "layer", "1", "mean cosine of scattering"},
      {"layer_albedo", Data::real, "layer", "1", "mu_s/mu_t"},
      {"layer_k_shift", Data::real, "layer", "1/length",
-      "real part of the effective wavenumber, minus k"}}};
+      "real part of the effective wavenumber, minus k"},
+     {"layer_index", Data::real, "layer", "1", "refractive index around the scatterers"}}};
 
 void Layers::write(ResultFile& file) const {
   const ResultGroup root(file, layers_table);
@@ -92,6 +93,7 @@ void Layers::write(ResultFile& file) const {
   put("layer_g", &BulkMedium::g);
   put("layer_albedo", &BulkMedium::albedo);
   put("layer_k_shift", &BulkMedium::k_shift);
+  root.put("layer_index", column(materials(), &Material::index));
 }
 
 }  // namespace flatspeckle

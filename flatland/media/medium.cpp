@@ -10,8 +10,10 @@
 
 #include "core/contract.h"
 #include "core/error.h"
+#include "core/keys/number_text.h"
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
+#include "flatland/media/hard_sphere_fluid.h"
 #include "flatland/media/structure_factor.h"
 
 namespace flatspeckle {
@@ -30,19 +32,23 @@ void check_same(const std::string& path, const std::string& what, double measure
 }
 
 /// Returns sqrt(S) at the momentum transfer of a scattering angle.
-double structure_amplitude(const StructureTable& structure, double k, double theta) {
+double structure_amplitude(const StructureFactor& structure, double k, double theta) {
   return std::sqrt(structure(2 * k * std::abs(std::sin(theta / 2))));
 }
 
 }  // namespace
 
-StructureTable::StructureTable(std::string origin, std::vector<double> q,
-                               std::vector<double> values)
+StructureFactor::StructureFactor(std::string origin, std::vector<double> q,
+                                 std::vector<double> values)
     : origin_(std::move(origin)), q_(std::move(q)), values_(std::move(values)) {
   FS_EXPECT(q_.size() == values_.size() && std::is_sorted(q_.begin(), q_.end()));
 }
 
-double StructureTable::operator()(double q) const {
+StructureFactor::StructureFactor(std::string origin, std::function<double(double)> formula)
+    : origin_(std::move(origin)), formula_(std::move(formula)) {}
+
+double StructureFactor::operator()(double q) const {
+  if (formula_) return formula_(q);
   if (independent() || q > q_.back()) return 1;
   const auto above = std::upper_bound(q_.begin(), q_.end(), q);
   if (above == q_.begin()) return values_.front();
@@ -52,7 +58,8 @@ double StructureTable::operator()(double q) const {
   return (1 - t) * values_[i - 1] + t * values_[i];
 }
 
-std::string StructureTable::text() const {
+std::string StructureFactor::text() const {
+  if (formula_) return origin_;
   std::ostringstream text;
   text.precision(std::numeric_limits<double>::max_digits10);
   for (std::size_t i = 0; i < q_.size(); ++i) text << q_[i] << ',' << values_[i] << '\n';
@@ -63,7 +70,7 @@ double DiskSpacing::packing() const {
   return density * std::numbers::pi * contact * contact / 4;
 }
 
-StructureTable hard_disk_structure(const DiskSpacing& disks, double q_max) {
+StructureFactor hard_disk_structure(const DiskSpacing& disks, double q_max) {
   const double packing = disks.packing();
   if (packing > 0.7)
     throw InputError("structure", "hard_disks",
@@ -85,9 +92,25 @@ StructureTable hard_disk_structure(const DiskSpacing& disks, double q_max) {
   return {origin.str(), std::move(q), std::move(values)};
 }
 
+StructureFactor hard_sphere_structure(double density, double diameter) {
+  constexpr double most = HardSphereFluid::most_packing, rounding = 1e-12;
+  double packing = density * std::numbers::pi * std::pow(diameter, 3) / 6;
+  if (packing > (1 + rounding) * most)
+    throw InputError(
+        "structure", "hard_spheres",
+        "requires a volume fraction of at most 0.49, because the fluid of hard spheres "
+        "freezes at 0.494; the spheres fill " +
+            number_text(packing));
+  packing = std::min(packing, most);
+  return {
+      "of hard spheres of diameter " + number_text(diameter) + ", packing fraction " +
+          number_text(packing),
+      [fluid = HardSphereFluid(packing, diameter)](double q) { return fluid.structure_factor(q); }};
+}
+
 namespace {
 
-StructureTable read_table(const std::string& path, const DiskSpacing& disks) {
+StructureFactor read_table(const std::string& path, const DiskSpacing& disks) {
   const ResultReader file(path);
   for (const char* name : {"q", "structure_factor"})
     if (!file.has(name))
@@ -117,7 +140,7 @@ StructureTable read_table(const std::string& path, const DiskSpacing& disks) {
 
 }  // namespace
 
-StructureTable read_structure(const std::string& path, const DiskSpacing& disks) {
+StructureFactor read_structure(const std::string& path, const DiskSpacing& disks) {
   if (std::error_code none; !std::filesystem::exists(path, none))
     throw InputError("structure", path,
                      "must be none, hard_disks or a file that place --structure wrote");
@@ -167,7 +190,7 @@ BulkMedium bulk_medium(const Scatterer& bulk, const BulkPhase& phase, double mu_
   return medium;
 }
 
-BulkMedium correlated_medium(BulkMedium medium, double k, StructureTable structure) {
+BulkMedium correlated_medium(BulkMedium medium, double k, StructureFactor structure) {
   medium.structure = std::move(structure);
   // If S is smooth, the trapezoidal rule converges spectrally. If S is tabulated, this number of
   // intervals is fine enough.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,24 +11,28 @@
 
 namespace flatspeckle {
 
-/// Structure factor S(q) of the scatterers' positions (C16), tabulated against q in inverse
-/// lengths. S is linear between nodes, constant below the first node, and 1 above the last. A table
-/// without nodes represents independent positions, S = 1.
-class StructureTable {
+/// Structure factor S(q) of the scatterers' positions (C16), q in inverse lengths. By default
+/// positions are independent, S = 1.
+class StructureFactor {
  public:
-  StructureTable() = default;
+  StructureFactor() = default;
+  /// Makes a table. S is linear between nodes, constant below the first node, and 1 above the last.
   /// q must be increasing and no value may be negative. origin: description of the source of the
   /// table, printed in the plan of a run.
-  StructureTable(std::string origin, std::vector<double> q, std::vector<double> values);
+  StructureFactor(std::string origin, std::vector<double> q, std::vector<double> values);
+  /// Makes a structure factor with a closed form, which `origin` must identify completely.
+  StructureFactor(std::string origin, std::function<double(double q)> formula);
 
-  bool independent() const { return q_.empty(); }
+  bool independent() const { return q_.empty() && !formula_; }
   const std::string& origin() const { return origin_; }
   double operator()(double q) const;
-  /// Returns all nodes in full precision. Two tables have the same text only if they are equal.
+  /// Returns all nodes in full precision, or the origin of a closed form. Two structure factors
+  /// have the same text only if they are equal.
   std::string text() const;
 
  private:
   std::string origin_;
+  std::function<double(double)> formula_;
   std::vector<double> q_, values_;
 };
 
@@ -43,12 +48,16 @@ struct DiskSpacing {
 
 /// Returns the structure factor of the equilibrium fluid of hard disks (HardDiskFluid), for
 /// momentum transfers up to q_max. Throws InputError above packing 0.7.
-StructureTable hard_disk_structure(const DiskSpacing& disks, double q_max);
+StructureFactor hard_disk_structure(const DiskSpacing& disks, double q_max);
+
+/// Returns the structure factor of the equilibrium fluid of hard spheres (HardSphereFluid).
+/// density: number of spheres per volume. Throws InputError above HardSphereFluid::most_packing.
+StructureFactor hard_sphere_structure(double density, double diameter);
 
 /// Reads structure_factor against q from a file that `place --structure` wrote. Throws InputError
 /// if it was measured on disks of another density or contact distance (differences up to 2 % are
 /// accepted, because the number of disks is an integer), or if a value is not positive.
-StructureTable read_structure(const std::string& path, const DiskSpacing& disks);
+StructureFactor read_structure(const std::string& path, const DiskSpacing& disks);
 
 /// Bulk optical properties (C5) in the scene's unit of length. For correlated positions (C16) they
 /// are the properties of a medium in which each scatterer has the amplitude A sqrt(S).
@@ -57,19 +66,21 @@ struct BulkMedium {
   double mu_s = 0, mu_t = 0;
   double g = 0, albedo = 1;
   double k_shift = 0;  ///< Re k_eff - k (C15); 0 without scatterers
-  /// False for a medium given by a phase function. In that case the members from `density` to
-  /// `structure` are not set.
+  /// Whether the medium consists of scatterers in the plane. Otherwise it has a phase function, and
+  /// of the members from `density` to `structure` at most those of spheres are set, which are all
+  /// but the T-matrix.
   bool has_scatterers = false;
-  double density = 0;  ///< number of scatterers per area
-  double packing_fraction = 0;
-  CrossSections cross_sections;           ///< cross-sections of one isolated scatterer
+  double density = 0;            ///< number of scatterers per area, in space per volume
+  double packing_fraction = 0;   ///< fraction of the area, in space of the volume, that they fill
+  CrossSections cross_sections;  ///< cross-sections of one isolated scatterer
   std::vector<ExtendedComplex> t_matrix;  ///< T_n of one isolated scatterer
-  StructureTable structure;
+  StructureFactor structure;
   BulkPhase phase;         ///< phase function; empty except for Scatterer::Kind::other_bulk
   SpacePhase space_phase;  ///< phase function in three dimensions; empty in two
 
   double mean_free_path() const { return 1 / mu_t; }
   double transport_mean_free_path() const { return 1 / (mu_t - mu_s * g); }
+  double reduced_scattering() const { return mu_s * (1 - g); }
 };
 
 /// Whether the coefficients are finite and scattering does not exceed extinction, up to rounding.
@@ -86,7 +97,7 @@ BulkMedium bulk_medium(const Scatterer& bulk, const BulkPhase& phase, double mu_
 /// Returns the medium of the same scatterers at positions with the given structure factor (C16).
 /// Then mu_s = rho int |A|^2 S, g and albedo follow from |A|^2 S, and the absorption remains rho
 /// (sigma_e - sigma_s).
-BulkMedium correlated_medium(BulkMedium independent, double k, StructureTable structure);
+BulkMedium correlated_medium(BulkMedium independent, double k, StructureFactor structure);
 
 /// Returns the mean of media, weighted by the fraction of the domain that each fills.
 BulkMedium mean_medium(const std::vector<std::pair<const BulkMedium*, double>>& shares);

@@ -23,6 +23,7 @@ struct Material {
   Scatterer scatterer;
   BulkMedium medium;
   MaterialMotion motion{};
+  double index = 1;  ///< refractive index around the scatterers
 };
 
 /// A medium that varies within a domain. It defines the material at each point, and the density

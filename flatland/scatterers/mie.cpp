@@ -5,7 +5,7 @@ namespace flatspeckle {
 namespace {
 
 void read_mie(const Keys& keys, const ScattererValues& values, Scatterer& made) {
-  keys.required(values.radius);
+  require_radius(values);
   read_radius_and_index(keys, values, made);
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/contract.h"
 #include "core/keys/number_text.h"
+#include "core/keys/written_number.h"
 
 namespace flatspeckle {
 
@@ -41,16 +42,35 @@ Scatterer make_scatterer(const Keys& keys, const ScattererValues& values) {
 }
 
 void read_radius(const Keys& keys, const ScattererValues& values, Scatterer& made) {
-  made.radius = keys.read(values.radius).value_or(0);
+  const auto& radius = keys.read(values.radius);
+  const auto& diameter = keys.read(values.diameter);
+  if (radius && diameter)
+    throw InputError(keys.name(values.diameter), *diameter,
+                     "cannot be combined with radius; give one of them");
+  made.radius = radius.value_or(diameter.value_or(0) / 2);
+}
+
+void require_radius(const ScattererValues& values) {
+  if (!values.radius && !values.diameter)
+    throw InputError("radius is not given: give radius or diameter");
 }
 
 void read_radius_and_index(const Keys& keys, const ScattererValues& values, Scatterer& made) {
   read_radius(keys, values, made);
-  const auto& index = keys.read(values.index);
-  if (!index) return;
-  made.index = parse_complex("index", *index);
+  const auto& relative = keys.read(values.index);
+  const auto& absolute = keys.read(values.particle_index);
+  if (!relative && !absolute) return;
+  const std::string name = absolute ? "particle_index" : "index",
+                    text = absolute ? *absolute : *relative;
+  if (relative && absolute)
+    throw InputError(name, text, "cannot be combined with index, the relative index; give one");
+  if (absolute && !values.medium_index)
+    throw InputError(name, text,
+                     "requires medium_index; without it give index, the index relative to the "
+                     "medium");
+  made.index = parse_complex(name, text) / (absolute ? *values.medium_index : 1.0);
   if (const auto fault = index_fault(made.index); !fault.empty())
-    throw InputError("index", *index, fault);
+    throw InputError(name, text, fault);
 }
 
 void read_albedo(const Keys& keys, const ScattererValues& values, Scatterer& made) {

@@ -13,8 +13,10 @@ namespace flatspeckle {
 struct ScattererValues {
   double wavelength = 1;
   std::string scatterer = "point";
-  std::optional<double> radius, g, albedo, phase_shift;
-  std::optional<std::string> index;
+  std::optional<double> radius, diameter, g, albedo, phase_shift;
+  std::optional<std::string> index;           ///< relative to the medium around the scatterers
+  std::optional<std::string> particle_index;  ///< absolute; requires medium_index
+  std::optional<double> medium_index;
   BulkPhases bulk{};
 };
 
@@ -32,6 +34,8 @@ struct ScattererKind {
 extern const ScattererKind point_kind, soft_kind, hard_kind, tm_kind, te_kind, hg_kind, mie_kind;
 
 // These functions read keys that several kinds of scatterers share.
+/// Throws InputError unless the radius or the diameter is given.
+void require_radius(const ScattererValues& values);
 void read_radius(const Keys& keys, const ScattererValues& values, Scatterer& made);
 void read_radius_and_index(const Keys& keys, const ScattererValues& values, Scatterer& made);
 void read_albedo(const Keys& keys, const ScattererValues& values, Scatterer& made);

@@ -15,6 +15,7 @@
 #include "core/keys/number_text.h"
 #include "flatland/media/layers.h"
 #include "flatland/scene/density_maps.h"
+#include "flatland/scene/scene_density.h"
 
 namespace flatspeckle {
 
@@ -66,7 +67,8 @@ const std::vector<Column> densities = {{"optical_depth", &SceneSpec::optical_dep
 const std::vector<Column> scatterer_columns = {{"g", &SceneSpec::g},
                                                {"albedo", &SceneSpec::albedo},
                                                {"radius", &SceneSpec::radius},
-                                               {"phase_shift", &SceneSpec::phase_shift}};
+                                               {"phase_shift", &SceneSpec::phase_shift},
+                                               {"medium_index", &SceneSpec::medium_index}};
 
 std::vector<std::string> all_columns() {
   std::vector<std::string> names = {"thickness", "index_re", "index_im", "diffusion", "flow"};
@@ -109,6 +111,12 @@ class LayerTable {
     return std::accumulate(column.begin(), column.end(), 0.0);
   }
 
+  /// Returns the refractive index of the first layer if a column contains indices.
+  std::optional<double> first_index() const {
+    if (!table_.has("medium_index")) return std::nullopt;
+    return table_.column("medium_index")[0];
+  }
+
   /// Creates the layers. Throws InputError naming the line of a layer that is not valid.
   std::shared_ptr<const Layers> layers(const SceneSpec& spec) const {
     std::vector<Material> materials;
@@ -131,7 +139,9 @@ class LayerTable {
                          "has a column " + column + "; leave out the key " + keys.name(member));
     };
     for (const Column& column : scatterer_columns) refuse(column.name, spec.*column.member);
+    refuse("radius", spec.diameter);
     refuse("index_re", spec.index);
+    refuse("index_re", spec.particle_index);
   }
 
   /// Returns the optical depth or density that replaces 0 in a layer. It is so small, compared with
@@ -152,6 +162,7 @@ class LayerTable {
     SceneSpec own;
     static_cast<ScattererValues&>(own) = spec;
     own.domain = "slab";
+    own.dimension = spec.dimension;
     own.depth = table_.column("thickness")[layer];
     const auto take = [&](const Column& column) {
       if (table_.has(column.name)) own.*column.member = table_.column(column.name)[layer];
@@ -171,7 +182,7 @@ class LayerTable {
     const MaterialMotion motion{share("diffusion"), share("flow")};
     if (motion.diffusion < 0)
       throw InputError("diffusion", motion.diffusion, "must not be negative");
-    return {scene.scatterer, scene.medium, motion};
+    return {scene.scatterer, scene.medium, motion, own.medium_index.value_or(1)};
   }
 
   std::string path_;
@@ -192,44 +203,11 @@ Domain make_domain(const Keys& keys, const SceneSpec& spec,
   return domain;
 }
 
-void check_density_keys(const Keys& keys, const SceneSpec& spec) {
-  std::vector<std::string> given;
-  if (spec.count) given.emplace_back("count");
-  if (spec.density) given.emplace_back("density");
-  if (spec.mean_free_path) given.emplace_back("mean_free_path");
-  if (spec.optical_depth) given.emplace_back("optical_depth");
-  keys.read(spec.count);
-  keys.read(spec.density);
-  keys.read(spec.mean_free_path);
-  keys.read(spec.optical_depth);
-  if (given.size() == 1) return;
-  std::string all;
-  for (const auto& key : given) all += (all.empty() ? "" : ", ") + key;
-  throw InputError((given.empty() ? "no density is given"
-                                  : "the density is given more than once (" + all + ")") +
-                   ": give exactly one of count, density, mean_free_path, optical_depth");
-}
-
-/// Returns mu_t if mean_free_path or optical_depth is given, otherwise nullopt.
-std::optional<double> stated_extinction(const SceneSpec& spec, const Domain& domain) {
-  if (spec.mean_free_path) return 1 / *spec.mean_free_path;
-  if (spec.optical_depth) return *spec.optical_depth / domain.depth;
-  return std::nullopt;
-}
-
-double number_density(const SceneSpec& spec, const Domain& domain, double sigma_e) {
-  if (spec.density) return *spec.density;
-  if (spec.count) return static_cast<double>(*spec.count) / domain.area();
-  if (sigma_e <= 0)
-    throw InputError("scatterer", spec.scatterer,
-                     "does not scatter, so no density gives this extinction");
-  return *stated_extinction(spec, domain) / sigma_e;
-}
-
 BulkMedium medium_of_scatterers(const SceneSpec& spec, const Scatterer& scatterer,
                                 const Domain& domain, double k) {
   BulkMedium medium = bulk_medium(scatterer, k, 1);
-  set_density(medium, scatterer, k, number_density(spec, domain, medium.cross_sections.extinction));
+  set_density(medium, scatterer, k,
+              number_density(spec, domain, scatterer, medium.cross_sections.extinction));
   return medium;
 }
 
@@ -245,6 +223,7 @@ PlacementRule make_placement_rule(const Keys& keys, const SceneSpec& spec,
 }
 
 void check_packing(const Scene& scene) {
+  if (scene.scatterer.kind == Scatterer::Kind::mie) return check_spheres(scene.medium);
   if (!scene.scatterer.is_disk()) return;
   const double reach = scene.scatterer.radius + scene.placement.min_gap / 2;
   const bool box = scene.domain.kind == Domain::Kind::box;
@@ -262,21 +241,32 @@ void check_extinction(const BulkMedium& medium) {
 }
 
 void check_structure(const Keys& keys, const SceneSpec& spec, const Scatterer& scatterer) {
-  if (keys.read(spec.structure) == "none") return;
-  if (!scatterer.is_disk())
-    throw InputError(
-        "structure", spec.structure,
-        "is a key of soft, hard, tm and te only; positions of other scatterers are independent "
-        "(structure = none)");
+  const std::string& structure = keys.read(spec.structure);
+  if (structure == "none") return;
+  const bool spheres = scatterer.kind == Scatterer::Kind::mie;
+  if (!scatterer.is_disk() && !spheres)
+    throw InputError("structure", structure,
+                     "is a key of soft, hard, tm, te and mie only; otherwise it must be none");
+  if (spheres != (structure == "hard_spheres"))
+    throw InputError("structure", structure,
+                     spheres ? "must be hard_spheres or none for scatterer = mie"
+                             : "requires scatterer = mie; cylinders have hard_disks, or a file "
+                               "that place --structure wrote");
   for (const auto* extinction : {&spec.mean_free_path, &spec.optical_depth})
     if (*extinction)
       throw InputError(
           keys.name(*extinction), **extinction,
-          "cannot be combined with structure, which changes the extinction; give count or density");
+          "cannot be combined with structure, which changes the extinction; give another density");
 }
 
-/// Returns the medium of the scene with the correlations that `structure` names (C16).
+/// Returns the medium of the scene with the correlations that `structure` names (C16). For spheres,
+/// whose properties are computed in space, sets only the structure factor.
 BulkMedium correlated(const std::string& structure, const Scene& scene) {
+  if (scene.scatterer.kind == Scatterer::Kind::mie) {
+    BulkMedium medium = scene.medium;
+    medium.structure = hard_sphere_structure(medium.density, 2 * scene.scatterer.radius);
+    return medium;
+  }
   const DiskSpacing disks{scene.medium.density,
                           2 * scene.scatterer.radius + scene.placement.min_gap};
   return correlated_medium(scene.medium, scene.k,
@@ -306,22 +296,24 @@ void check_reach(const Scene& scene) {
 }
 
 /// Checks that exactly one density key is given, for a scene without layers. If the scene has a
-/// phase function instead of scatterers, sets its medium.
+/// phase function or spheres, sets its medium; of spheres with a given density, without extinction.
 void make_phase_of_bulk(const Keys& keys, const SceneSpec& spec, Scene& scene) {
-  check_density_keys(keys, spec);
+  check_density_keys(keys, spec, scene.scatterer);
   if (!scene.scatterer.is_bulk()) return;
   const auto mu_t = stated_extinction(spec, scene.domain);
-  if (!mu_t)
+  const auto density = stated_density(spec, scene.domain, scene.scatterer);
+  if (!mu_t && scene.scatterer.kind != Scatterer::Kind::mie)
     throw InputError("scatterer", spec.scatterer, "requires mean_free_path or optical_depth");
-  scene.medium = bulk_medium(scene.scatterer, make_phase(keys, spec.bulk, spec.scatterer), *mu_t);
+  scene.medium =
+      bulk_medium(scene.scatterer, make_phase(keys, spec.bulk, spec.scatterer), mu_t.value_or(0));
+  if (!density) return;
+  scene.medium.density = *density;
+  scene.medium.packing_fraction = *density * scatterer_content(scene.scatterer, spec.dimension);
 }
 
-/// Reads the keys of the phase function, which all layers share. Rejects dimension = 3.
+/// Reads the keys of the phase function, which all layers share.
 void read_layer_keys(const Keys& keys, const SceneSpec& spec, const Scatterer& scatterer) {
   if (scatterer.is_bulk()) make_phase(keys, spec.bulk, spec.scatterer);
-  if (spec.dimension == 3)
-    throw InputError("dimension", 3,
-                     "requires a slab without layers; leave out layers, or take dimension = 2");
 }
 
 /// Creates the scene without the bulk properties (BulkMedium) of its scatterers. Nearly all invalid
@@ -330,12 +322,13 @@ Scene without_bulk(const Keys& keys, const SceneSpec& spec,
                    const std::optional<LayerTable>& layers) {
   Scene scene;
   scene.scatterer = make_scatterer(keys, spec);
-  if (scene.scatterer.is_disk() && !layers) keys.required(spec.radius);
+  if (scene.scatterer.is_disk() && !layers) require_radius(spec);
   if (scene.scatterer.kind == Scatterer::Kind::mie && spec.dimension != 3)
     throw InputError("scatterer", spec.scatterer,
                      "spheres require domain = slab and dimension = 3");
-  scene.wavelength = spec.wavelength;
-  scene.k = 2 * std::numbers::pi / spec.wavelength;
+  scene.faces = make_faces(keys, spec, layers ? layers->first_index() : std::nullopt);
+  scene.wavelength = scene.faces ? spec.wavelength / scene.faces->inside : spec.wavelength;
+  scene.k = 2 * std::numbers::pi / scene.wavelength;
   scene.domain = make_domain(keys, spec, layers);
   layers ? read_layer_keys(keys, spec, scene.scatterer) : make_phase_of_bulk(keys, spec, scene);
   if (spec.count && scene.domain.kind == Domain::Kind::slab)
@@ -430,6 +423,39 @@ void check_index_field(const Scene& scene) {
                            shown_place(place) + "; it must be positive");
 }
 
+std::optional<Faces> make_faces(const Keys& keys, const SceneSpec& spec,
+                                const std::optional<double>& first_layer) {
+  const auto inside = first_layer ? first_layer : keys.read(spec.medium_index);
+  if (!inside) return std::nullopt;
+  Faces faces{*inside, keys.read(spec.outside_index).value_or(1)};
+  const bool cylinders = spec.scatterer == "te" || spec.scatterer == "tm";
+  const std::string own = cylinders ? spec.scatterer : "tm",
+                    given = keys.read(spec.polarisation).value_or(own);
+  if (cylinders && given != own)
+    throw InputError("polarisation", given, "must be that of the cylinders, scatterer = " + own);
+  faces.polarisation = chosen<Polarisation>(polarisation_words, given);
+  if (spec.dimension == 3 && faces.polarisation == Polarisation::te)
+    throw InputError("polarisation", given,
+                     "requires dimension = 2; scalar waves in space have tm");
+  return faces;
+}
+
+void check_faces(const Scene& scene) {
+  if (!scene.faces) return;
+  const auto refuse = [&](const std::string& why) {
+    throw InputError("medium_index", scene.faces->inside, why);
+  };
+  if (scene.index) refuse("cannot be combined with index_field");
+  if (has_near_endpoints(scene.request)) refuse("requires plane waves and far views");
+  if (scene.profile && dynamic_cast<const Layers*>(scene.profile.get()) == nullptr)
+    refuse("requires a homogeneous medium or layers");
+}
+
+void refuse_unpolarised(const Scene& scene) {
+  if (scene.faces && scene.faces->polarisation == Polarisation::unpolarised)
+    throw InputError("polarisation", "unpolarised", "is possible in flux only; use tm or te");
+}
+
 void refuse_graded(const Scene& scene, const std::string& what) {
   if (scene.index)
     throw InputError("index_field", index_field_words[static_cast<std::size_t>(scene.index->kind)],
@@ -452,6 +478,7 @@ Scene make_scene(const Keys& keys, const SceneSpec& spec) {
     scene.medium = scene.profile->mean();
   }
   check_index_field(scene);
+  check_faces(scene);
   check_extinction(scene.medium);
   scene.placement.mean_count = scene.medium.density * scene.domain.area();
   check_packing(scene);

@@ -8,6 +8,7 @@
 
 #include "core/keys/keys.h"
 #include "flatland/media/domain.h"
+#include "flatland/media/faces.h"
 #include "flatland/media/index_field.h"
 #include "flatland/media/medium.h"
 #include "flatland/media/medium_profile.h"
@@ -24,7 +25,9 @@ struct SceneSpec : ScattererValues {
   std::string domain = "box";
   std::optional<double> width, depth;
   std::optional<std::int64_t> count;
-  std::optional<double> density, mean_free_path, optical_depth;
+  std::optional<double> density, mean_free_path, optical_depth, volume_fraction, mass_fraction;
+  /// Mass per volume of the scatterers and of the medium around them, in any one unit.
+  std::optional<double> particle_density, medium_density;
   std::optional<std::string> placement;
   std::optional<double> min_gap;
   std::string structure = "none";
@@ -42,28 +45,46 @@ struct SceneSpec : ScattererValues {
   std::vector<double> tilts{}, shifts{};
   std::string covariance = "intensity";
   std::vector<double> pairs{};
+  std::optional<double> outside_index;
+  std::optional<std::string> polarisation;
+
+  /// Returns the wavelength around the scatterers and the wavelength outside the faces. If
+  /// medium_index is given, `wavelength` is that in vacuum; otherwise all three are the same.
+  double inside_wavelength() const { return wavelength / medium_index.value_or(1); }
+  double outside_wavelength() const { return wavelength / outside_index.value_or(1); }
 };
+
+/// Accepted values of the scene key `polarisation`, in the order of Polarisation.
+inline const std::vector<std::string> polarisation_words = {"tm", "te", "unpolarised"};
 
 /// Complete input of a solver. The exact solver and Monte Carlo use the same scene.
 struct Scene {
-  double wavelength = 1, k = 0;
+  double wavelength = 1, k = 0;  ///< around the scatterers
   Domain domain;
+  /// Set if the refractive index of the medium is given. The angles and transverse wavenumbers of
+  /// the request are then those outside the faces.
+  std::optional<Faces> faces{};
   Scatterer scatterer;
   BulkMedium medium;                               ///< bulk properties; means if the medium varies
   std::shared_ptr<const MediumProfile> profile{};  ///< null if the medium is uniform
   std::optional<IndexField> index{};               ///< index around scatterers; nullopt if it is 1
   PlacementRule placement;
   CovarianceRequest request;
+
+  /// Returns the wavenumber outside the faces.
+  double outside_k() const { return faces ? k * (faces->outside / faces->inside) : k; }
 };
 
 // These functions add the schema entries of the scene keys, by topic. add_keys() calls all of them
-// except add_dimension_key().
+// except add_dimension_key() and add_faces_keys().
 void add_scatterer_keys(Keys& keys, SceneSpec& spec);
 /// Adds the keys g, albedo and optical_depth, and the keys of other phase functions.
 void add_bulk_keys(Keys& keys, SceneSpec& spec);
 void add_medium_keys(Keys& keys, SceneSpec& spec);
 /// Adds the key dimension, for methods that also work in three dimensions.
 void add_dimension_key(Keys& keys, SceneSpec& spec);
+/// Adds the keys of reflecting faces, for methods that include them.
+void add_faces_keys(Keys& keys, SceneSpec& spec);
 /// Adds the key structure, the structure factor of the scatterers' positions in Monte Carlo.
 void add_structure_key(Keys& keys, SceneSpec& spec);
 /// Adds the keys of layers and density maps.
@@ -117,6 +138,15 @@ std::optional<IndexField> index_field(const Keys& keys, const SceneSpec& spec);
 /// Throws InputError if the index field cannot be combined with the scatterers, lights or domain of
 /// the scene, or if n^2 is not positive at a point that light must reach.
 void check_index_field(const Scene& scene);
+
+/// Returns the faces if the refractive index of the medium is given, otherwise nullopt.
+/// first_layer: index of the first layer, if the file of layers contains it.
+std::optional<Faces> make_faces(const Keys& keys, const SceneSpec& spec,
+                                const std::optional<double>& first_layer = {});
+/// Throws InputError if the faces cannot be combined with the medium, the lights or the views.
+void check_faces(const Scene& scene);
+/// Throws InputError if only the power of light at the faces is known, not the fields.
+void refuse_unpolarised(const Scene& scene);
 
 /// Throws InputError if the index varies. what: name of the method that does not support this.
 void refuse_graded(const Scene& scene, const std::string& what);

@@ -1,6 +1,7 @@
 #include "flatland/scene/scene_datasets.h"
 
 #include <cmath>
+#include <numbers>
 
 #include "core/result/result_group.h"
 
@@ -12,6 +13,12 @@ const DatasetTable scene_table{
     .attributes = {
         {"", "wavelength", "float64",
          "wavelength in the medium around the scatterers, in the unit of the scene's lengths"},
+        {"", "vacuum_wavelength", "float64", "wavelength in vacuum, if medium_index is given"},
+        {"", "medium_index", "float64", "refractive index around the scatterers, if given"},
+        {"", "outside_index", "float64",
+         "refractive index outside the faces, if medium_index is given; all angles are then those "
+         "outside"},
+        {"", "polarisation", "text", "reflection at the faces: tm, te or unpolarised"},
         {"", "depth", "float64", "depth L of the medium"},
         {"", "width", "float64", "width of a box"},
         {"", "optical_depth", "float64", "mu_t L"},
@@ -19,13 +26,23 @@ const DatasetTable scene_table{
          "3 for scalar waves in space, with covariances per illuminated area; absent in 2D"},
         {"", "g", "float64", "mean cosine of scattering"},
         {"", "albedo", "float64", "mu_s/mu_t"},
+        {"", "mu_t", "float64", "extinction coefficient"},
+        {"", "mu_s", "float64", "scattering coefficient"},
+        {"", "reduced_scattering", "float64", "mu_s' = mu_s (1 - g)"},
         {"", "mean_free_path", "float64", "1/mu_t"},
-        {"", "transport_mean_free_path", "float64", "1/(mu_a + mu_s (1 - g))"},
+        {"", "transport_mean_free_path", "float64", "l* = 1/(mu_a + mu_s (1 - g))"},
         {"", "k_mean_free_path", "float64", "k/mu_t"},
         {"", "sigma_s", "float64", "scattering cross section (in 2D a length) of one scatterer"},
         {"", "sigma_e", "float64", "extinction cross section of one scatterer"},
-        {"", "density", "float64", "scatterers per area"},
-        {"", "packing_fraction", "float64", "fraction of the area that scatterers cover"},
+        {"", "scattering_efficiency", "float64",
+         "Q_sca, sigma_s divided by the geometric cross section (in 2D the diameter)"},
+        {"", "extinction_efficiency", "float64",
+         "Q_ext, sigma_e divided by the geometric cross section"},
+        {"", "diameter", "float64", "diameter of the cylinders or spheres"},
+        {"", "size_parameter", "float64", "k times the radius of the cylinders or spheres"},
+        {"", "density", "float64", "scatterers per area, in 3D per volume"},
+        {"", "packing_fraction", "float64",
+         "fraction of the area (in 3D of the volume) that scatterers fill"},
         {"", "k_shift", "float64", "real part of the effective wavenumber, minus k"},
         {"", "index_front", "float64",
          "index around the scatterers at x = z = 0, where n^2 is linear or parabolic"},
@@ -113,12 +130,38 @@ void write_move_axes(ResultFile& file, const CovarianceRequest& request) {
   if (!request.shifts.empty()) root.put("shift", request.shifts);
 }
 
+/// Writes the properties of the scatterers, if the medium is not only a phase function.
+void write_scatterers(const ResultGroup& root, const Scene& scene) {
+  const BulkMedium& medium = scene.medium;
+  if (!medium.has_scatterers && !(medium.density > 0)) return;
+  root.attribute("density", medium.density);
+  root.attribute("packing_fraction", medium.packing_fraction);
+  if (medium.has_scatterers) root.attribute("k_shift", medium.k_shift);
+  if (scene.profile) return;
+  root.attribute("sigma_s", medium.cross_sections.scattering);
+  root.attribute("sigma_e", medium.cross_sections.extinction);
+  const double radius = scene.scatterer.radius;
+  if (!(radius > 0)) return;
+  const double geometric = medium.dimension == 3 ? std::numbers::pi * radius * radius : 2 * radius;
+  root.attribute("scattering_efficiency", medium.cross_sections.scattering / geometric);
+  root.attribute("extinction_efficiency", medium.cross_sections.extinction / geometric);
+  root.attribute("diameter", 2 * radius);
+  root.attribute("size_parameter", scene.k * radius);
+}
+
 }  // namespace
 
 void write_domain(ResultFile& file, const Scene& scene) {
   const ResultGroup root(file, scene_table);
   if (scene.medium.dimension == 3) root.attribute("dimension", std::uint64_t{3});
   root.attribute("wavelength", scene.wavelength);
+  if (scene.faces) {
+    root.attribute("vacuum_wavelength", scene.wavelength * scene.faces->inside);
+    root.attribute("medium_index", scene.faces->inside);
+    root.attribute("outside_index", scene.faces->outside);
+    root.attribute("polarisation",
+                   polarisation_words[static_cast<std::size_t>(scene.faces->polarisation)]);
+  }
   root.attribute("depth", scene.domain.depth);
   if (scene.domain.kind == Domain::Kind::box) root.attribute("width", scene.domain.width);
 }
@@ -130,6 +173,9 @@ void write_medium(ResultFile& file, const Scene& scene) {
   root.attribute("g", medium.g);
   root.attribute("albedo", medium.albedo);
   root.attribute("optical_depth", medium.mu_t * scene.domain.depth);
+  root.attribute("mu_t", medium.mu_t);
+  root.attribute("mu_s", medium.mu_s);
+  root.attribute("reduced_scattering", medium.reduced_scattering());
   if (medium.mu_t > 0) {
     root.attribute("mean_free_path", medium.mean_free_path());
     root.attribute("transport_mean_free_path", medium.transport_mean_free_path());
@@ -140,13 +186,7 @@ void write_medium(ResultFile& file, const Scene& scene) {
     root.attribute("index_front", std::sqrt(scene.index->square({0, 0})));
     root.attribute("index_back", std::sqrt(scene.index->square({0, scene.domain.depth})));
   }
-  if (!medium.has_scatterers) return;
-  root.attribute("density", medium.density);
-  root.attribute("packing_fraction", medium.packing_fraction);
-  root.attribute("k_shift", medium.k_shift);
-  if (scene.profile) return;
-  root.attribute("sigma_s", medium.cross_sections.scattering);
-  root.attribute("sigma_e", medium.cross_sections.extinction);
+  write_scatterers(root, scene);
 }
 
 void bind_units(ResultFile& file, const Scene& scene) {

@@ -4,8 +4,10 @@ namespace flatspeckle {
 
 void add_scatterer_keys(Keys& keys, SceneSpec& spec) {
   keys.group("Scatterers");
-  keys.add("wavelength", spec.wavelength,
-           "Wavelength around the scatterers; k = 2 pi / wavelength; sets the unit of length")
+  keys.add(
+          "wavelength", spec.wavelength,
+          "Wavelength around the scatterers or, if medium_index is given, in vacuum; sets the unit "
+          "of length")
       .positive()
       .unit("length");
   keys.add("scatterer", spec.scatterer,
@@ -18,6 +20,10 @@ void add_scatterer_keys(Keys& keys, SceneSpec& spec) {
       .unit("length")
       .only_of("soft, hard, tm, te and mie")
       .swept();
+  keys.add("diameter", spec.diameter, "Diameter of the cylinders or spheres, instead of radius")
+      .positive()
+      .unit("length")
+      .only_of("soft, hard, tm, te and mie");
   keys.add(
           "index", spec.index,
           "Relative index, such as \"1.5+0.1i\" (absorbing); no part may be negative (default 1.5)")
@@ -58,10 +64,27 @@ void add_medium_keys(Keys& keys, SceneSpec& spec) {
   keys.add("depth", spec.depth, "Depth of the domain: 0 <= z <= depth").positive().unit("length");
   keys.add("count", spec.count, "Number of scatterers in the box, which sets the density")
       .not_negative();
-  keys.add("density", spec.density, "Number of scatterers per area")
+  keys.add("density", spec.density, "Number of scatterers per area, in 3D per volume")
       .positive()
-      .unit("1/length^2")
+      .unit("1/length^2 or 1/length^3")
       .swept();
+  keys.add("volume_fraction", spec.volume_fraction,
+           "Fraction of the volume (in 2D of the area) that the scatterers fill, which sets the "
+           "density")
+      .between(0, 1)
+      .only_of("soft, hard, tm, te and mie");
+  keys.add("mass_fraction", spec.mass_fraction,
+           "Mass of the scatterers divided by the mass of the suspension, which sets the density")
+      .between(0, 1)
+      .only_of("soft, hard, tm, te and mie");
+  keys.add("particle_density", spec.particle_density,
+           "Mass per volume of the scatterers, in the unit of medium_density")
+      .positive()
+      .only_of("mass_fraction");
+  keys.add("medium_density", spec.medium_density,
+           "Mass per volume of the medium around the scatterers")
+      .positive()
+      .only_of("mass_fraction");
   keys.add("mean_free_path", spec.mean_free_path, "Mean free path 1/mu_t, which sets the density")
       .positive()
       .unit("length");
@@ -84,11 +107,37 @@ void add_dimension_key(Keys& keys, SceneSpec& spec) {
       .only_of("slabs, by transport or Monte Carlo");
 }
 
+void add_faces_keys(Keys& keys, SceneSpec& spec) {
+  keys.group("Scatterers");
+  keys.add("particle_index", spec.particle_index,
+           "Absolute index of the scatterers, instead of index; it is divided by medium_index")
+      .only_of("tm, te and mie with medium_index");
+  keys.group("Faces");
+  keys.add("medium_index", spec.medium_index,
+           "Refractive index around the scatterers. The wavelength is then that in vacuum, the "
+           "faces "
+           "z = 0 and z = depth reflect, and all angles are those outside")
+      .positive()
+      .swept();
+  keys.add("outside_index", spec.outside_index, "Refractive index outside the faces (default 1)")
+      .positive()
+      .only_of("media with medium_index")
+      .swept();
+  keys.add(
+          "polarisation", spec.polarisation,
+          "Reflection at the faces. tm: E along the axis, and scalar waves in space (default); te: "
+          "H "
+          "along the axis, in the plane; unpolarised: mean power of both, for flux. Cylinders have "
+          "their own")
+      .one_of(polarisation_words)
+      .only_of("media with medium_index");
+}
+
 void add_structure_key(Keys& keys, SceneSpec& spec) {
   keys.group("Medium");
   keys.add("structure", spec.structure,
-           "Structure factor of disks in Monte Carlo: none, hard_disks, or a file that "
-           "place --structure wrote");
+           "Structure factor of the positions in Monte Carlo and transport: none; hard_disks, or "
+           "a file that place --structure wrote, of cylinders; hard_spheres of mie");
 }
 
 void add_profile_keys(Keys& keys, SceneSpec& spec) {

@@ -48,10 +48,10 @@ std::vector<Population> populations(const Scene& scene) {
              whole(scene.placement.mean_count)}};
   std::vector<Population> list;
   for (std::size_t layer = 0; layer < layers->materials().size(); ++layer) {
-    const auto& [scatterer, medium, motion] = layers->materials()[layer];
+    const Material& material = layers->materials()[layer];
     const double area = scene.domain.width * layers->thickness(layer);
-    list.push_back({scatterer, layers->faces()[layer], layers->faces()[layer + 1],
-                    whole(medium.density * area)});
+    list.push_back({material.scatterer, layers->faces()[layer], layers->faces()[layer + 1],
+                    whole(material.medium.density * area)});
   }
   std::ranges::stable_sort(list, std::greater(),
                            [](const Population& some) { return some.scatterer.radius; });

@@ -77,8 +77,8 @@ CovarianceRequest memory_effect(const Keys& keys, const SceneSpec& spec) {
         "requires a plane wave; use tilt_shift for a beam, translation for a near source");
   no_repeats("tilts", at_least_one(keys, spec.tilts));
   no_repeats("view_angles", at_least_one(keys, spec.view_angles));
-  return memory_effect_request(2 * std::numbers::pi / spec.wavelength, spec.light_angles[0],
-                               spec.view_angles, spec.tilts);
+  return memory_effect_request(2 * std::numbers::pi / spec.outside_wavelength(),
+                               spec.light_angles[0], spec.view_angles, spec.tilts);
 }
 
 /// Checks that a list of tilts or shifts contains the value 0, and no value twice. The value 0 is
@@ -102,8 +102,8 @@ CovarianceRequest tilt_shift(const Keys& keys, const SceneSpec& spec) {
                      "a point source has no direction to tilt: use covariance = translation");
   steps_from_zero("tilts", at_least_one(keys, spec.tilts));
   steps_from_zero("shifts", at_least_one(keys, spec.shifts));
-  return tilt_shift_request(2 * std::numbers::pi / spec.wavelength, light, moved_views(keys, spec),
-                            spec.tilts, spec.shifts);
+  return tilt_shift_request(2 * std::numbers::pi / spec.outside_wavelength(), light,
+                            moved_views(keys, spec), spec.tilts, spec.shifts);
 }
 
 CovarianceRequest translation(const Keys& keys, const SceneSpec& spec) {

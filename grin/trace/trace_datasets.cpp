@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/numbers/constants.h"
 #include "core/result/result_group.h"
 #include "grin/rays/marching/ray.h"
 

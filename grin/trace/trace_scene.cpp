@@ -298,7 +298,8 @@ void add_keys(Keys& keys, RayImageValues& values) {
   keys.add("image_plane", values.image_plane,
            "x y z nx ny nz: plane on which spot, ray slopes and optical path differences are "
            "measured; rays are extended to it along straight lines, forward or backward")
-      .exactly(6, "a point and a normal");
+      .exactly(6, "a point and a normal")
+      .units("length length length 1 1 1");
   keys.add("refocus", values.refocus, "Move the plane along its normal to the smallest spot")
       .only_of("image_plane");
 }
@@ -350,7 +351,8 @@ void add_keys(Keys& keys, CurveValues& values) {
   keys.add("connect", values.connect,
            "x y z x y z: find the ray curves from the first point to the second, instead of "
            "tracing rays")
-      .exactly(6, "six numbers x y z x y z");
+      .exactly(6, "six numbers x y z x y z")
+      .unit("length");
   keys.add("trials", values.trials, "Number of random starts in the search for curves")
       .positive()
       .only_of("connect");

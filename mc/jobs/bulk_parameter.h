@@ -5,8 +5,8 @@
 namespace flatspeckle::mc {
 
 /// Parameters of a medium with respect to which derivatives are computed, with all others held
-/// fixed. radius and index (its real part) belong to the scatterers. For cylinders these
-/// derivatives are at fixed density, for spheres at fixed extinction.
+/// fixed. radius and index (its real part) belong to the scatterers, whose number per area or
+/// volume is then fixed.
 enum class BulkParameter { mu_t, g, albedo, radius, index };
 
 /// Returns the name of a parameter in result files.

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "core/error.h"
 #include "core/numbers/gauss.h"
 #include "core/result/result_group.h"
+#include "mc/jobs/decay_curve.h"
 
 namespace flatspeckle::mc {
 
@@ -14,57 +14,19 @@ namespace {
 
 using Values = std::vector<Complex>;
 
-constexpr std::size_t stencil = 4;  ///< number of points that determine a cubic polynomial
-
-/// Cubic polynomial through the four nodes around an interval, in Lagrange's form.
-class Cubic {
- public:
-  Cubic(const std::vector<double>& x, const std::vector<double>& y, std::size_t interval) {
-    const std::size_t count = std::min(stencil, x.size()),
-                      first = std::min(interval == 0 ? 0 : interval - 1, x.size() - count);
-    x_.assign(x.begin() + static_cast<std::ptrdiff_t>(first),
-              x.begin() + static_cast<std::ptrdiff_t>(first + count));
-    y_.assign(y.begin() + static_cast<std::ptrdiff_t>(first),
-              y.begin() + static_cast<std::ptrdiff_t>(first + count));
-  }
-
-  double operator()(double at) const {
-    double sum = 0;
-    for (std::size_t i = 0; i < x_.size(); ++i) {
-      double basis = y_[i];
-      for (std::size_t j = 0; j < x_.size(); ++j)
-        if (j != i) basis *= (at - x_[j]) / (x_[i] - x_[j]);
-      sum += basis;
-    }
-    return sum;
-  }
-
- private:
-  std::vector<double> x_, y_;
-};
-
 }  // namespace
 
 double exposed(const std::vector<double>& delays, const std::vector<double>& squares, double time) {
-  constexpr double least = 1e-300;
-  std::map<double, double> curve{{0, 0}};
-  for (std::size_t i = 0; i < delays.size(); ++i)
-    if (delays[i] > 0) curve[std::sqrt(delays[i])] = std::log(std::max(squares[i], least));
-  std::vector<double> x, y;
-  for (const auto& [root, log] : curve) {
-    x.push_back(root);
-    y.push_back(log);
-  }
+  const DecayCurve curve(delays, squares);
+  const std::vector<double>& x = curve.roots();
   static const QuadratureRule rule = gauss_legendre(4);
   const double last = std::sqrt(time);
   double sum = 0;
   for (std::size_t i = 0; i + 1 < x.size() && x[i] < last; ++i) {
-    const Cubic cubic(x, y, i);
-    const double width = std::min(x[i + 1], last) - x[i], most = std::max(y[i], y[i + 1]);
+    const double width = std::min(x[i + 1], last) - x[i];
     for (std::size_t n = 0; n < rule.node.size(); ++n) {
       const double at = x[i] + width * rule.node[n];
-      sum += width * rule.weight[n] * 2 * at * std::exp(std::min(cubic(at), most)) *
-             (1 - at * at / time);
+      sum += width * rule.weight[n] * 2 * at * curve(at * at) * (1 - at * at / time);
     }
   }
   return 2 * sum / time;
@@ -115,7 +77,7 @@ Estimate squared_contrast(const CovarianceRequest& request, const PathJob& job,
 
 const DatasetTable contrast_table{
     "contrast",
-    {{"exposure", Data::scale, "", "1", "exposure time, in the unit of the delays"},
+    {{"exposure", Data::scale, "", "DELAY", "exposure time, in the unit of the delays"},
      {"squared_contrast", Data::estimate, "exposure LIGHT VIEW", "1",
       "squared contrast K^2 of the speckle after an exposure"}},
     {{"squared_contrast", "beta", "float64", "K^2 of still scatterers"}}};

@@ -28,9 +28,7 @@ Estimate squared_contrast(const CovarianceRequest& request, const PathJob& job,
                           const Exposure& exposure);
 
 /// Returns K^2 (see Exposure) for the exposure time `time` and beta = 1. squares: |g1|^2 at the
-/// delays, normalised to 1 at delay 0. The logarithm of |g1|^2 is interpolated by cubic polynomials
-/// in the square root of the delay t. This is exact if |g1|^2 decays as exp(-t), exp(-sqrt(t)) or
-/// their product.
+/// delays, normalised to 1 at delay 0 and interpolated by DecayCurve.
 double exposed(const std::vector<double>& delays, const std::vector<double>& squares, double time);
 
 /// Returns delays at which |g1|^2 must be given so that exposed() computes K^2 at these exposure

@@ -6,6 +6,8 @@
 #include <numeric>
 
 #include "core/result/result_group.h"
+#include "flatland/media/face_stack.h"
+#include "flatland/media/layers.h"
 #include "flatland/scene/scene_datasets.h"
 
 namespace flatspeckle::mc {
@@ -70,11 +72,38 @@ double mean_transmittance(const Scene& scene, double light) {
   return sum / rays;
 }
 
+/// Returns the unscattered light of a slab with faces.
+StackAmplitudes<double> unscattered(const Scene& slab, double light) {
+  const Faces faces = *slab.faces;
+  std::vector<double> indices{faces.outside}, depths;
+  if (const auto* layers = dynamic_cast<const Layers*>(slab.profile.get())) {
+    for (std::size_t l = 0; l < layers->materials().size(); ++l) {
+      indices.push_back(layers->materials()[l].index);
+      depths.push_back(layers->materials()[l].medium.mu_t * layers->thickness(l));
+    }
+  } else {
+    indices.push_back(faces.inside);
+    depths.push_back(slab.medium.mu_t * slab.domain.depth);
+  }
+  const auto cosine = [&](double index) {
+    return Face{faces.outside, index}.refracted(std::abs(std::cos(light)));
+  };
+  std::vector<double> through;
+  std::vector<FaceProducts> products;
+  for (std::size_t l = 0; l < indices.size(); ++l) {
+    const double index = indices[l], next = l + 1 < indices.size() ? indices[l + 1] : faces.outside;
+    products.push_back(FaceProducts::of_power({index, next, faces.polarisation}, cosine(index)));
+    if (l > 0) through.push_back(std::exp(-depths[l - 1] / cosine(index)));
+  }
+  return amplitudes_in_stack(through, products);
+}
+
 }  // namespace
 
 double direct_transmittance(const Scene& scene, double light) {
   const Domain& domain = scene.domain;
   const double sine = std::abs(std::sin(light)), cosine = std::abs(std::cos(light));
+  if (scene.faces) return unscattered(scene, light).transmitted;
   if (scene.profile) return mean_transmittance(scene, light);
   if (domain.kind == Domain::Kind::slab)
     return std::exp(-scene.medium.mu_t * domain.depth / cosine);
@@ -87,9 +116,14 @@ double direct_transmittance(const Scene& scene, double light) {
          (face + side);
 }
 
-std::vector<double> direct_transmittances(const Scene& scene) {
-  return column(scene.request.lights,
-                [&](const Light& light) { return direct_transmittance(scene, light.angle); });
+double specular_reflectance(const Scene& scene, double light) {
+  return scene.faces ? unscattered(scene, light).reflected : 0;
+}
+
+std::vector<double> unscattered_shares(const Scene& scene) {
+  return column(scene.request.lights, [&](const Light& light) {
+    return direct_transmittance(scene, light.angle) + specular_reflectance(scene, light.angle);
+  });
 }
 
 const DatasetTable flux_table{
@@ -103,8 +137,10 @@ const DatasetTable flux_table{
      {"absorptance", Data::estimate, "light_angle", "1", "share of the light that is absorbed"},
      {"direct_transmittance", Data::estimate, "light_angle", "1",
       "share of the light that meets no scatterer"},
+     {"specular_reflectance", Data::estimate, "light_angle", "1",
+      "share of the light that faces reflect without scattering, if medium_index is given"},
      {"invariants/power", Data::invariant, "light_angle", "1",
-      "deviation from 1 of the sum of all shares and the direct transmittance"},
+      "deviation from 1 of the sum of all shares and the unscattered light"},
      {"exit_angle", Data::scale, "", "rad",
       "centre of the bin of exit angles, measured from +z; in space a polar angle"},
      {"exit_radiance", Data::estimate, "light_angle exit_angle", "1/rad",
@@ -135,7 +171,14 @@ void write_flux(ResultFile& file, const Scene& scene, const FluxEstimates& flux)
   root.put("transmittance", flux.transmittance);
   root.put("absorptance", flux.absorptance);
   if (scene.domain.kind == Domain::Kind::box) root.put("side_loss", flux.side_loss);
-  root.put("direct_transmittance", direct_transmittances(scene), std::vector<double>(lights));
+  const auto unscattered = [&](const char* name, const auto& share) {
+    root.put(
+        name,
+        column(scene.request.lights, [&](const Light& light) { return share(scene, light.angle); }),
+        std::vector<double>(lights));
+  };
+  unscattered("direct_transmittance", direct_transmittance);
+  if (scene.faces) unscattered("specular_reflectance", specular_reflectance);
   root.put("exit_radiance", flux.exit_radiance);
 }
 

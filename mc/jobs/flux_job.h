@@ -62,7 +62,7 @@ struct FluxJob {
 };
 
 /// Fractions of each illumination that are scattered out through the face z = 0, the face z = depth
-/// and the sides of a box, or absorbed. With direct_transmittance() these shares add up to 1.
+/// and the sides of a box, or absorbed. With unscattered_shares() these shares add up to 1.
 struct FluxEstimates {
   Estimate reflectance, transmittance, side_loss, absorptance;
   /// Share per radian of the exit angle (in 3D: of the polar angle), [light][angle bin]
@@ -70,8 +70,8 @@ struct FluxEstimates {
 };
 FluxEstimates flux_estimates(const FluxJob& job, const GroupedSums& sums);
 
-/// Returns, for each illumination, the deviation from 1 of the sum of its shares and its direct
-/// transmittance (`direct`). The shares are estimated independently, so an error in one of them
+/// Returns, for each illumination, the deviation from 1 of the sum of its shares and its
+/// unscattered share (`direct`). The shares are estimated independently, so an error in one of them
 /// changes the sum. The limit of the deviation is the sum of the errors of the shares for a
 /// deterministic solution, and outlier_errors() standard errors for samples.
 std::vector<Invariant> power_balance(const FluxJob& job, const GroupedSums& sums,
@@ -85,6 +85,10 @@ void write_flux(ResultFile& file, const Scene& scene, const FluxEstimates& flux)
 /// (ballistic light). This fraction has a closed form unless the medium varies. light: angle of the
 /// illumination.
 double direct_transmittance(const Scene& scene, double light);
-std::vector<double> direct_transmittances(const Scene& scene);
+/// Returns the fraction of an illumination that faces reflect and that is neither scattered nor
+/// absorbed; 0 without faces.
+double specular_reflectance(const Scene& scene, double light);
+/// Returns, for each illumination, the sum of its direct transmittance and specular reflectance.
+std::vector<double> unscattered_shares(const Scene& scene);
 
 }  // namespace flatspeckle::mc

@@ -12,10 +12,9 @@ struct Motion {
   Vec2 velocity{};       ///< length per unit of delay
   double shear = 0;      ///< shear rate: growth of velocity_x per unit of depth
 
-  /// Whether the scatterers only diffuse, with k^2 D = 1 everywhere. A delay is then the value k^2
-  /// D tau after a time tau.
+  /// Whether the scatterers do not flow and diffuse alike everywhere.
   bool only_diffuses(const Scene& scene) const {
-    return diffusion == 1 && velocity == Vec2{} && shear == 0 && !scene.profile;
+    return velocity == Vec2{} && shear == 0 && !scene.profile;
   }
 };
 

@@ -24,9 +24,13 @@ struct ChainOf {
 /// Returns the ladder chains of all entries and, if `reversed`, also those with the second path
 /// reversed (C38). The wavenumber of the second field is larger by the fraction `shift`. The view
 /// of the second field is turned so that the transverse momenta of lights and views match; the sine
-/// of its new direction must be less than 1.
-template <typename Geometry>
-auto chains(const RequestOf<typename Geometry::Direction>& request, bool reversed, double shift) {
+/// of its new direction must be less than 1. If the slab has faces, chains whose two illuminations
+/// enter through different faces are omitted: their fields oscillate against each other with depth
+/// (PairInLayersOf).
+template <typename Geometry, typename Number>
+auto chains(const SlabOf<Geometry, Number>& slab,
+            const RequestOf<typename Geometry::Direction>& request, bool reversed) {
+  const double shift = slab.departure.shift;
   using PairOfEndpoints = PairOf<typename Geometry::Direction>;
   std::vector<ChainOf<typename Geometry::Direction>> all;
   for (std::size_t e = 0; e < request.entries.size(); ++e) {
@@ -36,7 +40,8 @@ auto chains(const RequestOf<typename Geometry::Direction>& request, bool reverse
     PairOfEndpoints views{request.views[a.view], request.views[b.view]};
     if (shift != 0) views.second = Geometry::matched(lights, views, shift);
     all.push_back({lights, views, e});
-    if (reversed)
+    const bool opposite = cosine_of(lights.first) * cosine_of(views.second) > 0;
+    if (reversed && !(opposite && slab.has_faces()))
       all.push_back({{lights.first, turned_round(views.second)},
                      {views.first, turned_round(lights.second)},
                      e});
@@ -76,11 +81,14 @@ std::vector<ChainGroup<Geometry>> grouped(
     const std::vector<ChainOf<typename Geometry::Direction>>& chains) {
   std::vector<PairOf<typename Geometry::Direction>> lights;
   for (const auto& chain : chains) lights.push_back(chain.lights);
+  // The foci are angles in the layer of the largest refractive index.
+  const double refraction = slab.outside_index / slab.largest_index();
+  for (auto& pair : lights) pair = refracted(pair, refraction);
   const typename Geometry::Foci foci(lights, slab.mu_t * slab.depth, slab.width());
   std::map<std::pair<typename Geometry::Momentum, std::vector<Focus>>, ChainGroup<Geometry>> groups;
   for (const auto& chain : chains) {
     const auto momentum = Geometry::momentum(chain.lights, slab.k, slab.mu_t, slab.departure.shift);
-    const auto own = foci.of(chain.lights, momentum);
+    const auto own = foci.of(refracted(chain.lights, refraction), momentum);
     ChainGroup<Geometry>& group = groups[{momentum, own}];
     group.momentum = momentum;
     group.foci = own;

@@ -28,8 +28,10 @@ struct Refinement {
   int most_ordinates = 1500;
 
   /// Returns the number of nodes per panel of the first solution. For small tolerances fewer than 7
-  /// have never been sufficient.
-  int first_order() const { return std::max(least_order, tolerance > 1e-5 ? 5 : 7); }
+  /// have never been sufficient without faces, which cut panels into shorter ones.
+  int first_order(bool has_faces) const {
+    return std::max(least_order, tolerance > 1e-5 || has_faces ? 5 : 7);
+  }
   static int next_order(int order) { return (4 * order + 2) / 3; }
 };
 

@@ -49,7 +49,9 @@ std::vector<SlabLayerOf<Geometry, double>> layers_of(const Scene& scene, const L
   std::vector<SlabLayerOf<Geometry, double>> list;
   for (std::size_t l = 0; l < laws.size(); ++l)
     list.push_back({materials[l].medium.mu_t, layers.thickness(l), materials[l].medium.albedo,
-                    laws[l] ? *laws[l] : *any});
+                    laws[l] ? *laws[l] : *any,
+                    scene.faces ? scene.k * (materials[l].index / scene.faces->inside) : scene.k,
+                    materials[l].index});
   return list;
 }
 
@@ -89,9 +91,9 @@ class CovarianceRefiner {
   CovarianceRefiner(const Slab& slab, const Request& request, bool reversed,
                     const Refinement& refinement)
       : slab_(slab), request_(request), refinement_(refinement), few_(flat(scattered_once())) {
-    const Resolution first{std::max(refinement.first_order(), slab.least_order()),
+    const Resolution first{std::max(refinement.first_order(slab.has_faces()), slab.least_order()),
                            Geometry::first_modes};
-    for (Group& group : grouped(slab, chains<Geometry>(request, reversed, slab.departure.shift)))
+    for (Group& group : grouped(slab, chains(slab, request, reversed)))
       parts_.push_back({std::move(group), first, {}, {}, {}, {}});
   }
 
@@ -130,23 +132,19 @@ class CovarianceRefiner {
   /// Returns the contribution of paths with one scattering to each entry.
   std::vector<C> scattered_once() const {
     std::vector<C> values;
-    for (const auto& [lights, views, entry] :
-         chains<Geometry>(request_, false, slab_.departure.shift)) {
-      std::vector<std::vector<C>> top, bottom;
-      for (const auto& layer : slab_.layers) {
-        const double k = slab_.k / layer.mu_t;
-        const auto light = pair_wave(k, lights, slab_.departure),
-                   view = pair_wave(k, turned_round(views), slab_.departure);
-        top.push_back({slab_.optical_depth(layer) * (light.top + view.top)});
-        bottom.push_back({slab_.optical_depth(layer) * (light.bottom + view.bottom)});
-      }
-      const auto outside = mc::entering(top, bottom);
+    for (const auto& [lights, views, entry] : chains(slab_, request_, false)) {
+      const PairInLayersOf<Geometry, Number> light(slab_, lights), view(slab_, turned_round(views));
       C value{};
       for (std::size_t l = 0; l < slab_.layers.size(); ++l) {
         const auto& layer = slab_.layers[l];
-        const C once = slab_.optical_depth(layer) * divided_difference(top[l][0], bottom[l][0]);
-        value += outside[l][0] *
-                 (layer.albedo * (once * as_complex(Geometry::turned(layer.law, lights, views))));
+        const auto depth = slab_.optical_depth(layer);
+        for (const auto& in : light.layers()[l])
+          for (const auto& out : view.layers()[l])
+            value += in.factor * out.factor *
+                     (layer.albedo * depth *
+                      divided_difference(C(depth * (in.wave.top + out.wave.top)),
+                                         C(depth * (in.wave.bottom + out.wave.bottom))) *
+                      as_complex(Geometry::turned(layer.law, in.pair, turned_round(out.pair))));
       }
       values.push_back(value);
     }
@@ -194,12 +192,16 @@ class CovarianceRefiner {
   /// only for laws with a sharp peak, which the ordinates may not resolve.
   double imbalance(const Group& group, int order) const {
     double worst = 0;
-    for (const auto& ordinates : grids_.at({group.foci, order})->layers()) {
+    const Discrete& discrete = *grids_.at({group.foci, order});
+    for (std::size_t l = 0; l < slab_.layers.size(); ++l) {
+      const auto& ordinates = discrete.layers()[l];
       if (!ordinates.law().has_sharp_peak()) continue;
+      const double refraction = slab_.outside_index / slab_.layers[l].index;
       for (const auto* pairs : {&group.lights, &group.views})
         for (const auto& pair : *pairs) {
+          const auto direction = refracted(pair.first, refraction);
           const auto fed = Geometry::template fed<Number>(ordinates, group.momentum, 0,
-                                                          {{pair.first, pair.first}});
+                                                          {{direction, direction}});
           const Rows both = value_of(fed.down) + value_of(fed.up);
           const double power =
               Geometry::all_directions() *
@@ -222,28 +224,53 @@ class CovarianceRefiner {
       const auto layers = modes.layers(part);
       if (layers.empty()) continue;
       ordinates = std::max(ordinates, Geometry::ordinates(part.functions.size()));
-      const auto collected = response_of(layers).collected;
+      const auto collected = response_of(layers, modes.faces(part)).collected;
       for (std::size_t i = 0; i < values.size(); ++i) {
         const auto& [light, view, own] = group.links[i];
-        C value = entry(collected, view, light);
+        values[i] += entry(collected, view, light);
         if constexpr (Geometry::has_double_scattering)
           if (scatters_twice_apart())
-            value =
-                value - Geometry::double_scattering(twice(group, i), discrete.grid(),
-                                                    part.functions, layers.front(), light, view);
-        values[i] += value;
+            for (const auto& [paths, in, out, factor] : twice(group, i))
+              values[i] +=
+                  -(factor * Geometry::double_scattering(paths, discrete.grid(0), part.functions,
+                                                         layers.front(), in, out));
       }
     }
-    return {flat(values), ordinates * static_cast<int>(discrete.grid().size())};
+    return {flat(values), ordinates * static_cast<int>(discrete.most_ordinates())};
   }
 
-  DoubleScatteringOf<Number> twice(const Group& group, std::size_t link) const {
-    return {slab_.optical_depth(slab_.layers.front()),
-            slab_.k / slab_.mu_t,
-            group.momentum,
-            group.lights[static_cast<std::size_t>(group.links[link].light)],
-            group.views[static_cast<std::size_t>(group.links[link].view)],
-            slab_.departure};
+  /// Paths with two scatterings between one wave of a pair of illuminations and one wave of a pair
+  /// of views: the indices of both waves (PairWavesOf), and the factor of their contribution.
+  struct Twice {
+    DoubleScatteringOf<Number> paths;
+    Eigen::Index light, view;
+    C factor;
+  };
+  /// Returns the paths of a link. With faces, the two waves of the views and the two of the
+  /// illuminations form four combinations. Because a layer is symmetric, the two that are mirror
+  /// images of each other contribute equally.
+  std::vector<Twice> twice(const Group& group, std::size_t number) const {
+    const auto& link = group.links[number];
+    const auto& layer = slab_.layers.front();
+    const PairInLayersOf<Geometry, Number> light(
+        slab_, group.lights[static_cast<std::size_t>(link.light)]),
+        view(slab_, turned_round(group.views[static_cast<std::size_t>(link.view)]));
+    const auto &in = light.layers().front(), &out = view.layers().front();
+    std::vector<Twice> all;
+    for (std::size_t wave = 0; wave < in.size(); ++wave) {
+      C factor = in[wave].factor * out[0].factor;
+      if (in.size() == 2) factor += in[1 - wave].factor * out[1].factor;
+      all.push_back({{slab_.optical_depth(layer),
+                      layer.k / layer.mu_t,
+                      group.momentum,
+                      {in[wave].pair, in[wave].wave},
+                      {turned_round(out[0].pair), out[0].wave},
+                      slab_.departure},
+                     link.light + static_cast<Eigen::Index>(wave) * std::ssize(group.lights),
+                     link.view,
+                     factor});
+    }
+    return all;
   }
 
   /// Adds the contribution of paths with two scatterings. A first solution must exist, because the
@@ -260,10 +287,13 @@ class CovarianceRefiner {
       parallel_for(parts_.size(), [&](std::size_t p) {
         stop_if_interrupted();
         const Group& group = parts_[p].group;
-        for (std::size_t i = 0; i < group.links.size(); ++i)
-          found[p].push_back(
-              scattered_twice *
-              twice(group, i).total(layer.law, tolerance * scale[group.links[i].entry]));
+        for (std::size_t i = 0; i < group.links.size(); ++i) {
+          C sum{};
+          for (const auto& [paths, in, out, factor] : twice(group, i))
+            sum += factor * paths.total(layer.law, tolerance * scale[group.links[i].entry] /
+                                                       std::max(1e-12, std::abs(value_of(factor))));
+          found[p].push_back(scattered_twice * sum);
+        }
       });
       for (std::size_t p = 0; p < parts_.size(); ++p) add(few_, parts_[p].group, flat(found[p]));
     }
@@ -369,8 +399,9 @@ Refined changed_covariance(const Scene& scene, bool reversed, const Refinement& 
   const auto slab = slab_of<Geometry>(scene, change.delay);
   const auto request = directions_of<Geometry>(scene.request);
   if (change.shift == 0) return slab_covariance(slab, request, reversed, refinement);
-  const SlabOf<Geometry, Complex> shifted{
-      slab.k, slab.mu_t, slab.depth, slab.layers, {1, change.shift}};
+  const SlabOf<Geometry, Complex> shifted{slab.k,           slab.mu_t,         slab.depth,
+                                          slab.layers,      {1, change.shift}, slab.outside_index,
+                                          slab.polarisation};
   return slab_covariance(shifted, request, reversed, refinement);
 }
 
@@ -380,12 +411,18 @@ Refined changing_covariance(const Scene& scene, bool reversed, const Refinement&
   const auto slab = slab_of<Geometry>(scene);
   const auto& layer = slab.layers.front();
   const auto derivative = bulk_derivative<Geometry>(scene, layer.law, parameter);
-  const SlabOf<Geometry, Dual<double>> changing{
-      slab.k,
-      slab.mu_t,
-      slab.depth,
-      {{layer.mu_t, layer.depth, {layer.albedo, derivative.albedo}, derivative.law}},
-      {{1, -derivative.log_mu_t}}};
+  const SlabOf<Geometry, Dual<double>> changing{slab.k,
+                                                slab.mu_t,
+                                                slab.depth,
+                                                {{layer.mu_t,
+                                                  layer.depth,
+                                                  {layer.albedo, derivative.albedo},
+                                                  derivative.law,
+                                                  layer.k,
+                                                  layer.index}},
+                                                {{1, -derivative.log_mu_t}},
+                                                slab.outside_index,
+                                                slab.polarisation};
   return by_parameter(
       slab_covariance(changing, directions_of<Geometry>(scene.request), reversed, refinement),
       derivative.unit);
@@ -397,12 +434,15 @@ template <typename Geometry>
 SlabOf<Geometry, double> slab_of(const Scene& scene, double delay) {
   const BulkMedium& medium = scene.medium;
   const double depth = scene.domain.depth;
+  const Faces faces = scene.faces.value_or(Faces{});
+  std::vector<SlabLayerOf<Geometry, double>> list;
   if (const auto* layers = dynamic_cast<const Layers*>(scene.profile.get()))
-    return {scene.k, medium.mu_t, depth, layers_of<Geometry>(scene, *layers, delay)};
-  return {scene.k,
-          medium.mu_t,
-          depth,
-          {{medium.mu_t, depth, medium.albedo, Geometry::law(scene, delay)}}};
+    list = layers_of<Geometry>(scene, *layers, delay);
+  else
+    list = {
+        {medium.mu_t, depth, medium.albedo, Geometry::law(scene, delay), scene.k, faces.inside}};
+  return {scene.outside_k(), medium.mu_t,       depth, std::move(list), {},
+          faces.outside,     faces.polarisation};
 }
 
 template SlabOf<PlaneGeometry, double> slab_of<PlaneGeometry>(const Scene&, double);

@@ -10,6 +10,7 @@
 #include "core/numbers/blas.h"
 #include "core/run/interrupt.h"
 #include "core/run/parallel.h"
+#include "flatland/media/face_stack.h"
 #include "mc/jobs/flux_job.h"
 #include "mc/slab/adding/direction_modes.h"
 #include "mc/slab/adding/plane.h"
@@ -30,6 +31,44 @@ double share_between(double light, double from, double to) {
   return from < light && light < to ? 1 : 0;
 }
 
+/// Shares of the power that leave in the beam, without being scattered except into forward peaks:
+/// in the direction of the illumination, and in that of its reflection at the faces.
+struct StraightShares {
+  double through = 0, back = 0;
+};
+
+/// A face through which light leaves, seen from the adjacent layer. Angles from z are converted to
+/// those inside by the law of refraction.
+template <typename Geometry>
+class ExitFace {
+ public:
+  ExitFace(const SlabOf<Geometry, double>& slab, const DiscreteSlabOf<Geometry, double>& discrete,
+           double light, bool top)
+      : ratio_(slab.outside_index / slab.index(top ? 0 : std::ssize(slab.layers) - 1)),
+        ordinates_(top ? discrete.layers().front() : discrete.layers().back()),
+        scale_(Geometry::power_scale(1 / ratio_) / std::cos(light)) {}
+
+  const OrdinatesOf<Geometry, double>& ordinates() const { return ordinates_; }
+  /// Factor of the share of the incident power that leaves at an ordinate, for radiance times
+  /// OrdinatesOf::root() relative to a beam of unit intensity.
+  double scale() const { return scale_; }
+  /// Returns the integrals of the polynomials of the grid over an interval of angles outside, which
+  /// is limited to [0, pi/2].
+  Eigen::VectorXd integrals(double from, double to) const {
+    return ordinates_.grid().interval_integrals(inside(from), inside(to));
+  }
+
+ private:
+  double inside(double angle) const {
+    if (ratio_ == 1) return angle;
+    return std::asin(std::min(1.0, ratio_ * std::sin(std::clamp(angle, 0.0, pi / 2))));
+  }
+
+  double ratio_;
+  const OrdinatesOf<Geometry, double>& ordinates_;
+  double scale_;
+};
+
 /// Light that leaves a slab in the plane through each face, at the ordinates. `right` contains the
 /// directions with positive sine, `left` their mirror images about z.
 class PlaneExits {
@@ -37,11 +76,13 @@ class PlaneExits {
   using Discrete = DiscreteSlabOf<PlaneGeometry, double>;
   static constexpr double first_angle = -pi, angles = 2 * pi;
 
-  PlaneExits(const Discrete& discrete, double light)
-      : grid_(discrete.grid()), light_(light), reflected_(grid_.size()), transmitted_(reflected_) {}
+  PlaneExits(const SlabOf<PlaneGeometry, double>& slab, const Discrete& discrete, double light,
+             StraightShares straight)
+      : light_(light),
+        straight_(straight),
+        reflected_({slab, discrete, light, true}),
+        transmitted_({slab, discrete, light, false}) {}
 
-  /// Sets the share of the power that leaves in the beam, in the direction of the illumination.
-  void add_straight(double share) { straight_ = share; }
   /// Adds the leaving light that is an even (function 0) or an odd (function 1) function of the
   /// angle.
   void add(int function, const LayerResponseOf<double>& leaving) {
@@ -53,16 +94,21 @@ class PlaneExits {
   /// Returns the share of the incident power that leaves between two exit angles, -pi <= from < to
   /// <= pi. It is the sum over the four quadrants.
   double within(double from, double to) const {
-    return quadrant(transmitted_.right, from, to) + quadrant(transmitted_.left, -to, -from) +
-           quadrant(reflected_.right, pi - to, pi - from) +
-           quadrant(reflected_.left, from + pi, to + pi) +
-           straight_ * share_between(light_, from, to);
+    return transmitted_.share(transmitted_.right, from, to) +
+           transmitted_.share(transmitted_.left, -to, -from) +
+           reflected_.share(reflected_.right, pi - to, pi - from) +
+           reflected_.share(reflected_.left, from + pi, to + pi) +
+           straight_.through * share_between(light_, from, to) +
+           straight_.back * share_between(std::remainder(pi - light_, 2 * pi), from, to);
   }
 
  private:
-  struct Face {
+  struct Leaving {
+    ExitFace<PlaneGeometry> face;
     Eigen::VectorXd right, left;
-    explicit Face(Eigen::Index n) : right(Eigen::VectorXd::Zero(n)), left(right) {}
+
+    explicit Leaving(const ExitFace<PlaneGeometry>& exit)
+        : face(exit), right(Eigen::VectorXd::Zero(exit.ordinates().grid().size())), left(right) {}
 
     void add(int function, const Rows& leaving) {
       const auto power = function == 0 ? Eigen::VectorXd(leaving.row(0).real())
@@ -70,20 +116,20 @@ class PlaneExits {
       right += power;
       left += function == 0 ? power : -power;
     }
+    double share(const Eigen::VectorXd& exit, double from, double to) const {
+      const AngularGrid& grid = face.ordinates().grid();
+      const Eigen::VectorXd integrals = face.integrals(from, to);
+      double sum = 0;
+      for (Eigen::Index j = 0; j < exit.size(); ++j)
+        sum += integrals[j] *
+               (std::sqrt(grid.cosine()[j] / (2 * grid.weight()[j])) * face.scale() * exit[j]);
+      return sum;
+    }
   };
 
-  double quadrant(const Eigen::VectorXd& exit, double from, double to) const {
-    const Eigen::VectorXd integrals = grid_.interval_integrals(from, to);
-    double sum = 0;
-    for (Eigen::Index j = 0; j < exit.size(); ++j)
-      sum += integrals[j] *
-             (std::sqrt(grid_.cosine()[j] / (2 * grid_.weight()[j])) / std::cos(light_) * exit[j]);
-    return sum;
-  }
-
-  const AngularGrid& grid_;
-  double light_, straight_ = 0;
-  Face reflected_, transmitted_;
+  double light_;
+  StraightShares straight_;
+  Leaving reflected_, transmitted_;
 };
 
 /// Returns the scalar product. Eigen's own causes gcc 12 to print warnings about the AVX-512
@@ -92,91 +138,131 @@ double sum_of_products(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
   return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
 }
 
-/// Light that leaves a slab in space. The vectors power_ and per_radian_ convert the unknowns at
-/// the ordinates to shares of the incident power, in total and per radian of the polar angle.
+/// Light that leaves a slab in space.
 class SpaceExits {
  public:
   using Discrete = DiscreteSlabOf<SpaceGeometry, double>;
   static constexpr double first_angle = 0, angles = pi;
 
-  SpaceExits(const Discrete& discrete, double light)
-      : grid_(discrete.grid()),
-        light_(std::abs(light)),
-        power_(std::sqrt(2 * pi) * discrete.root() / std::cos(light)),
-        per_radian_(power_.array() * grid_.angle().array().sin() * grid_.cosine().array() /
-                    discrete.root().array().square()) {}
+  SpaceExits(const SlabOf<SpaceGeometry, double>& slab, const Discrete& discrete, double light,
+             StraightShares straight)
+      : light_(std::abs(light)),
+        straight_(straight),
+        reflected_({slab, discrete, light, true}),
+        transmitted_({slab, discrete, light, false}) {}
 
-  /// Sets the share of the power that leaves in the beam, in the direction of the illumination.
-  void add_straight(double share) { straight_ = share; }
   void add(int, const LayerResponseOf<double>& leaving) {
-    up_ = leaving.up.row(0).real();
-    down_ = leaving.down.row(0).real();
+    reflected_.exit = leaving.up.row(0).real();
+    transmitted_.exit = leaving.down.row(0).real();
   }
-  double reflected() const { return sum_of_products(up_, power_); }
-  double transmitted() const { return sum_of_products(down_, power_) + straight_; }
+  double reflected() const { return reflected_.all() + straight_.back; }
+  double transmitted() const { return transmitted_.all() + straight_.through; }
   /// Returns the share of the incident power that leaves between two exit angles, 0 <= from < to <=
   /// pi.
   double within(double from, double to) const {
-    const auto radiance = [this](const Eigen::VectorXd& exit) -> Eigen::VectorXd {
-      return exit.cwiseProduct(per_radian_);
-    };
-    // Light along the z axis is counted as a whole in the interval that begins at 0, because polar
-    // angles are not negative.
-    const double along = light_ == 0 ? (from == 0 ? 1 : 0) : share_between(light_, from, to);
-    return sum_of_products(grid_.interval_integrals(from, to), radiance(down_)) +
-           sum_of_products(grid_.interval_integrals(pi - to, pi - from), radiance(up_)) +
-           straight_ * along;
+    // Light along the z axis is counted as a whole in the first or the last interval, because polar
+    // angles lie between 0 and pi.
+    const double along = light_ == 0 ? (from == 0 ? 1 : 0) : share_between(light_, from, to),
+                 opposite = light_ == 0 ? (to == pi ? 1 : 0) : share_between(pi - light_, from, to);
+    return transmitted_.share(from, to) + reflected_.share(pi - to, pi - from) +
+           straight_.through * along + straight_.back * opposite;
   }
 
  private:
-  const AngularGrid& grid_;
-  double light_, straight_ = 0;
-  Eigen::VectorXd power_, per_radian_, up_, down_;
+  /// The vectors power and per_radian convert the unknowns at the ordinates to shares of the
+  /// incident power, in total and per radian of the polar angle inside.
+  struct Leaving {
+    ExitFace<SpaceGeometry> face;
+    Eigen::VectorXd power, per_radian, exit;
+
+    explicit Leaving(const ExitFace<SpaceGeometry>& leaves)
+        : face(leaves),
+          power(std::sqrt(2 * pi) * leaves.scale() * leaves.ordinates().root()),
+          per_radian(power.array() * leaves.ordinates().grid().angle().array().sin() *
+                     leaves.ordinates().grid().cosine().array() /
+                     leaves.ordinates().root().array().square()) {}
+
+    double all() const { return sum_of_products(exit, power); }
+    double share(double from, double to) const {
+      return sum_of_products(face.integrals(from, to), exit.cwiseProduct(per_radian));
+    }
+  };
+
+  double light_;
+  StraightShares straight_;
+  Leaving reflected_, transmitted_;
 };
 
-/// A beam that has crossed the layers. Light that is scattered into the forward peak of a phase
-/// function remains in the beam.
-struct UnscatteredLight {
-  /// Fractions of the incident power: in the beam; not scattered at all; absorbed.
-  double transmitted = 1, unscattered = 1, absorbed = 0;
+/// A beam in a stack of layers, with all its reflections at faces. Light that is scattered into the
+/// forward peak of a phase function remains in the beam.
+struct BeamLayer {
+  double cosine;  ///< of its direction in the layer
+  /// Power that enters the layer from above, and from below after reflections, as fractions of the
+  /// incident power
+  double down, up;
+};
+struct LayeredBeam {
+  std::vector<BeamLayer> layers;
+  double transmitted, reflected;
+  double absorbed = 0;   ///< fraction of the incident power
   double thickness = 0;  ///< optical depth of the layers, without the scattering into forward peaks
 };
 
+/// Follows a beam that meets the face z = 0. with_peaks: whether light that is scattered into
+/// forward peaks leaves the beam.
 template <typename Geometry>
-UnscatteredLight through_layers(const SlabOf<Geometry, double>& slab, double light) {
-  UnscatteredLight beam;
-  for (const auto& layer : slab.layers) {
-    const double path = slab.optical_depth(layer) / std::cos(light),
-                 turned = 1 - layer.albedo * layer.law.peak();
-    beam.absorbed -= beam.transmitted * std::expm1(-path * turned) * (1 - layer.albedo) / turned;
-    beam.transmitted *= std::exp(-path * turned);
-    beam.thickness += slab.optical_depth(layer) * turned;
-    beam.unscattered *= std::exp(-path);
+LayeredBeam beam_in_layers(const SlabOf<Geometry, double>& slab, double light, bool with_peaks) {
+  const auto layers = std::ssize(slab.layers);
+  std::vector<double> cosines{std::cos(light)}, through, kept;
+  std::vector<FaceProducts> faces;
+  LayeredBeam beam;
+  for (std::ptrdiff_t l = 0; l < layers; ++l) {
+    const auto& layer = slab.layers[static_cast<std::size_t>(l)];
+    const Face refraction{slab.outside_index, layer.index, slab.polarisation};
+    cosines.push_back(refraction.refracted(cosines.front()));
+    kept.push_back(with_peaks ? 1 : 1 - layer.albedo * layer.law.peak());
+    through.push_back(std::exp(-slab.optical_depth(layer) * kept.back() / cosines.back()));
+    beam.thickness += slab.optical_depth(layer) * kept.back();
+  }
+  for (std::ptrdiff_t l = 0; l <= layers; ++l)
+    faces.push_back(FaceProducts::of_power(slab.face(l), cosines[static_cast<std::size_t>(l)]));
+  const auto powers = amplitudes_in_stack(through, faces);
+  beam.transmitted = powers.transmitted;
+  beam.reflected = powers.reflected;
+  for (std::size_t l = 0; l < slab.layers.size(); ++l) {
+    beam.layers.push_back({cosines[l + 1], powers.forward[l], powers.backward[l]});
+    beam.absorbed += (powers.forward[l] + powers.backward[l]) * (1 - through[l]) *
+                     (1 - slab.layers[l].albedo) / kept[l];
   }
   return beam;
 }
 
 /// Returns, for each layer, the radiance that the first scattering of the beam adds, and a view
-/// whose signal is the absorbed power.
+/// whose signal is the absorbed power. The intensity of the incident beam is 1.
 template <typename Geometry>
 std::vector<EndpointWavesOf<double>> flux_endpoints(
     const SlabOf<Geometry, double>& slab, const DiscreteSlabOf<Geometry, double>& discrete,
-    double light) {
-  const Eigen::Index n = discrete.grid().size(), functions = Geometry::flux_modes + 1;
+    const LayeredBeam& beam, double light) {
   std::vector<EndpointWavesOf<double>> endpoints;
   for (std::size_t l = 0; l < slab.layers.size(); ++l) {
     const auto& ordinates = discrete.layers()[l];
-    const double extinction = 1 - ordinates.peak_scattering();
+    const Eigen::Index n = ordinates.grid().size(), functions = Geometry::flux_modes + 1;
+    const auto& [cosine, down_power, up_power] = beam.layers[l];
+    const double rate = (1 - ordinates.peak_scattering()) / cosine,
+                 scale = Geometry::power_scale(slab.layers[l].index / slab.outside_index);
     const Eigen::VectorXd lost = (1 - ordinates.albedo()) * ordinates.all_directions();
-    Rows down(1, functions * n), up = down, absorbed = Rows::Zero(1, functions * n);
+    const double angle = refracted(light, slab.outside_index / slab.layers[l].index);
+    Rows down(2, functions * n), up = down, absorbed = Rows::Zero(1, functions * n);
     for (int m = 0; m < functions; ++m) {
-      const auto [forward, backward] = ordinates.of_beam(light, m);
-      down.middleCols(m * n, n) = forward.transpose();
-      up.middleCols(m * n, n) = backward.transpose();
+      const auto [forward, backward] = ordinates.of_beam(angle, m);
+      down.middleCols(m * n, n) << forward.transpose(), backward.transpose();
+      up.middleCols(m * n, n) << backward.transpose(), forward.transpose();
       absorbed.middleCols(m * n, n).real() = lost.transpose();
     }
+    const double intensity = std::cos(light) / cosine / scale;
     endpoints.push_back(
-        {{{-extinction / std::cos(light)}, {0}, down, up}, {{0}, {0}, absorbed, absorbed}});
+        {{{-rate, 0}, {0, -rate}, down, up, {down_power * intensity, up_power * intensity}, 1},
+         {{0}, {0}, absorbed, absorbed, {scale}, 1}});
   }
   return endpoints;
 }
@@ -190,22 +276,24 @@ struct FluxSolution {
 template <typename Geometry, typename Exits>
 FluxSolution solved(SlabOf<Geometry, double> slab, double light, std::size_t bins, int order) {
   for (auto& layer : slab.layers) layer.law = layer.law.truncated(kept_moments(order));
-  const UnscatteredLight beam = through_layers(slab, light);
-  auto foci = light_foci({light, light}, slab.width());
+  const LayeredBeam beam = beam_in_layers(slab, light, false);
+  const double refraction = slab.outside_index / slab.largest_index();
+  auto foci = light_foci(refracted(Pair{light, light}, refraction), slab.width());
   // In a thin slab radiance varies rapidly near the directions in which the path through the slab
   // is about one mean free path long.
   foci.push_back({pi / 2, beam.thickness});
   const typename Exits::Discrete discrete(slab, foci, order);
   const DirectionModesOf<Geometry, double> modes(slab, discrete, Geometry::flux_modes,
-                                                 flux_endpoints(slab, discrete, light));
+                                                 flux_endpoints(slab, discrete, beam, light));
   FluxSolution found{std::vector<Complex>(flux_shares + bins),
-                     static_cast<int>(2 * discrete.grid().size())};
+                     static_cast<int>(2 * discrete.most_ordinates())};
   found.shares[absorbed] = beam.absorbed;
-  Exits exits(discrete, light);
-  exits.add_straight(beam.transmitted - beam.unscattered);
+  const LayeredBeam unscattered = beam_in_layers(slab, light, true);
+  Exits exits(slab, discrete, light,
+              {beam.transmitted - unscattered.transmitted, beam.reflected - unscattered.reflected});
   for (const auto& part : modes.parts())
     if (const auto layers = modes.layers(part); !layers.empty()) {
-      const auto leaving = response_of(layers);
+      const auto leaving = response_of(layers, modes.faces(part));
       exits.add(part.functions.front(), leaving);
       if (part.functions.front() == 0)
         found.shares[absorbed] += leaving.collected(0, 0).real() / std::cos(light);
@@ -262,7 +350,7 @@ template <typename Geometry, typename Exits>
 Refined refined_flux(const Scene& scene, std::size_t bins, const Refinement& refinement) {
   blas_single_thread();
   const auto slab = slab_of<Geometry>(scene);
-  const int order = std::max(refinement.first_order(), slab.least_order());
+  const int order = std::max(refinement.first_order(slab.has_faces()), slab.least_order());
   // Beyond this order the number of kept moments of a sharp peak no longer increases.
   const bool sharp =
       std::ranges::any_of(slab.layers, [](const auto& one) { return one.law.has_sharp_peak(); });
@@ -283,7 +371,7 @@ Refined flux_of_absorber(const Scene& scene, std::size_t angle_bins) {
   Refined all;
   for (const double light : scene.request.lights.angles()) {
     std::vector<Complex> shares(flux_shares + angle_bins);
-    shares[absorbed] = 1 - direct_transmittance(scene, light);
+    shares[absorbed] = 1 - direct_transmittance(scene, light) - specular_reflectance(scene, light);
     all.append({shares, std::vector<Complex>(shares.size()), 0});
   }
   return all;

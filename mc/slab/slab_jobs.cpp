@@ -42,6 +42,7 @@ void require_resolved_peaks(const Scene& scene, double least_width) {
 PathJob two_batch_job(const Scene& scene, const std::vector<double>& units,
                       const std::function<Refined()>& solve) {
   require_layers(scene);
+  refuse_unpolarised(scene);
   if (scene.medium.mu_s > 0)
     scene.medium.dimension == 3 ? require_resolved_peaks<SpaceGeometry>(scene, 1e-3)
                                 : require_resolved_peaks<PlaneGeometry>(scene, 1e-4);
@@ -97,10 +98,10 @@ Refined refined_range(const Scene& scene, bool reversed, Refinement refinement) 
 }
 
 /// Returns the parameters by which transport computes derivatives: bulk_parameters() and, for
-/// spheres, the radius and the index.
+/// spheres at independent positions, the radius and the index.
 std::vector<BulkParameter> slab_parameters(const Scene& scene) {
   auto parameters = bulk_parameters(scene);
-  if (scene.scatterer.kind == Scatterer::Kind::mie)
+  if (scene.scatterer.kind == Scatterer::Kind::mie && scene.medium.structure.independent())
     parameters.insert(parameters.end(), {BulkParameter::radius, BulkParameter::index});
   return parameters;
 }

@@ -9,15 +9,15 @@
 namespace flatspeckle::mc {
 
 /// Whether a far view lies in the forward lobe of a plane wave or beam that crosses a box
-/// undeflected. The lobe is the central diffraction lobe of an aperture as wide as the box; it
-/// contains the coherent field.
+/// undeflected, or in that of the specular reflection if the faces reflect. The lobe is the central
+/// diffraction lobe of an aperture as wide as the box; it contains the coherent field.
 inline bool in_forward_lobe(const Scene& scene, const Channel& channel) {
   const View& view = scene.request.views[channel.view];
   const Light& light = scene.request.lights[channel.light];
   if (scene.domain.kind != Domain::Kind::box || view.near || light.kind == Light::Kind::point ||
-      std::cos(view.angle) <= 0)
+      (std::cos(view.angle) <= 0 && !scene.faces))
     return false;
-  const double q = scene.k * (std::sin(view.angle) - std::sin(light.angle));
+  const double q = scene.outside_k() * (std::sin(view.angle) - std::sin(light.angle));
   return std::abs(q) < 2 * std::numbers::pi / scene.domain.width;
 }
 
@@ -50,6 +50,30 @@ inline double least_square(const Scene& scene) {
   return least;
 }
 
+/// Returns the relative size of the interference, in a medium with faces, between the waves of one
+/// plane wave that the faces reflect. angle: direction outside. One part is between waves along the
+/// same direction, before and after a round trip. It depends on the depth in wavelengths. The other
+/// part is between the downgoing and the upgoing wave, averaged over the depth (C46).
+inline double face_interference(const Scene& scene, double angle) {
+  const double cosine = scene.faces->entering().refracted(std::abs(std::cos(angle)));
+  if (cosine == 0) return 1;
+  const double reflected = std::abs(scene.faces->leaving().reflected(cosine)),
+               depth = scene.domain.depth,
+               round_trip = std::exp(-scene.medium.mu_t * depth / cosine);
+  return 2 * reflected * (reflected * round_trip + 1 / (scene.k * depth * cosine));
+}
+
+/// Returns the largest face_interference() of a light plus that of a view; 0 without faces.
+inline double face_interference(const Scene& scene) {
+  double lights = 0, views = 0;
+  if (!scene.faces) return 0;
+  for (const Light& light : scene.request.lights)
+    lights = std::max(lights, face_interference(scene, light.angle));
+  for (const View& view : scene.request.views)
+    views = std::max(views, face_interference(scene, view.angle));
+  return lights + views;
+}
+
 /// Estimated relative size of the effects that the Monte Carlo method neglects; not a bound.
 /// Deviations from exact solutions were measured in data/bias_map.csv.
 struct Allowance {
@@ -66,7 +90,9 @@ struct Allowance {
   /// correlations: correlations of the positions of the scatterers. Their effect is of the order of
   /// the packing fraction if they are not modelled, and of the order of its square if they are
   /// (C16).
-  double crossed_paths, k_shift, guided, correlations;
+  ///
+  /// faces: interference between waves that reflecting faces return (face_interference()).
+  double crossed_paths, k_shift, guided, correlations, faces;
   /// Fraction of free flights shorter than k a^2, where a is the radius of the disks. It is (k a)^2
   /// / (k mean free path). At such distances the far field of a disk does not hold. bias_map.csv
   /// was measured at k a = 1, so crossed_paths includes the value at k a = 1, which is subtracted
@@ -74,7 +100,8 @@ struct Allowance {
   double near_zone;
 
   explicit Allowance(const Scene& scene)
-      : crossed_paths(2 / (scene.k * scene.medium.mean_free_path() * least_square(scene))) {
+      : crossed_paths(2 / (scene.k * scene.medium.mean_free_path() * least_square(scene))),
+        faces(face_interference(scene)) {
     const double shift = std::abs(scene.medium.k_shift) / scene.k, depth = scene.domain.depth,
                  phase = std::min(1.0, scene.k * shift * depth),
                  across = std::min(1.0, std::sqrt(2 * shift) * depth / scene.domain.width);
@@ -87,7 +114,7 @@ struct Allowance {
     const double size = scene.scatterer.is_disk() ? scene.k * scene.scatterer.radius : 0;
     near_zone = std::max(0.0, size * size - 1) / (scene.k * scene.medium.mean_free_path());
   }
-  double total() const { return crossed_paths + k_shift + guided + correlations; }
+  double total() const { return crossed_paths + k_shift + guided + correlations + faces; }
 };
 
 }  // namespace flatspeckle::mc

@@ -46,6 +46,8 @@ const DatasetTable moves_table{
               "any"},
              {"memory_effect_range", Data::estimate, "", "1",
               "q L at C_I = 1/2 with matched views, L the depth"},
+             {"memory_effect_angle", Data::estimate, "", "rad",
+              "rotation of the light at C_I = 1/2 with matched views"},
              {"tilt_range", Data::estimate, "", "1",
               "q L at C_I = 1/2 with fixed views, L the depth"},
              {"shift_range", Data::estimate, "", "SHIFT_RANGE",
@@ -61,6 +63,8 @@ const DatasetTable moves_table{
               "C_E of the reflected views, if there are transmitted views too"},
              {"reflected_memory_effect_range", Data::estimate, "", "1",
               "q L of the reflected views at C_I = 1/2 with matched views, L the depth"},
+             {"reflected_memory_effect_angle", Data::estimate, "", "rad",
+              "rotation of the light at C_I = 1/2 of the reflected views with matched views"},
              {"reflected_tilt_range", Data::estimate, "", "1",
               "q L of the reflected views at C_I = 1/2 with fixed views, L the depth"},
              {"reflected_shift_range", Data::estimate, "", "SHIFT_RANGE",
@@ -84,6 +88,8 @@ const DatasetTable moves_table{
              {"memory_effect_range_gradient", Data::estimate, "parameter", "",
               "derivative of the range q L at C_I = 1/2; 0 if the range is censored"}},
     .attributes = {{"memory_effect_range", "censored", "uint64", censored_meaning},
+                   {"memory_effect_angle", "censored", "uint64", censored_meaning},
+                   {"reflected_memory_effect_angle", "censored", "uint64", censored_meaning},
                    {"tilt_range", "censored", "uint64", censored_meaning},
                    {"shift_range", "censored", "uint64", censored_meaning},
                    {"translation_range", "censored", "uint64", censored_meaning},
@@ -144,7 +150,7 @@ class MovesWriter {
     const double depth = scene_.domain.depth, light = request_.lights.front().angle;
     if (!scene_.profile)
       out_.put("diffusion_theory", column(request_.tilt_q, [&](double q) {
-                 return diffusion_field_correlation(scene_.medium, depth, q);
+                 return diffusion_field_correlation(scene_, q);
                }));
     out_.put("single_scattering", column(request_.tilt_q, [&](double q) {
                return single_scattering_correlation(light, views, depth, q);
@@ -163,6 +169,19 @@ class MovesWriter {
     tilts ? range("memory_effect_range", only, scene_.domain.depth)
           : range("translation_range", only, 1);
     ranges_.back().few_steps = few_steps(tilts ? request_.tilt_q : request_.shifts, only.range);
+    if (tilts) angle(only);
+  }
+
+  /// Writes the angle by which the light turns when the transverse wavenumber outside changes by
+  /// the range, unless this takes it past the horizon.
+  void angle(RangeEstimate estimate) {
+    const double light = request_.lights.front().angle, k = scene_.outside_k(),
+                 sine = std::sin(light) + estimate.range.value / k;
+    if (!(std::abs(sine) < 1)) return;
+    estimate.range.value = std::asin(sine) - light;
+    estimate.error /= k * std::sqrt(1 - sine * sine);
+    range("memory_effect_angle", estimate, 1);
+    ranges_.back().is_angle = true;
   }
 
   void map(const Correlations& found) {

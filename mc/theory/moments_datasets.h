@@ -29,6 +29,7 @@ struct WrittenRange {
   std::string long_name;
   RangeEstimate estimate;
   bool few_steps = false;
+  bool is_angle = false;  ///< whether the unit is rad
 };
 
 /// Values written for a group of views (view_groups()): the field correlation C_E of each move

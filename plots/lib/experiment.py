@@ -9,7 +9,7 @@ from lib.sweep_file import columns_of
 import h5py
 import numpy as np
 
-HIDDEN = ("_error", "_limit", "_rare", "_s", "samples")  # endings of datasets that are not results
+HIDDEN = ("_error", "_limit", "_rare", "_censored", "_s", "samples")  # endings of datasets that are not results
 
 
 def keys_of(result):
@@ -63,12 +63,23 @@ class Number:
             values = values[..., self.entry]
         return values.reshape(-1, *values.shape[rank:])
 
+    def known(self, values):
+        """Returns the values with NaN where only a bound of a range is known."""
+        name = f"{self.path}_censored"
+        if self.result.has(name):
+            values = np.where(self.of(name) == 0, values, np.nan)
+        elif self.result.dataset(self.path).attrs.get("censored", 0):
+            values = np.full(values.shape, np.nan)
+        if np.isnan(values).all():
+            raise Unusable(f"{self.result.path}: {self.name} is only a bound at all points; give larger or smaller tilts")
+        return values
+
     def values(self):
-        return self.of(self.path)
+        return self.known(self.of(self.path))
 
     def errors(self):
         name = f"{self.path}_error"
-        return self.of(name) if self.result.has(name) else np.zeros_like(self.values())
+        return self.known(self.of(name)) if self.result.has(name) else np.zeros_like(self.of(self.path))
 
     def derivatives(self, key):
         """Returns the derivatives with respect to a key, [point], or None."""

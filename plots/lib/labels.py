@@ -8,7 +8,8 @@ import numpy as np
 
 # Keys of accuracy and method, or of the horizontal axis; they do not count as differences of scenes.
 NOT_SCENE = {"samples", "wave_samples", "seconds", "target_error", "tolerance", "wave_tolerance", "seed", "threads",
-             "method", "tilts", "tilt_count", "q_depths", "shifts", "delays", "frequency_shifts", "neglect_k_shift"}
+             "method", "tilts", "tilt_count", "q_depths", "shifts", "delays", "frequency_shifts", "linewidths",
+             "neglect_k_shift"}
 NAMES = {"optical_depth": "OD", "g": "$g$", "view_angles": "view", "light_angles": "light", "mu_s": r"$\mu_s$",
          "mu_a": r"$\mu_a$"}
 MOST = 2  # largest number of differences in a label

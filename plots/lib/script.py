@@ -15,6 +15,9 @@ import matplotlib
 from lib.result_file import Result, Unusable
 
 
+MOST_NAMED = 3  # largest number of further results whose names are part of that of a picture
+
+
 @dataclasses.dataclass(frozen=True)
 class Plot:
     """A function that draws, and the files and options that it accepts."""
@@ -60,7 +63,7 @@ class Plot:
         parser.add_argument("results", metavar=self.metavar,
                             nargs="*" if self.default else "+" if self.several else 1)
         parser.add_argument("--out", metavar="PREFIX", help="write PREFIX.png and PREFIX.pdf "
-                            "(default: next to the first result, named after it and this plot)")
+                            "(default: next to the first result, named after all results and this plot)")
         self.add_options(parser)
         arguments = parser.parse_args()
         with complaints():
@@ -104,10 +107,13 @@ def complaints():
 
 def output_prefix(arguments):
     """Returns the PREFIX of --out, without an ending .png or .pdf. Without --out it is next to the first result, or
-    in the working folder if no result is given."""
+    in the working folder if no result is given; the names of all results are part of it."""
     if not arguments.out:
         beside = [str(pathlib.Path(path).with_suffix("")) for path in arguments.results[:1]]
-        return "_".join([*beside, pathlib.Path(sys.argv[0]).stem])
+        others = [pathlib.Path(path).stem for path in arguments.results[1:]]
+        if len(others) > MOST_NAMED:
+            others = [f"{len(others)}_more"]
+        return "_".join([*beside, *others, pathlib.Path(sys.argv[0]).stem])
     out = pathlib.Path(arguments.out)
     if not out.parent.is_dir():
         raise Unusable(f"--out {out}: there is no folder {out.parent}")

@@ -9,16 +9,23 @@ def log_sinh(a):
     return a + np.log(-np.expm1(-2 * a) / 2)
 
 
-EXTRAPOLATION = {2: 0.818, 3: 0.7104}  # in transport mean free paths, by dimension
+EXTRAPOLATION = {2: 0.818, 3: 0.7104}  # in transport mean free paths, by dimension, without reflecting faces
 
 
-def slab_losses(loss, depth, optical_depth, g, albedo, dimension=2):
-    """Returns the correlation in diffusion theory (conventions, C20) if `loss`, which may be complex, is added to its
-    kappa^2."""
+def slab_lengths(depth, optical_depth, g, albedo, dimension, extrapolation):
+    """Returns transport mean free path, depth of the source, extrapolation length (by default without reflecting faces)
+    and kappa^2."""
     mu_t = optical_depth / depth
     mu_a = mu_t * (1 - albedo)
     transport = 1 / (mu_a + mu_t * albedo * (1 - g))
-    source, extrapolation = np.minimum(transport, depth), EXTRAPOLATION[dimension] * transport
+    beyond = EXTRAPOLATION[dimension] * transport if extrapolation is None else extrapolation
+    return transport, np.minimum(transport, depth), beyond, dimension * mu_a / transport
+
+
+def slab_losses(loss, depth, optical_depth, g, albedo, dimension=2, extrapolation=None):
+    """Returns the correlation in diffusion theory (conventions, C20) if `loss`, which may be complex, is added to its
+    kappa^2."""
+    _, source, extrapolation, kappa2 = slab_lengths(depth, optical_depth, g, albedo, dimension, extrapolation)
 
     def log_f(q2):
         root = np.sqrt(q2)  # very close to 0, f equals its limit to rounding
@@ -26,13 +33,12 @@ def slab_losses(loss, depth, optical_depth, g, albedo, dimension=2):
         return (log_sinh(rate * extrapolation) + log_sinh(rate * (source + extrapolation))
                 - np.log(rate) - log_sinh(rate * (depth + 2 * extrapolation)))
 
-    kappa2 = dimension * mu_a / transport
     return np.exp(log_f(loss + kappa2) - log_f(kappa2))
 
 
-def slab_diffusion(q, depth, optical_depth, g, albedo, dimension=2):
+def slab_diffusion(q, depth, optical_depth, g, albedo, dimension=2, extrapolation=None):
     """Returns C_E at transverse wavenumbers q."""
-    return slab_losses(q**2, depth, optical_depth, g, albedo, dimension)
+    return slab_losses(q**2, depth, optical_depth, g, albedo, dimension, extrapolation)
 
 
 def diffusion_range(depth, optical_depth, g, albedo, dimension=2):
@@ -46,19 +52,26 @@ def diffusion_range(depth, optical_depth, g, albedo, dimension=2):
     return np.sqrt(low * high)
 
 
-def delayed_diffusion(delay, depth, optical_depth, g, albedo, dimension=2):
-    """Returns the field correlation after delays t = k^2 D tau. The decorrelation acts like the q^2 of a tilt."""
-    mu_s = optical_depth / depth * albedo
-    transport = 1 / (optical_depth / depth - g * mu_s)
-    q = np.sqrt(2 * dimension * delay * (1 - g) * mu_s / transport)
-    return slab_diffusion(q, depth, optical_depth, g, albedo, dimension)
+def delayed_diffusion(delay, reflected, depth, optical_depth, g, albedo, dimension=2, extrapolation=None):
+    """Returns the field correlation of transmitted or reflected light after delays t = k^2 D tau (conventions, C53)."""
+    transport, source, z0, kappa2 = slab_lengths(depth, optical_depth, g, albedo, dimension, extrapolation)
+    height = depth - source if reflected else source
+
+    def log_f(q2):
+        q = np.maximum(np.sqrt(q2), 1e-5 / depth)
+        h = q * z0
+        return (np.log(2 * h - (1 - h) * np.expm1(-2 * q * height))
+                - np.log(4 * h - (1 - h)**2 * np.expm1(-2 * q * depth)) - q * (depth - height))
+
+    loss = 2 * delay * (1 - g) * albedo * optical_depth / depth
+    return np.exp(log_f(kappa2 + dimension * loss / transport) - log_f(kappa2))
 
 
-def shifted_diffusion(lag, depth, optical_depth, g, albedo, dimension=2):
+def shifted_diffusion(lag, _, depth, optical_depth, g, albedo, dimension=2, extrapolation=None):
     """Returns the magnitude of the correlation with the field at a wavenumber larger by `lag`, which acts like an
     absorption coefficient i lag."""
     per_loss = dimension * optical_depth / depth * (1 - g * albedo)
-    return np.abs(slab_losses(1j * per_loss * lag, depth, optical_depth, g, albedo, dimension))
+    return np.abs(slab_losses(1j * per_loss * lag, depth, optical_depth, g, albedo, dimension, extrapolation))
 
 
 def cubic(x, y, at):
@@ -82,7 +95,8 @@ def dimension(result):
 def medium(result):
     """Returns the keyword arguments of the formulas above for the slab of a result."""
     keys = ("depth", "optical_depth", "g", "albedo")
-    return {**{key: result.attribute(key) for key in keys}, "dimension": dimension(result)}
+    return {**{key: result.attribute(key) for key in keys}, "dimension": dimension(result),
+            "extrapolation": result.attribute("extrapolation_length")}
 
 
 def single_scattering(result, q):

@@ -19,7 +19,7 @@ from flatspeckle.result import read
 from flatspeckle.run import BAD_INPUT, DONE, FAILED, TARGET_MISSED, run
 from flatspeckle.scene import all_texts, line, scene_of
 
-NO_FUNCTION = ("keys", "datasets", "explain", "new", "bench")
+NO_FUNCTION = ("keys", "datasets", "explain", "export", "new", "bench")
 OWN = """
 Runs `flatspeckle {name}` and returns its result as an xarray.Dataset. Keys that are omitted or None
 have the program's defaults. The optional first argument provides keys to start from: a Scene, a mapping,

@@ -56,16 +56,46 @@ def variable(dataset):
     return xarray.Variable(dims(dataset), values, attributes)
 
 
+def censoring(variables, name):
+    """Returns the marks of a range (docs/format.md, `censored`): 0 where it is known, 1 where only a lower bound is
+    known, 2 where an upper one; None for other variables."""
+    group = name[:name.rfind("/") + 1]
+    of_curves = variables.get(f"{group}range_censored") if name == f"{group}memory_effect_range" else None
+    marks = variables.get(f"{name}_censored", of_curves)
+    if marks is None and "censored" in variables[name].attrs:
+        return np.full(variables[name].shape, variables[name].attrs["censored"])
+    return None if marks is None or marks.shape != variables[name].shape else marks.values
+
+
+def with_bounds(variables):
+    """Returns the variables with NaN for the value and error of each range of which only a bound is known. The bounds
+    are in the variables NAME_at_least and NAME_at_most, which are NaN elsewhere."""
+    result = dict(variables)
+    for name, variable in variables.items():
+        marks = censoring(variables, name)
+        if marks is None:
+            continue
+        for own in (name, f"{name}_error"):
+            if own in variables:
+                result[own] = variables[own].copy(data=np.where(marks == 0, variables[own].values, np.nan))
+        for mark, ending, kind in ((1, "at_least", "lower"), (2, "at_most", "upper")):
+            attributes = {key: value for key, value in variable.attrs.items() if key == "units"}
+            attributes["long_name"] = f"{kind} bound: {variable.attrs.get('long_name', name)}"
+            result[f"{name}_{ending}"] = xarray.Variable(
+                variable.dims, np.where(marks == mark, variable.values, np.nan), attributes)
+    return result
+
+
 def read(path):
     """Reads a result file (HDF5), or a placement (CSV), as a Dataset. Variables in groups keep their full names, as
-    in ds["mc/intensity"]; `group` extracts the variables of one group. `encoding["source"]` is the path of the
-    file."""
+    in ds["mc/intensity"]; `group` extracts the variables of one group. A range of which only a bound is known is NaN,
+    and the bound is in NAME_at_least or NAME_at_most. `encoding["source"]` is the path of the file."""
     path = os.path.abspath(path)
     if not h5py.is_hdf5(path) and os.path.isfile(path):
         return read_placement(path)
     with h5py.File(path) as file:
         found = datasets(file)
-        variables = {name_of(item): variable(item) for item in found}
+        variables = with_bounds({name_of(item): variable(item) for item in found})
         axes = [name_of(item) for item in found if is_scale(item)]
         attributes = {name: plain(value) for name, value in file.attrs.items()}
     result = xarray.Dataset({name: variables[name] for name in variables if name not in axes},

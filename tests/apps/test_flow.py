@@ -92,8 +92,7 @@ class Refused(RefusingTest):
                 ({"delays": [0, 1], "velocity": [1, 0], "method": "transport", "samples": None}, ["velocity"]),
                 ({"delays": [0, 1], "exposures": [2]}, ["exposures = 2", "longest"]),
                 ({"delays": [0, 1], "exposures": [0.5]}, ["exposures = 0.5", "four"]),
-                ({"delays": [0, 1], "diffusion": -1}, ["diffusion"]),
-                ({"delays": [0, 1], "beta": 0.5}, ["beta"])):
+                ({"delays": [0, 1], "diffusion": -1}, ["diffusion"])):
             with self.subTest(**changes):
                 self.assert_refused(words, "covariance", **{**THIN, **changes})
 

@@ -19,7 +19,7 @@ WRITES = re.compile(r"^import .*(savetxt|, \"wb?\"\))", re.DOTALL | re.MULTILINE
 RESOLVE = ("solve", "place", "covariance", "validate", "field", "image", "recover", "fit", "flux", "sweep", "trace",
            "render", "design", "optimise")
 # Commands that are not run: they prepare the machine, need several machines, or hours.
-APART = re.compile(r"^\s*(scripts/|cmake|ctest|cpack|mpirun|#SBATCH|build/|bench_|export )|--method mc|merge |bench |"
+APART = re.compile(r"^\s*(scripts/|cmake|ctest|cpack|mpirun|octave-cli|#SBATCH|build/|bench_|export )|--method mc|merge |bench |"
                    r"--frames frames.csv|SLURM_|--config reflection", re.MULTILINE)
 
 

@@ -125,8 +125,8 @@ class Refused(RefusingTest):
         self.check(["no such file"], layers="none.csv")
 
     def test_what_layers_have_not(self):
-        self.check(["dimension = 3", "without layers", "leave out layers"], dimension=3)
-        self.check(["dimension = 3", "without layers", "leave out layers"], command="flux", dimension=3)
+        self.check(["dimension = 3", "layers require method = transport"], dimension=3)
+        self.check(["dimension = 3", "requires method = transport"], command="flux", dimension=3)
         self.check(["layers", "gradient", "use method = mc"], method="transport", samples=None, gradient=True)
         points = "thickness,density\n3,0.05\n3,0.25\n"
         disks = {**BOX, "scatterer": "tm", "radius": 0.2}

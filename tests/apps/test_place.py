@@ -179,9 +179,9 @@ class Correlated(PlaceTest):
                 ({"structure": "s.h5", "radius": 0.14}, ["structure = s.h5", "contact distance"]),
                 ({"structure": "s.h5", "min_gap": 0.03}, ["structure = s.h5", "contact distance"]),
                 ({"structure": "hard_disks", "scatterer": "point", "radius": None, "index": None},
-                 ["structure = hard_disks", "scatterers are independent"]),
+                 ["structure = hard_disks", "must be none"]),
                 ({"structure": "hard_disks", "count": None, "optical_depth": 1},
-                 ["optical_depth = 1", "count or density"])]:
+                 ["optical_depth = 1", "another density"])]:
             with self.subTest(changes=changes):
                 done = self.call("covariance", **{**self.SCENE, "out": "no.h5", **changes},
                                  status=2)

@@ -261,12 +261,12 @@ class Theory(ProgramTest):
             self.call("covariance", out="d.h5", dimension=dimension, delays=delays, **SLAB)
             medium = theory.medium(Result(self.folder / "d.h5"))
             np.testing.assert_allclose(
-                theory.delayed_diffusion(np.array(delays), **medium),
+                theory.delayed_diffusion(np.array(delays), False, **medium),
                 Result(self.folder / "d.h5").values("diffusion_theory"), rtol=1e-9)
             shifts = [0, 1e-4, 1e-3]
             self.call("covariance", out="f.h5", dimension=dimension, frequency_shifts=shifts, **SLAB)
             np.testing.assert_allclose(
-                theory.shifted_diffusion(2 * np.pi * np.array(shifts), **medium),
+                theory.shifted_diffusion(2 * np.pi * np.array(shifts), False, **medium),
                 Result(self.folder / "f.h5").values("frequency_diffusion_theory"), rtol=1e-9)
 
 

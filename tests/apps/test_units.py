@@ -30,6 +30,31 @@ class UnitsTest(ProgramTest):
         for line in ("width = 20", "depth = 10", "density = 0.1", "shifts = [0, 1, 2]"):
             self.assertIn(line, printed)
 
+    def test_divisors(self):
+        printed = self.config_of("covariance", **{**SLAB, "depth": "1mm/8", "optical_depth": "1/3"}, wavelength="633nm/1.33",
+                                 light_angles="10deg/4", length_unit="um")
+        for line in ("depth = 125", "optical_depth = 0.3333333333333333", f"wavelength = {0.633 / 1.33!r}"):
+            self.assertIn(line, printed)
+        spheres = dict(domain="slab", scatterer="mie", radius=0.5, depth=10, optical_depth=1, dimension=3, light_angles=0,
+                       view_angles=0.1, method="transport", tolerance=0.1)
+        for index, out in (("1.59/1.33", "ratio.h5"), (1.59 / 1.33, "number.h5")):
+            self.call("covariance", **spheres, index=index, out=out)
+        self.assert_same_data("ratio.h5", "number.h5")
+
+    def test_note_on_the_plane(self):
+        """Printed once, for scenes of a laboratory that could be in space."""
+        note = "note: the scene is in the plane (2D)"
+        scene = {**SLAB, "method": "transport", "tolerance": 1e-2, "light_angles": 0, "view_angles": 0.1}
+        for changes, count in (({}, 0), ({"length_unit": "um"}, 1), ({"delays": [0, 0.1]}, 1),
+                               ({"delays": [0, 0.1], "dimension": 3}, 0),
+                               ({"length_unit": "um", "method": "auto", "print-config": True}, 0)):
+            done = self.call("covariance", **{**scene, **changes}, out="note.h5")
+            self.assertEqual(done.stderr.count(note), count, changes)
+        done = self.call("flux", **SLAB, length_unit="um", light_angles=0, out="flux.h5")
+        self.assertEqual(done.stderr.count(note), 1)
+        done = self.call("sweep", **{**SLAB, "g": [0, 0.5]}, length_unit="um", tilts=[0, 0.01], out="sweep.h5")
+        self.assertEqual(done.stderr.count(note), 1)
+
     def test_swept_and_searched_lengths(self):
         scene = dict(domain="slab", scatterer="hg", g=0.5, optical_depth=2, light_angles=0, view_angles=0.1, samples=2000, length_unit="um")
         self.call("sweep", of="covariance", **scene, vary="depth=0.01mm:40um:2", out="depths.h5")
@@ -81,6 +106,12 @@ class UnitsTest(ProgramTest):
 CASES = [
     ("covariance", SLAB, {"depth": "1mm"}, ["depth = 1mm", "length_unit = um"]),
     ("covariance", SLAB, {"depth": "1/mm", "length_unit": "um"}, ["depth = 1/mm", "must be a number"]),
+    ("covariance", SLAB, {"wavelength": "633/1.33nm", "length_unit": "um"}, ["wavelength = 633/1.33nm", "633nm/1.33"]),
+    ("covariance", SLAB, {"wavelength": "633nm/1.33nm", "length_unit": "um"}, ["633nm/1.33nm", "must have no unit"]),
+    ("covariance", SLAB, {"light_angles": "5mm", "length_unit": "um"}, ["light_angles = 5mm", "30deg"]),
+    ("covariance", SLAB, {"optical_depth": "5mm", "length_unit": "um"}, ["optical_depth = 5mm", "must be a number"]),
+    ("covariance", SLAB, {"depth": "5us", "length_unit": "um"}, ["depth = 5us", "1 mm"]),
+    ("render", {}, {"point_light": [0, 0, "-5mm", "1mm"], "length_unit": "um"}, ["point_light = 1mm", "must be a number"]),
     ("covariance", SLAB, {"depth": "1mile", "length_unit": "um"}, ["depth = 1mile", "must be a number"]),
     ("covariance", SLAB, {"g": "0.5um", "length_unit": "um"}, ["g = 0.5um", "must be a number"]),
     ("covariance", SLAB, {"length_unit": "inch"}, ["length_unit = inch", "must be um"]),

@@ -2,6 +2,7 @@
 
 #include "core/keys/keys.h"
 #include "core/keys/number_text.h"
+#include "core/keys/written_number.h"
 
 namespace flatspeckle::test_keys {
 
@@ -84,7 +85,7 @@ TEST_CASE("keys: texts are converted to members") {
   const auto refused = [&](const char* key, const std::string& text, const std::string& words) {
     CHECK(refusal([&] { keys.set(key, {text}); }) == key + (" = " + text) + ": " + words);
   };
-  refused("radius", "2x", "must be a number");
+  refused("radius", "2x", "must be a number such as 0.1 or 1 mm");
   refused("count", "1.5", "must be a whole number of at most 18 digits");
   refused("count", "99999999999999999999", "must be a whole number of at most 18 digits");
   refused("kind", "a\"b", "must not contain control characters, \" or \\");

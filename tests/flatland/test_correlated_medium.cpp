@@ -45,7 +45,7 @@ double integral(const Scatterer& disk, double packing, Weight f) {
 }  // namespace
 
 TEST_CASE("structure table: linear between its nodes, constant before and 1 after them") {
-  const StructureTable none, table("made up", {1, 2, 4}, {0.5, 0.7, 0.3});
+  const StructureFactor none, table("made up", {1, 2, 4}, {0.5, 0.7, 0.3});
   CHECK(none.independent());
   CHECK(none(3) == 1);
   CHECK_FALSE(table.independent());
@@ -64,7 +64,7 @@ TEST_CASE("structure table: linear between its nodes, constant before and 1 afte
 TEST_CASE("structure table of hard disks: agrees with the fluid") {
   const DiskSpacing disks{0.3 / (pi * 0.25), 1};
   CHECK(disks.packing() == doctest::Approx(0.3).epsilon(1e-14));
-  const StructureTable table = hard_disk_structure(disks, 40);
+  const StructureFactor table = hard_disk_structure(disks, 40);
   const HardDiskFluid fluid(0.3, 1);
   for (double q = 0; q <= 40; q += 0.137)
     CHECK(std::abs(table(q) - fluid.structure_factor(q)) < 2e-4);
@@ -73,7 +73,7 @@ TEST_CASE("structure table of hard disks: agrees with the fluid") {
 TEST_CASE("correlated medium: S = 1 does not change the medium") {
   for (const Complex index : {Complex(1.5), Complex(1.33, 0.05)}) {
     const BulkMedium plain = bulk_medium(cylinder(5, index), k, 0.2);
-    const BulkMedium same = correlated_medium(plain, k, StructureTable("one", {0, 1}, {1, 1}));
+    const BulkMedium same = correlated_medium(plain, k, StructureFactor("one", {0, 1}, {1, 1}));
     CHECK(same.mu_s == doctest::Approx(plain.mu_s).epsilon(1e-14));
     CHECK(same.mu_t == doctest::Approx(plain.mu_t).epsilon(1e-14));
     CHECK(same.g == doctest::Approx(plain.g).epsilon(1e-14));

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "core/keys/written_number.h"
 #include "flatland/scene/scene.h"
 
 namespace flatspeckle::test_scene {
@@ -169,7 +170,7 @@ TEST_CASE("scene: a structure factor requires disks of given density") {
   CHECK_FALSE(scene.medium.structure.independent());
   check_contains(scene.medium.structure.origin(), "of hard disks, packing fraction 0.12");
   check_contains(refusal(points, [](auto&) {}),
-                 "structure = hard_disks: is a key of soft, hard, tm and te");
+                 "structure = hard_disks: is a key of soft, hard, tm, te and mie");
   check_contains(refusal(points,
                          [](auto& s) {
                            s.scatterer = "hg";

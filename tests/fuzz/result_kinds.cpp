@@ -64,7 +64,7 @@ void write_structure(const std::string& path) {
 }
 
 void read_structure(const std::string& path) {
-  const StructureTable table = flatspeckle::read_structure(path, disks);
+  const StructureFactor table = flatspeckle::read_structure(path, disks);
   for (double q = 0; q < 3; q += 0.1) require_finite(table(q));
 }
 

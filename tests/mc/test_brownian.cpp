@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "mc/paths/dynamics/brownian.h"
-#include "mc/theory/diffusion.h"
+#include "mc/theory/diffusing_waves.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc::test_brownian {
@@ -143,7 +143,7 @@ TEST_CASE("temporal correlation of a thick slab: agrees with diffusion theory to
       // Q l* = 2 sqrt(t), well known as sqrt(6 t) in three dimensions
       const double x = 2 * std::sqrt(delays[t]) * depth / transport_length,
                    textbook = x / std::sinh(x);
-      const double theory = diffusion_delay_correlation(scene.medium, depth, delays[t]);
+      const double theory = diffusing_wave_correlation(scene, delays[t], ExitSide::transmitted);
       CHECK_WITHIN_4_SIGMA(found.value[t], found.error[t], Complex(theory), 0.05 * theory);
       CHECK(std::abs(theory - textbook) < 0.1 * textbook);  // no extrapolation length
       CHECK(found.error[t] < 0.03 * theory);
@@ -163,7 +163,7 @@ TEST_CASE("delays: negative and NaN delays and full covariances are rejected") {
 
 TEST_CASE("delays: scatterers at correlated positions are rejected") {
   Scene scene = tests::hg_box(20, 10, {4}, intensities());
-  scene.medium.structure = StructureTable("test", {0, 1}, {0.5, 1});
+  scene.medium.structure = StructureFactor("test", {0, 1}, {0.5, 1});
   CHECK_THROWS_AS(delay_job(scene, make_plan(scene, ReversedPaths::no), {0.1}, 1), InputError);
 }
 

@@ -159,10 +159,10 @@ TEST_CASE("memory effect: correlation 1 with error 0 at zero tilt") {
 
 TEST_CASE("diffusion theory: 1 at q = 0, agrees with the textbook curve of thick slabs") {
   const BulkMedium medium = bulk(1, 0, 1);
-  CHECK(diffusion_field_correlation(medium, 10, 0) == 1);
-  CHECK(diffusion_field_correlation(bulk(1, 0.5, 0.9), 10, 0) == 1);
+  CHECK(diffusion_field_correlation({medium, 10}, 0) == 1);
+  CHECK(diffusion_field_correlation({bulk(1, 0.5, 0.9), 10}, 0) == 1);
   for (const double ql : {0.3, 1.5, 4.0}) {
-    CHECK(diffusion_field_correlation(medium, 1e5, ql / 1e5) ==
+    CHECK(diffusion_field_correlation({medium, 1e5}, ql / 1e5) ==
           doctest::Approx(ql / std::sinh(ql)).epsilon(1e-3));
   }
 }
@@ -178,7 +178,7 @@ TEST_CASE("diffusion theory: agrees with C20") {
   };
   for (const double q : {0.05, 0.4, 1.0}) {
     const double expected = f(std::sqrt(q * q + kappa2)) / f(std::sqrt(kappa2));
-    CHECK(diffusion_field_correlation(bulk(mu_t, g, albedo), depth, q) ==
+    CHECK(diffusion_field_correlation({bulk(mu_t, g, albedo), depth}, q) ==
           doctest::Approx(expected).epsilon(1e-10));
   }
 }
@@ -187,7 +187,7 @@ TEST_CASE("diffusion theory: finite at large q, strong absorption and small dept
   for (const double depth : {0.01, 10.0, 1e4}) {
     for (const double albedo : {0.0, 0.01, 0.9, 1 - 1e-9, 1.0}) {
       for (const double q : {0.0, 1e-9, 1.0, 1e4 / depth}) {
-        const double value = diffusion_field_correlation(bulk(1, 0.9, albedo), depth, q);
+        const double value = diffusion_field_correlation({bulk(1, 0.9, albedo), depth}, q);
         CAPTURE(depth);
         CAPTURE(albedo);
         CAPTURE(q);

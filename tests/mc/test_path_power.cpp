@@ -45,7 +45,9 @@ class PlantedWalks : public PathWalks {
     Planted(PathScorer& scorer, double factor, double inner)
         : scorer_(scorer), factor_(factor), inner_(inner) {}
 
-    void single(Vec2 x, double weight) override { scorer_.single(x, factor_ * weight); }
+    void single(Vec2 x, double weight, FaceWaves waves) override {
+      scorer_.single(x, factor_ * weight, waves);
+    }
     void multiple(const Path& path) override {
       Path changed = path;
       changed.weight *= factor_ * std::pow(inner_, steps_);

@@ -51,6 +51,16 @@ class Results(PackageTest):
         xarray.testing.assert_identical(result.drop_vars("x", errors="ignore"), fs.read(path).assign_attrs(
             printed=result.attrs["printed"]))
 
+    def test_ranges_that_are_bounds(self):
+        """They are NaN, with the bound in a variable of its own; the file contains the bound and a mark."""
+        result = fs.covariance(CURVE, tilts=[0, 1e-6, 2e-6])
+        with h5py.File(result.encoding["source"]) as file:
+            self.assertEqual(file["memory_effect_range"].attrs["censored"], 1)
+            self.assertEqual(float(result.memory_effect_range_at_least), file["memory_effect_range"][()])
+        for name in ("memory_effect_range", "memory_effect_range_error", "memory_effect_range_at_most"):
+            self.assertTrue(np.isnan(float(result[name])), name)
+        self.assertEqual(result.memory_effect_range_at_least.attrs["units"], "1")
+
     def test_many_scenes_at_once(self):
         scene = {"stage_box": [-1, -1, -1, 1, 1, 1], "point_light": [0, 0, -0.5, 1], "sensor": "area",
                  "sensor_at": [0, 0, 1], "sensor_size": [2, 2], "pixels": [1, 1], "samples": 500}

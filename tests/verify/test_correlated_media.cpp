@@ -47,7 +47,7 @@ Scene disks(int count, const std::string& index, const std::string& structure,
 }
 
 /// Measures the structure factor of random sequential placements in the scene's box.
-StructureTable measured_structure(const Scene& scene) {
+StructureFactor measured_structure(const Scene& scene) {
   MeasuredStructureFactor measured(scene.domain, 2.1 * scene.k, 0.3);
   for (std::uint64_t r = 0; r < 1000; ++r) {
     RandomStream random(1, 0, r);

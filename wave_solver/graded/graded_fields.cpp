@@ -7,7 +7,7 @@
 
 #include "core/error.h"
 #include "core/keys/number_text.h"
-#include "wave_solver/dense/dense_factor.h"
+#include "wave_solver/points/foldy_lax.h"
 
 namespace flatspeckle::wave {
 
@@ -215,23 +215,13 @@ std::vector<Complex> GradedFields::rows(const Placement& placement,
 }
 
 std::vector<Complex> GradedFields::of(const Placement& placement) const {
-  const std::size_t n = placement.size(), fields = sources_.size() * sensors_.size();
-  if (n == 0) return std::vector<Complex>(fields);
-  Entries matrix(n * n);
-  for (std::size_t j = 0; j < n; ++j) {
-    const auto t = static_cast<Complex>(t_matrix(placement[j].scatterer, k_, 0).front());
-    matrix[j * (n + 1)] = -1.0 / t;
-    for (std::size_t l = 0; l < j; ++l)
-      matrix[j * n + l] = matrix[l * n + j] =
-          Complex(0, -4) * green_(placement[j].position, placement[l].position);
-  }
-  auto rhs = rows(placement, sources_);  // times -i/4 below: -G, the right-hand side -a
-  for (Complex& side : rhs) side *= Complex(0, -0.25);
-  DenseFactor factor(std::move(matrix), n);
-  const auto found =
-      transposed_product(rows(placement, sensors_), factor.solve(rhs).data(), sources_.size(), n);
-  require_finite(found);
-  return found;
+  if (placement.empty()) return std::vector<Complex>(sources_.size() * sensors_.size());
+  auto lights = rows(placement, sources_);
+  for (Complex& field : lights) field *= Complex(0, 0.25);  // G, the field of a source
+  const auto wave = [&](Vec2 p, Vec2 q) {
+    return p == q ? Complex(0) : Complex(0, -4) * green_(p, q);
+  };
+  return foldy_lax(placement, k_, wave, lights, rows(placement, sensors_));
 }
 
 }  // namespace flatspeckle::wave

@@ -15,6 +15,7 @@
 #include "flatland/scene/frequency_shift.h"
 #include "wave_solver/equations/wave_equations.h"
 #include "wave_solver/graded/graded_fields.h"
+#include "wave_solver/layered/layer_fields.h"
 
 namespace flatspeckle::wave {
 
@@ -42,17 +43,21 @@ struct PlacementFields {
   FieldPlan plan;
   SolveOptions options;
   std::optional<GradedFields> graded;  // set if the refractive index varies in space
+  std::optional<LayerFields> layered;  // set if the faces of the medium reflect
 
   PlacementFields(const Scene& of, double tolerance, Method method)
       : scene(of), plan(field_plan(of, tolerance)), options(batch_options(of, tolerance, method)) {
     if (scene.index && scene.index->is_around()) graded = graded_fields(scene);
+    refuse_unpolarised(scene);
+    if (scene.faces) layered = layer_fields(scene);
   }
 
   // Returns the fields of a placement in every channel of the request.
   std::vector<Complex> of(const Placement& placement) const {
     const CovarianceRequest& request = scene.request;
-    const auto fields =
-        graded ? graded->of(placement) : scattered_fields(placement, scene.k, plan, options);
+    const auto fields = graded    ? graded->of(placement)
+                        : layered ? layered->of(placement)
+                                  : scattered_fields(placement, scene.k, plan, options);
     std::vector<Complex> channels;
     channels.reserve(request.channels.size());
     for (const Channel& channel : request.channels)
@@ -74,6 +79,7 @@ class Ensemble {
  public:
   Ensemble(const Scene& scene, const std::vector<double>& shifts, double tolerance, Method method)
       : first_(scene, tolerance, method), changing_(changing_entries(scene.request)) {
+    others_.reserve(shifts.size());
     for (const double shift : shifts)
       others_.emplace_back(at_frequency(scene, shift), tolerance, method);
   }
@@ -143,7 +149,7 @@ void require_uncovered(const Scene& scene, const std::string& key, Vec2 point) {
                          ") outside the box for the exact solver, because a cylinder may cover it");
 }
 
-void require_solvable(const Scene& scene) {
+void require_solvable(const Scene& scene, double tolerance) {
   if (scene.domain.kind == Domain::Kind::slab)
     throw InputError("domain", "slab", "the wave solver requires a box");
   if (scene.profile && scene.placement.kind == PlacementRule::Kind::equilibrium)
@@ -151,6 +157,10 @@ void require_solvable(const Scene& scene) {
                      "requires a medium without layers or density maps; use hard_disk");
   if (scene.scatterer.is_bulk())
     throw InputError("scatterer", "hg", "the wave solver requires point, soft, hard, tm or te");
+  if (scene.faces && tolerance < LayerGreen::accuracy)
+    throw InputError(
+        "wave_tolerance", tolerance,
+        "must be at least " + number_text(LayerGreen::accuracy) + " if medium_index is given");
   for (const View& view : scene.request.views)
     if (view.near) require_uncovered(scene, "near_sensors", view.point);
   for (const Light& light : scene.request.lights)
@@ -163,7 +173,8 @@ void require_memory(const Scene& scene, double tolerance) {
   const bool disk = scene.scatterer.is_disk();
   const int order = disk ? isolated_order(scene.scatterer, scene.k, tolerance) : 0;
   const auto unknowns = static_cast<std::size_t>(scene.placement.mean_count * (2 * order + 1));
-  if (method_for(unknowns, tolerance) == Method::dense)
+  const bool around = scene.index && scene.index->is_around();
+  if (around || scene.faces || method_for(unknowns, tolerance) == Method::dense)
     require_dense_memory(unknowns, omp_get_max_threads());
 }
 
@@ -186,7 +197,7 @@ FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance, Meth
 
 FrequencyJob frequency_job(const Scene& scene, const std::vector<double>& shifts,
                            std::uint64_t seed, double tolerance, Method method) {
-  require_solvable(scene);
+  require_solvable(scene, tolerance);
   require_placeable(scene.placement);
   require_memory(scene, tolerance);
   blas_single_thread();  // throws before the run if BLAS lacks memory

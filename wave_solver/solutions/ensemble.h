@@ -15,7 +15,8 @@ namespace flatspeckle::wave {
 /// sums the field u of each channel, then u_a conj(u_b) of each entry. Estimates of mean and
 /// covariance from these sums are unbiased (C12). tolerance: error of every placement's fields
 /// (SolveOptions). Throws InputError for a slab, which has no finite placement; for phase functions
-/// of the bulk, which have no T-matrix; for near sensors and sources that a cylinder may cover; and
+/// of the bulk, which have no T-matrix; for near sensors and sources that a cylinder may cover;
+/// for scatterers other than points and tolerances below LayerGreen::accuracy if faces reflect; and
 /// if the matrices of all threads certainly exceed the available memory.
 FieldJob wave_job(const Scene& scene, std::uint64_t seed, double tolerance,
                   Method method = Method::automatic);

@@ -149,7 +149,8 @@ class ThroughputTarget : public DesignTarget {
 void add_source_keys(Keys& keys, SourceValues& values) {
   keys.add("sources", values.sources,
            "x y z of each point source; the light is directed towards the centre of the field")
-      .each_of(3, "a point");
+      .each_of(3, "a point")
+      .unit("length");
   keys.add("half_angle", values.half_angle, "Half angle of the cone of light of each source")
       .positive_to(std::numbers::pi / 2)
       .unit("rad");

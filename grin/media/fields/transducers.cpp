@@ -92,7 +92,8 @@ void add_keys(Keys& keys, TransducersValues& values) {
            "For each transducer: amplitude of the index, wavenumber and phase of the sound, "
            "position of the focus, direction of the sound, half-angle of the aperture (0: a plane "
            "wave)")
-      .each_of(row_size, "amplitude wavenumber phase x y z dx dy dz aperture");
+      .each_of(row_size, "amplitude wavenumber phase x y z dx dy dz aperture")
+      .units("1 1/length rad length length length 1 1 1 rad");
   keys.add("transducer_table", values.transducer_table,
            "CSV with one transducer in each row; its columns are the numbers of the key "
            "transducer, in "

@@ -7,6 +7,7 @@
 
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "core/keys/written_number.h"
 
 namespace flatspeckle::grin {
 

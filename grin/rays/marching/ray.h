@@ -4,8 +4,6 @@
 
 namespace flatspeckle::grin {
 
-inline constexpr double light_speed = 299'792'458;  ///< speed of light in vacuum, m/s
-
 /// A point of a ray. v points along the ray and |v| = n(x) (conventions, C23).
 struct RayState {
   Vec3 x, v;

@@ -45,13 +45,16 @@ void add_keys(Keys& keys, RayStopValues& values) {
   keys.add("stop_plane", values.stop_plane,
            "x y z nx ny nz: rays end on the plane through x y z; its normal n points away from the "
            "rays")
-      .each_of(6, "a point and the normal outwards");
+      .each_of(6, "a point and the normal outwards")
+      .units("length length length 1 1 1");
   keys.add("stop_sphere", values.stop_sphere,
            "x y z radius: rays end on this sphere and may start inside or outside")
-      .each_of(4, "centre and radius");
+      .each_of(4, "centre and radius")
+      .unit("length");
   keys.add("stop_box", values.stop_box,
            "x y z x y z: rays end on the box with these opposite corners, the low one first")
-      .each_of(6, "two opposite corners, the low one first");
+      .each_of(6, "two opposite corners, the low one first")
+      .unit("length");
   keys.add("max_length", values.max_length,
            "Largest arc length of rays and curves; always required")
       .positive()

@@ -24,11 +24,13 @@ BeamLightEnd::BeamLightEnd(const BeamLight& light, const Stage& stage, const Ind
 void add_keys(Keys& keys, BeamLightValues& values) {
   keys.add("beam_light", values.beam_light,
            "x y z dx dy dz radius power: parallel rays from a uniform disk")
-      .each_of(8, "x y z dx dy dz radius power");
+      .each_of(8, "x y z dx dy dz radius power")
+      .units("length length length 1 1 1 length 1");
   keys.add("gaussian_beam", values.gaussian_beam,
            "x y z dx dy dz radius power: parallel rays with a Gaussian profile of this 1/e^2 "
            "radius, cut off at three times the radius")
-      .each_of(8, "x y z dx dy dz radius power");
+      .each_of(8, "x y z dx dy dz radius power")
+      .units("length length length 1 1 1 length 1");
 }
 
 std::vector<BeamLight> make_lights(const Keys& keys, const BeamLightValues& values) {

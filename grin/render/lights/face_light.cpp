@@ -61,7 +61,8 @@ void add_keys(Keys& keys, FaceLightValues& values) {
   keys.add("face_light", values.face_light,
            "x y z radius radiance: the stage's boundary within the radius of this point emits "
            "inwards with L/n^2 = radiance in all directions (Lambertian)")
-      .each_of(5, "x y z radius radiance");
+      .each_of(5, "x y z radius radiance")
+      .units("length length length length 1");
   keys.add("environment", values.environment,
            "L/n^2 of light that enters through the whole boundary")
       .positive();

@@ -67,11 +67,13 @@ void add_keys(Keys& keys, FibreLightValues& values) {
   keys.add("fibre_light", values.fibre_light,
            "x y z dx dy dz radius aperture power: a uniform disk with the same L/n^2 in all "
            "directions within the numerical aperture")
-      .each_of(9, numbers);
+      .each_of(9, numbers)
+      .units("length length length 1 1 1 length 1 1");
   keys.add("gaussian_fibre", values.gaussian_fibre,
            "x y z dx dy dz radius aperture power: Gaussian profiles of position and direction with "
            "this 1/e^2 radius and aperture, both cut off at three times these values")
-      .each_of(9, numbers);
+      .each_of(9, numbers)
+      .units("length length length 1 1 1 length 1 1");
 }
 
 std::vector<FibreLight> make_lights(const Keys& keys, const FibreLightValues& values) {

@@ -48,7 +48,8 @@ struct PointLightValues {
 
 inline void add_keys(Keys& keys, PointLightValues& values) {
   keys.add("point_light", values.point_light, "x y z power: emits uniformly into all directions")
-      .each_of(4, "x y z power");
+      .each_of(4, "x y z power")
+      .units("length length length 1");
 }
 
 inline std::vector<PointLight> make_lights(const Keys& keys, const PointLightValues& values) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <numeric>
 
+#include "core/numbers/constants.h"
 #include "core/result/result_group.h"
 #include "grin/rays/marching/ray.h"
 #include "grin/render/pictures/render_job.h"

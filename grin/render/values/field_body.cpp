@@ -93,11 +93,13 @@ void add_keys(Keys& keys, PlainBodyValues& values) {
            std::string(ball) +
                ": a ball with its own index and medium, scattering by Henyey and Greenstein's "
                "phase function; where bodies overlap, the smaller one counts")
-      .each_of(8, ball);
+      .each_of(8, ball)
+      .units("length length length length 1 1/length 1/length 1");
   keys.add("block", values.block,
            std::string(block) +
                ": a box with its own index and medium, given by two opposite corners")
-      .each_of(10, block);
+      .each_of(10, block)
+      .units("length length length length length length 1 1/length 1/length 1");
   const std::string lens = std::string(lens_words) + " index mu_s mu_a g";
   keys.add("lens", values.lens,
            lens +
@@ -105,7 +107,8 @@ void add_keys(Keys& keys, PlainBodyValues& values) {
                "front " +
                "vertex; front and back are the radii of curvature of the faces, positive if the "
                "centre is at larger z, 0 for a plane")
-      .each_of(lens_numbers + 4, lens);
+      .each_of(lens_numbers + 4, lens)
+      .units("length length length length length length length 1 1/length 1/length 1");
 }
 
 std::vector<Body> make_plain_bodies(const Keys& keys, const PlainBodyValues& values) {
@@ -158,18 +161,21 @@ Lens lens_of(const std::string& key, std::span<const double> numbers) {
 void add_body_keys(Keys& keys, FieldBodyValues& values) {
   keys.add("body_box", values.body_box,
            "x y z x y z of two corners: the index field fills only this box")
-      .each_of(6, "two opposite corners, the low one first");
+      .each_of(6, "two opposite corners, the low one first")
+      .unit("length");
   keys.add("body_sphere", values.body_sphere,
            "x y z radius: the index field fills only this sphere; not needed for luneburg in a "
            "larger stage")
-      .each_of(4, "centre and radius");
+      .each_of(4, "centre and radius")
+      .unit("length");
   keys.add(
           "body_lens", values.body_lens,
           std::string(lens_words) +
               ": the index field fills only this lens; its axis is along z, and x y z is the " +
               "front vertex; front and back are the radii of curvature of the faces, positive if " +
               "the centre is at larger z, 0 for a plane; a rod if both are 0")
-      .each_of(lens_numbers, lens_words);
+      .each_of(lens_numbers, lens_words)
+      .unit("length");
   keys.add("body_mesh", values.body_mesh,
            "STL file, binary or text: the index field fills only the inside of this closed surface "
            "of triangles, which is replaced by a smooth surface")

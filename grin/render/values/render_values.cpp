@@ -309,10 +309,12 @@ void add_keys(Keys& keys, StageValues& values) {
   keys.group("Stage");
   keys.add("stage_box", values.stage_box,
            "x y z x y z of two corners: light leaves the scene through this box")
-      .each_of(6, box);
+      .each_of(6, box)
+      .unit("length");
   keys.add("stage_sphere", values.stage_sphere,
            "x y z radius: light leaves the scene through this sphere")
-      .each_of(4, sphere);
+      .each_of(4, sphere)
+      .unit("length");
   add_keys(keys, values.medium, "");
   keys.group("Body in the stage");
   add_body_keys(keys, values);
@@ -373,7 +375,8 @@ void add_keys(Keys& keys, RenderValues& values) {
   keys.add("path_bins", values.path_bins,
            "first last count: also computes pictures by optical path, in this number of equal bins "
            "between two optical paths; contributions are split between the two nearest bins")
-      .exactly(3, "three numbers: first last count");
+      .exactly(3, "three numbers: first last count")
+      .units("length length 1");
   keys.add(
       "path_moments", values.path_moments,
       "Also computes the mean optical path of the light in each pixel, and the mean of its square");

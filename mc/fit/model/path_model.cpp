@@ -93,7 +93,7 @@ bool PathModel::can_share(const Run& run, const Media& media, std::size_t curve)
   const Scene &first = media[run.curves.front()].scene, &scene = media[curve].scene;
   return first.domain.kind == scene.domain.kind && first.domain.depth == scene.domain.depth &&
          first.domain.width == scene.domain.width && first.k == scene.k &&
-         run.power == is_flux(curves_[curve].observable) &&
+         first.faces == scene.faces && run.power == is_flux(curves_[curve].observable) &&
          (run.power || run.reversed == needs_reversed(scene)) &&
          run.delays == curves_[curve].delays &&
          curves_[run.curves.front()].fixed_count == curves_[curve].fixed_count;

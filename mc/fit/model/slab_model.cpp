@@ -45,7 +45,7 @@ bool SlabModel::can_share(const Group& group, const Media& media, std::size_t cu
   const Scene &first = media[group.curves.front()].scene, &scene = media[curve].scene;
   const bool flux = is_flux(curves_[curve].observable);
   return group.delays == curves_[curve].delays && first.domain.depth == scene.domain.depth &&
-         first.k == scene.k && group.flux == flux &&
+         first.k == scene.k && first.faces == scene.faces && group.flux == flux &&
          (flux || (!has_near_endpoints(first.request) && !has_near_endpoints(scene.request) &&
                    group.reversed == needs_reversed(scene)));
 }

@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "core/keys/written_number.h"
 
 namespace flatspeckle::mc {
 
@@ -27,6 +28,7 @@ void add_motion_keys(Keys& keys, MovingSpec& spec) {
 void add_keys(Keys& keys, MovingSpec& spec) {
   add_keys(keys, static_cast<SceneSpec&>(spec));
   add_dimension_key(keys, spec);
+  add_faces_keys(keys, spec);
   add_motion_keys(keys, spec);
 }
 
@@ -38,13 +40,19 @@ using Scale = FreeParameter::Scale;
 
 constexpr const char* form = "must be key=lower:upper, for example g=0.5:0.99";
 
-/// Keys of positive quantities without an upper bound. Their coordinate in a fit is the logarithm.
-const std::set<std::string> of_any_size = {"optical_depth", "mean_free_path", "density",
-                                           "radius",        "depth",          "diffusion"};
+/// Keys of positive quantities that may range over decades. Their coordinate in a fit is the
+/// logarithm.
+const std::set<std::string> of_any_size = {"optical_depth",   "mean_free_path", "density",
+                                           "volume_fraction", "mass_fraction",  "radius",
+                                           "diameter",        "depth",          "diffusion"};
+
+bool is_complex(const Key& key) {
+  return key.name() == "index" || key.name() == "particle_index";
+}
 
 bool is_one_number(const Key* key) {
   return key != nullptr && !key->is_list() && !key->is_whole() &&
-         (key->is_number() || key->name() == "index");
+         (key->is_number() || is_complex(*key));
 }
 
 double number_in(const std::string& given, const std::string& text) {

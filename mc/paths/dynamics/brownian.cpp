@@ -8,69 +8,12 @@
 
 #include "core/error.h"
 #include "core/numbers/phasor.h"
-#include "core/result/result_group.h"
+#include "mc/jobs/delay_results.h"
 #include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/estimators/path_endpoints.h"
 #include "mc/paths/estimators/single_scattering.h"
-#include "mc/theory/diffusion.h"
 
 namespace flatspeckle::mc {
-
-void check_delays(const Scene& scene, const std::vector<double>& delays) {
-  if (!scene.medium.structure.independent())
-    throw InputError(
-        "delays: requires independent positions of the scatterers, without a structure factor");
-  for (const double delay : delays)
-    if (!(delay >= 0 && delay <= 1e100))
-      throw InputError("delays", delay, "must be from 0 to 1e100");
-}
-
-const DatasetTable delays_table{
-    "delays",
-    {{"delay", Data::scale, "", "1", "k^2 D tau"},
-     {"covariance", Data::estimate, "delay LIGHT VIEW", "COVARIANCE",
-      "covariance of the field with itself after a delay"},
-     {"field_correlation", Data::estimate, "delay LIGHT VIEW", "1",
-      "field correlation after a delay, |g1|"},
-     {"complex_covariance", Data::complex_estimate, "delay LIGHT VIEW", "COVARIANCE",
-      "covariance of the field with itself after a delay, where scatterers flow"},
-     {"complex_correlation", Data::complex_estimate, "delay LIGHT VIEW", "1",
-      "field correlation after a delay, g1, where scatterers flow"},
-     {"diffusion_theory", Data::real, "delay", "1",
-      "field correlation of transmitted light in diffusion theory"},
-     {"delayed_covariance", Data::complex_estimate, "delay tilt VIEW", "COVARIANCE",
-      "covariance of reference and moved field after a delay"},
-     {"delayed_correlation", Data::estimate, "delay tilt", "1",
-      "C_E of reference and moved field after a delay"}}};
-
-void write_delays(ResultFile& file, const Scene& scene, const std::vector<double>& delays,
-                  const ChangeEstimates& found, const Motion& motion) {
-  const ResultGroup root(file, delays_table);
-  root.put("delay", delays);
-  if (scene.request.has_reference()) {
-    root.put("delayed_covariance", found.covariance);
-    return root.put("delayed_correlation", found.correlation);
-  }
-  if (!motion.only_diffuses(scene)) {
-    root.put("complex_covariance", found.covariance);
-    root.put("complex_correlation", found.correlation);
-    return root.put("field_correlation", found.magnitude);
-  }
-  root.put("covariance", found.covariance);
-  root.put("field_correlation", found.correlation);
-  if (scene.domain.kind != Domain::Kind::slab || !scene.request.transmission_only()) return;
-  root.put("diffusion_theory", column(delays, [&](double delay) {
-             return diffusion_delay_correlation(scene.medium, scene.domain.depth, delay);
-           }));
-}
-
-double diffusion_delay_correlation(const BulkMedium& medium, double thickness, double delay) {
-  // kappa^2 = mu_a dimension / l* (C20). A term added to kappa^2 acts like the square of the
-  // wavenumber of a tilt.
-  const double loss = 2 * delay * (1 - medium.g) * medium.mu_s;
-  const double q = std::sqrt(medium.dimension * loss / medium.transport_mean_free_path());
-  return diffusion_field_correlation(medium, thickness, q);
-}
 
 namespace {
 
@@ -171,7 +114,8 @@ class DelayScorer : public TallyScorer<Tally> {
                std::max(endpoints_.lights().size(), endpoints_.views().size())) {}
 
   /// Scores the path of one scatterer at x.
-  void single(Vec2 x, double weight) override {
+  void single(Vec2 x, double weight, FaceWaves waves) override {
+    endpoints_.choose(waves);
     EndpointFactors &lights = endpoints_.lights(), &views = endpoints_.views();
     auto &light = endpoints_.light_last, &view = endpoints_.view_last;
     lights.attenuate(x, light.value);
@@ -287,12 +231,14 @@ PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double
   if (scene.request.kind != CovarianceRequest::Kind::intensity)
     throw InputError("delays: requires covariance = intensity");
   check_delays(scene, delays);
+  std::vector<double> scaled = delays;  // k^2 D tau
+  for (double& delay : scaled) delay *= motion.diffusion;
   const auto scorer = [=, local = LocalMotion(scene, motion), flows = !motion.only_diffuses(scene)](
                           const PathWalks& walks,
                           std::span<Complex> sums) -> std::unique_ptr<PathScorer> {
     if (flows)
       return std::make_unique<DelayScorer<FlowTally>>(walks, delays, FlowTally{&local}, sums);
-    return std::make_unique<DelayScorer<TurnTally>>(walks, delays, TurnTally{}, sums);
+    return std::make_unique<DelayScorer<TurnTally>>(walks, scaled, TurnTally{}, sums);
   };
   const auto single = [=](const PathWalks& walks) {
     return single_covariances(walks, delays, motion);

@@ -3,29 +3,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/result/dataset_row.h"
-#include "core/result/result_file.h"
 #include "flatland/scene/scene.h"
 #include "mc/jobs/changed_fields.h"
 #include "mc/jobs/motion.h"
 #include "mc/paths/walk/plan.h"
 
 namespace flatspeckle::mc {
-
-/// Throws InputError for scatterers with a structure factor, and for negative delays.
-void check_delays(const Scene& scene, const std::vector<double>& delays);
-
-extern const DatasetTable delays_table;
-/// Writes the covariances and correlations after each delay and, for light transmitted through a
-/// slab whose scatterers only diffuse, the correlations of diffusion theory. The axes of the
-/// request must have been written before.
-void write_delays(ResultFile& file, const Scene& scene, const std::vector<double>& delays,
-                  const ChangeEstimates& found, const Motion& motion = {});
-
-/// Returns the field correlation, after a delay t = k^2 D tau, of light transmitted through a slab,
-/// by diffusion theory. The motion acts as an absorption 2 t (1 - g) mu_s, which is added to mu_a
-/// in kappa^2 of C20. The result is the limit for thick slabs and small t.
-double diffusion_delay_correlation(const BulkMedium& medium, double thickness, double delay);
 
 /// Makes a job for the fields of moving scatterers at two times (diffusing-wave spectroscopy
 /// [pine1988], [maret1987]). A displacement during a time tau has variance 2 D tau along each axis.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "mc/jobs/delay_results.h"
 #include "mc/paths/dynamics/brownian.h"
 #include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/estimators/derivative_endpoints.h"

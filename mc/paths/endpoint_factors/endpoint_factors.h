@@ -62,6 +62,8 @@ class EndpointFactors {
 
   std::size_t size() const { return directions_.size(); }
 
+  /// Selects the wave of each endpoint that is computed: the number of its reflections at faces.
+  virtual void choose(int /*wave*/) {}
   /// Computes out[j] = e_j(x).
   virtual void attenuate(Vec2 x, std::span<Complex> out) = 0;
 

@@ -58,7 +58,9 @@ class FieldScorer : public PathScorer {
       : fields_(walks, walks.scene(), walks.plan().phases || walks.plan().reversed),
         accumulator_(accumulator) {}
 
-  void single(Vec2 x, double weight) override { accumulator_.add(weight, fields_.single(x)); }
+  void single(Vec2 x, double weight, FaceWaves waves) override {
+    accumulator_.add(weight, fields_.single(x, waves));
+  }
   void multiple(const Path& path) override {
     accumulator_.add(path.weight, fields_.multiple(path));
   }

@@ -85,7 +85,8 @@ class DerivativeScorer : public TallyScorer<typename Terms::Tally> {
         endpoints_(walks, [this](std::size_t endpoints) { return terms_.endpoints(endpoints); }) {}
 
   /// Scores the path of one scatterer at x.
-  void single(Vec2 x, double weight) override {
+  void single(Vec2 x, double weight, FaceWaves waves) override {
+    endpoints_.choose(waves);
     EndpointFactors &lights = endpoints_.lights(), &views = endpoints_.views();
     Endpoints &light = endpoints_.light_last, &view = endpoints_.view_last;
     terms_.attenuate(lights, x, light);

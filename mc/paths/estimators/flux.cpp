@@ -8,6 +8,7 @@
 
 #include "grin/media/scattering/diffusion_rate.h"
 #include "mc/jobs/path_job.h"
+#include "mc/paths/endpoint_factors/faced_endpoints.h"
 #include "mc/paths/endpoint_factors/profile_flight.h"
 #include "mc/paths/estimators/flux_walk.h"
 #include "mc/paths/walk/plan.h"
@@ -100,17 +101,19 @@ SummedBatches absorption(const std::shared_ptr<const Scene>& scene) {
     const auto lights = scene->request.lights.angles();
     for (std::size_t light = 0; light < lights.size(); ++light)
       sums[light * (sums.size() / lights.size()) + absorbed] =
-          walks_per_batch * (1 - direct_transmittance(*scene, lights[light]));
+          walks_per_batch * (1 - direct_transmittance(*scene, lights[light]) -
+                             specular_reflectance(*scene, lights[light]));
   };
 }
 
 SummedBatches batches(const std::shared_ptr<const Scene>& scene, double kappa, std::uint64_t seed) {
   if (scene->medium.mu_s == 0) return absorption(scene);
+  const auto inside = std::make_shared<const Scene>(inside_faces(*scene));
   SummedBatches chosen;
   if (scene->profile) return walks<VaryingFluxWalk>(scene, varying_scattering(*scene), kappa, seed);
   with_scattering(*scene, phase_of(scene->scatterer),
                   [&]<typename Scattering>(const Scattering& scattering) {
-                    chosen = walks<FluxWalk<Scattering>>(scene, scattering, kappa, seed);
+                    chosen = walks<FluxWalk<Scattering>>(inside, scattering, kappa, seed);
                   });
   return chosen;
 }

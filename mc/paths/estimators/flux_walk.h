@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -107,6 +108,7 @@ class FluxWalk {
         reach_(1 / (mu_t_ * (1 - g_))),
         scattering_(scattering),
         entry_(entry),
+        faces_(scene.faces),
         random_(random),
         tally_(scene.domain, sums),
         sums_(sums) {}
@@ -114,8 +116,9 @@ class FluxWalk {
   /// Samples one walk. u: number in (0, 1), uniformly distributed, that selects the depth of the
   /// first collision.
   void walk(double u) {
-    const Vec2 start = entry_.sample(random_), w = entry_.light();
+    Vec2 start = entry_.sample(random_), w = entry_.light();
     const double chord = domain_.distance_to_edge(start, w);
+    const double crossings = faces_ ? sample_crossings(w, chord) : 1;
     const grin::BoundedFlight plain{mu_t_, chord};
     const grin::BoundedFlight biased{mu_t_ * entry_.mu_t_factor(w, mu_t_), chord};
     const double flight = u < biased_fraction
@@ -123,7 +126,9 @@ class FluxWalk {
                               : plain.sample((u - biased_fraction) / plain_fraction);
     const double density = plain.density(flight);
     const double mixture = plain_fraction * density + biased_fraction * biased.density(flight);
-    power_ = -std::expm1(-mu_t_ * chord);
+    power_ = -std::expm1(-mu_t_ * chord) * crossings;
+    if (odd_crossings_) start = start + chord * w;
+    if (odd_crossings_) w.z = -w.z;
     const Particle first{start + flight * w, w, density / mixture};
     martingale_ = -first.weight * expected_depth(first);
     collide(first);
@@ -144,6 +149,27 @@ class FluxWalk {
   /// Half of the flights are unbiased (plain) and half are biased. A flight therefore at most
   /// doubles the weight, and deep flights are frequent.
   static constexpr double plain_fraction = 0.5, biased_fraction = 1 - plain_fraction;
+
+  /// Samples how often light of the beam crosses the medium between faces before it collides, and
+  /// sets odd_crossings_ to whether the number of reflections is odd. Returns the power of all
+  /// crossings, at the beginning of each, as a fraction of the incident power.
+  double sample_crossings(Vec2 w, double chord) {
+    const double reflectance = reflectance_at(w), next = reflectance * std::exp(-mu_t_ * chord);
+    odd_crossings_ = false;
+    if (next > 0)
+      odd_crossings_ = std::fmod(std::floor(std::log(random_.uniform()) / std::log(next)), 2) == 1;
+    return (1 - reflectance) / (1 - next);
+  }
+
+  /// Returns the reflectance of a face for light that arrives from the inside.
+  double reflectance_at(Vec2 w) const { return faces_->leaving().reflectance(std::abs(w.z)); }
+
+  /// Returns the direction in which light leaves.
+  Vec2 outside(Vec2 w) const {
+    if (!faces_) return w;
+    return {w.x * (faces_->inside / faces_->outside),
+            std::copysign(faces_->leaving().refracted(std::abs(w.z)), w.z)};
+  }
 
   /// Absorbs a fraction of the weight. Russian roulette and splitting keep the weight near 1 /
   /// importance.
@@ -167,8 +193,23 @@ class FluxWalk {
   }
 
   /// Moves a particle to its next collision; returns false if the particle leaves the medium
-  /// before.
+  /// before. Faces reflect particles at random.
   bool fly(Particle& particle) {
+    while (!fly_to_edge(particle)) {
+      if (!faces_ || random_.uniform() >= reflectance_at(particle.w)) {
+        leave(particle);
+        return false;
+      }
+      const Vec2 before = particle.w;
+      particle.w.z = -before.z;
+      martingale_ += particle.weight * reach_ * (entry_.cosine(before) - entry_.cosine(particle.w));
+    }
+    return true;
+  }
+
+  /// Moves a particle to its next collision, or to the edge of the medium; returns whether it
+  /// collides.
+  bool fly_to_edge(Particle& particle) {
     constexpr std::uint64_t between_checks = 4096;
     if (++flights_ % between_checks == 0) stop_if_interrupted();
     const double factor = entry_.mu_t_factor(particle.w, mu_t_);
@@ -183,12 +224,11 @@ class FluxWalk {
       particle.weight /= plain_fraction + biased_fraction * (inside ? factor : 1) *
                                               std::exp(mu_t_ * (1 - factor) * distance);
     particle.x = particle.x + distance * particle.w;
-    if (!inside) leave(particle);
     return inside;
   }
 
   void leave(const Particle& particle) {
-    tally_.leave(particle.x, particle.w, power_ * particle.weight);
+    tally_.leave(particle.x, outside(particle.w), power_ * particle.weight);
     martingale_ +=
         particle.weight * (entry_.depth(particle.x) + reach_ * entry_.cosine(particle.w));
   }
@@ -217,6 +257,8 @@ class FluxWalk {
   double reach_;  ///< transport mean free path without absorption
   const Scattering& scattering_;
   const LightEntry& entry_;
+  std::optional<Faces> faces_;
+  bool odd_crossings_ = false;  ///< of the beam before the first collision (sample_crossings())
   RandomStream& random_;
   FluxTally tally_;
   std::span<Complex> sums_;

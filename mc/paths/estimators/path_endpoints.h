@@ -30,6 +30,11 @@ class PathEndpoints {
   EndpointFactors& lights() { return *lights_; }
   EndpointFactors& views() { return *views_; }
 
+  void choose(FaceWaves waves) {
+    lights_->choose(waves.light);
+    views_->choose(waves.view);
+  }
+
   /// Updates the values for a path. at(endpoints, x, arrival, values) must compute the values for
   /// light that reaches x along `arrival` and is scattered towards the endpoints. Values at the
   /// first scatterer are computed only if the start of the path has changed. Those of the lights at
@@ -37,6 +42,7 @@ class PathEndpoints {
   /// for reversed paths.
   template <typename At>
   void find(const Path& path, At at) {
+    choose(path.waves);
     if (path.new_start) {
       at(*lights_, path.first, -path.start, light_first);
       if (reversed_) at(*views_, path.first, -path.start, view_first);

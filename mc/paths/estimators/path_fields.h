@@ -28,7 +28,8 @@ class PathFields {
         field_(channels_.size()) {}
 
   /// Returns the fields of the path of one scatterer at x.
-  std::span<const Complex> single(Vec2 x) {
+  std::span<const Complex> single(Vec2 x, FaceWaves waves) {
+    endpoints_.choose(waves);
     endpoints_.lights().attenuate(x, endpoints_.light_last);
     endpoints_.views().attenuate(x, endpoints_.view_last);
     is_grid_ ? find_rows(x) : find_listed(x);

@@ -57,7 +57,8 @@ class PowerScorer : public TallyScorer<ScattererCount> {
         cross_section_(cross_section(scene_)),
         sums_(sums) {}
 
-  void single(Vec2 x, double weight) override {
+  void single(Vec2 x, double weight, FaceWaves waves) override {
+    endpoints_.choose(waves);
     endpoints_.lights().attenuate(x, endpoints_.light_last);
     sums_[by_first] += weight * share_of(endpoints_.light_last.front(), x) / albedo(x);
   }
@@ -132,7 +133,7 @@ bool has_absorber(const Scene& scene) {
 
 std::shared_ptr<const PathWalks> power_walks(const Scene& scene, std::uint64_t seed) {
   const auto light = std::ranges::find(scene.request.lights, Light::Kind::plane, &Light::kind);
-  if (light == scene.request.lights.end() || scene.medium.mu_s == 0 || scene.index ||
+  if (light == scene.request.lights.end() || scene.medium.mu_s == 0 || scene.index || scene.faces ||
       has_absorber(scene))
     return nullptr;
   Scene lit = scene;

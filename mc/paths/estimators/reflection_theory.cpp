@@ -98,14 +98,15 @@ Reflection reflection(const CovarianceRequest& request, std::uint32_t channel) {
 /// Whether a request has tilts with matched views, for plane waves on a homogeneous 2D slab.
 bool is_matched(const Scene& scene) {
   return scene.request.kind == CovarianceRequest::Kind::memory_effect &&
-         scene.domain.kind == Domain::Kind::slab && !scene.profile && scene.medium.dimension == 2;
+         scene.domain.kind == Domain::Kind::slab && !scene.profile && !scene.faces &&
+         scene.medium.dimension == 2;
 }
 
 }  // namespace
 
 std::vector<double> reflected_correlation_theory(const Scene& scene) {
   const CovarianceRequest& request = scene.request;
-  if (!is_matched(scene)) return {};
+  if (!is_matched(scene) || scene.faces) return {};
   const std::vector<std::size_t> views = view_groups(request).back();
   if (std::cos(request.views[views.front()].angle) > 0) return {};
   const ReflectedLight light(scene);

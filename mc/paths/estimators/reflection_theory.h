@@ -13,7 +13,8 @@ namespace flatspeckle::mc {
 /// of a request with matched views (conventions, C44). The contribution of light scattered once is
 /// exact. Diffuse light travels from a first to a last scatterer, whose depths are distributed over
 /// a transport mean free path (Akkermans and Montambaux [akkermans2007], chapter 8). Returns an
-/// empty list if there are no reflected matched views, or if the medium varies.
+/// empty list if there are no reflected matched views, if the medium varies, or if faces may
+/// reflect.
 std::vector<double> reflected_correlation_theory(const Scene& scene);
 
 extern const DatasetTable reflection_theory_table;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mc/paths/endpoint_factors/faced_endpoints.h"
 #include "mc/paths/endpoint_factors/space_scattering.h"
 
 namespace flatspeckle::mc {
@@ -18,6 +19,7 @@ struct Path {
   SpaceDirection arrival;  ///< direction in which the path reaches the last scatterer
   double weight = 0;
   bool new_start = false;  ///< true for the first path with these values of `first` and `start`
+  FaceWaves waves{};
 };
 
 /// Receives the paths that a walk samples.
@@ -27,7 +29,7 @@ class PathScorer {
 
   /// Scores a path of one scatterer at x. Called only if the plan samples such paths
   /// (Plan::sampled_single).
-  virtual void single(Vec2 x, double weight) = 0;
+  virtual void single(Vec2 x, double weight, FaceWaves waves) = 0;
   /// Scores a path of two or more scatterers.
   virtual void multiple(const Path& path) = 0;
 

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "mc/paths/endpoint_factors/faced_endpoints.h"
 #include "mc/paths/walk/importance.h"
 #include "mc/theory/diffusion.h"
 
@@ -96,8 +97,9 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   plan.phases = plan.reversed || request.kind != CovarianceRequest::Kind::intensity;
   plan.weighted = scene.medium.albedo < 1 - 1e-12 || loses_light_by_sides(scene);
   constexpr std::size_t few = 20000;  // entries; quadrature takes at most 1 ms for each
-  plan.sampled_single =
-      scene.index || scene.profile || plan.near || plan.rank_k || request.entries.size() > few;
+  plan.waves = scored_waves(scene);
+  plan.sampled_single = scene.faces || scene.index || scene.profile || plan.near || plan.rank_k ||
+                        request.entries.size() > few;
   plan.paths_per_batch = paths_per_batch(scene, plan);
   return plan;
 }
@@ -107,6 +109,11 @@ void require_walks(const Scene& scene, bool weighted) {
     throw InputError(
         "method: beams, near sources and near sensors beside a slab require method = "
         "transport, or a box");
+  if (scene.profile && scene.medium.dimension == 3)
+    throw InputError("dimension", 3, "layers require method = transport; leave out method = mc");
+  if (scene.faces && scene.profile)
+    throw InputError("medium_index", scene.faces->inside,
+                     "Monte Carlo requires a homogeneous medium; use method = transport");
   if (scene.medium.mu_s == 0) return;
   const auto require = [&](double scatterings, double most, const std::string& what) {
     if (scatterings < most) return;
@@ -150,7 +157,8 @@ std::string Plan::describe() const {
   text << "; " << (weighted ? "splitting and Russian roulette" : "walkers of equal weight") << "; "
        << (sampled_single ? "" : "single scattering in closed form; ")
        << (phases ? "" : "no phases; ") << (reversed ? "reversed paths" : "no reversed paths")
-       << "; " << (near ? "near field" : "far field only") << "; "
+       << "; " << (waves.size() > 1 ? "reflecting faces; " : "")
+       << (near ? "near field" : "far field only") << "; "
        << (rank_k ? "full covariance by rank-k updates" : "listed entries only")
        << "; Russian roulette for expected scores below " << score_level << "; " << paths_per_batch
        << " paths per batch";

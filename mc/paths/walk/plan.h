@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "flatland/scene/scene.h"
+#include "mc/paths/endpoint_factors/faced_endpoints.h"
 
 namespace flatspeckle::mc {
 
@@ -32,6 +34,7 @@ struct Plan {
   /// next to a view.
   double score_level = 0;
   std::uint64_t paths_per_batch = 0;
+  std::vector<ScoredWaves> waves{{}};  ///< waves for which each path is scored
 
   std::string describe() const;
 };

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -11,6 +14,7 @@
 #include "flatland/scene/scene.h"
 #include "grin/media/scattering/free_flight.h"
 #include "mc/paths/bent/graded_endpoints.h"
+#include "mc/paths/endpoint_factors/faced_endpoints.h"
 #include "mc/paths/endpoint_factors/profile_flight.h"
 #include "mc/paths/endpoint_factors/space_scattering.h"
 #include "mc/paths/endpoint_factors/varying_scattering.h"
@@ -43,6 +47,7 @@ class PathWalk {
         medium_(scene.medium),
         profile_(scene.profile.get()),
         scattering_(scattering),
+        faces_(scene.faces),
         importance_(scene),
         first_(make_first(scene)),
         expected_view_(scene, view_endpoints(scene)) {}
@@ -52,6 +57,7 @@ class PathWalk {
     // Five times the largest mean number of scatterings of a batch (plan.cpp)
     constexpr std::uint64_t steps_of_splitting = 5'000'000;
     ticket_ = random.uniform();
+    if (plan_.waves.size() > 1) wave_ticket_ = random.uniform();
     last_splitting_ = steps_ + steps_of_splitting;
   }
 
@@ -121,7 +127,7 @@ class PathWalk {
       const grin::BoundedFlight flight{medium_.mu_t, scattering_.medium().inside(x, w)};
       return {flight.sample(random.uniform()), flight.probability()};
     }
-    const double edge = domain_.distance_to_edge(x, w);
+    const double edge = path_to_exit(x, w, random);
     if constexpr (varies<Scattering>) {
       const ProfileFlight flight(*profile_, x, w, edge);
       return {flight.sample(random.uniform()), flight.probability()};
@@ -137,8 +143,35 @@ class PathWalk {
       const auto place = scattering_.medium().after_flight(x, w, length);
       return place ? std::pair(place->x, place->w) : std::pair(x, w);
     } else {
+      if (faces_) return folded(x + length * Vec2(w), w);
       return {x + length * Vec2(w), w};
     }
+  }
+
+  /// Returns the length of the path from x along w to the place where light leaves the medium. With
+  /// faces, the number of reflections on the way is sampled.
+  double path_to_exit(Vec2 x, const Direction& w, RandomStream& random) const {
+    const double edge = domain_.distance_to_edge(x, w);
+    if (!faces_ || w.z == 0) return edge;
+    const double cosine = std::abs(w.z), reflectance = faces_->leaving().reflectance(cosine),
+                 side = domain_.kind == Domain::Kind::slab || w.x == 0
+                            ? std::numeric_limits<double>::infinity()
+                            : (domain_.width / 2 - (w.x > 0 ? x.x : -x.x)) / std::abs(w.x);
+    if (reflectance == 0 || edge >= side) return edge;
+    if (reflectance >= 1) return side;
+    const double reflections = std::floor(std::log(random.uniform()) / std::log(reflectance));
+    const double to_face = (w.z > 0 ? domain_.depth - x.z : x.z) / cosine;
+    return std::min(side, to_face + reflections * domain_.depth / cosine);
+  }
+
+  /// Returns the place and direction in the medium of a ray that was continued beyond the faces
+  /// without reflections.
+  std::pair<Vec2, Direction> folded(Vec2 x, Direction w) const {
+    const double crossings = std::floor(x.z / domain_.depth),
+                 rest = std::clamp(x.z - crossings * domain_.depth, 0.0, domain_.depth);
+    const bool turned = std::fmod(std::abs(crossings), 2) == 1;
+    if (turned) w.z = -w.z;
+    return {{x.x, turned ? domain_.depth - rest : rest}, w};
   }
 
   /// Follows a walker from its arrival at a scatterer until it leaves the medium, is terminated or
@@ -156,12 +189,11 @@ class PathWalk {
     if (++steps_ % between_checks == 0) stop_if_interrupted();
     const Direction w = local(scattering_, walker.x).sample(walker.arrival, random);
     if constexpr (bends<Scattering>) return fly_bent(walker, w, random, scorer);
-    const double edge = domain_.distance_to_edge(walker.x, w),
+    const double edge = path_to_exit(walker.x, w, random),
                  flight = sample_flight(walker, w, edge, random);
     if (flight >= edge) return false;
     if (has_tally_) scorer.step(walker.x, walker.arrival, w, flight);
-    walker.x = walker.x + flight * Vec2(w);
-    walker.arrival = w;
+    std::tie(walker.x, walker.arrival) = flight_end(walker.x, w, flight);
     return true;
   }
 
@@ -245,8 +277,14 @@ class PathWalk {
     path_.arrival = walker.arrival;
     path_.weight =
         mu_s(path_.first) * albedo(walker.x) * weight / (start_density() + backward_density);
-    scorer.multiple(path_);
-    path_.new_start = false;
+    const double all_waves = path_.weight;
+    for (const auto& [waves, probability] : plan_.waves) {
+      path_.weight = all_waves;
+      if (!survives(wave_ticket_, probability, path_.weight)) continue;
+      path_.waves = waves;
+      scorer.multiple(path_);
+      path_.new_start = plan_.waves.size() > 1;
+    }
   }
 
   /// Scores a path of one scatterer, with a weight in the same units as in score().
@@ -255,18 +293,25 @@ class PathWalk {
     if (plan_.single_roulette && albedo(x) > 0 &&
         !survives(expected_view_(x, light) / (albedo(x) * plan_.score_level), weight))
       return;
-    scorer.single(x, weight);
+    for (const auto& [waves, probability] : plan_.waves)
+      if (double own = weight; survives(wave_ticket_, probability, own))
+        scorer.single(x, own, waves);
   }
 
   /// Applies systematic Russian roulette with this survival probability. Returns whether the
-  /// contribution survives; the weight of a survivor is divided by the probability.
-  bool survives(double probability, double& weight) {
+  /// contribution survives; the weight of a survivor is divided by the probability. sum: fraction
+  /// of the sum of all survival probabilities; decisions that depend on each other need separate
+  /// sums.
+  static bool survives(double& sum, double probability, double& weight) {
     if (probability >= 1) return true;
-    ticket_ += probability;
-    if (ticket_ < 1) return false;
-    ticket_ -= 1;
+    sum += probability;
+    if (sum < 1) return false;
+    sum -= 1;
     weight /= probability;
     return true;
+  }
+  bool survives(double probability, double& weight) {
+    return survives(ticket_, probability, weight);
   }
 
   /// Returns the importance of x relative to that of the first scatterer, so that a walk that
@@ -296,6 +341,7 @@ class PathWalk {
   const BulkMedium& medium_;
   const MediumProfile* profile_;  ///< null if the medium is homogeneous
   const Scattering& scattering_;
+  std::optional<Faces> faces_;
   DiffusionImportance importance_;
   First first_;
   ExpectedContribution expected_view_;
@@ -305,7 +351,7 @@ class PathWalk {
   Path path_;
   double start_density_ = -1, log_importance_first_ = 0, expected_first_ = 0;
   /// fraction of the sum of survival probabilities; a path survives when it reaches 1
-  double ticket_ = 0;
+  double ticket_ = 0, wave_ticket_ = 0;  // wave_ticket_: of the waves of a path
   std::uint64_t steps_ = 0, last_splitting_ = 0;
 };
 
@@ -313,7 +359,10 @@ template <typename Scattering>
 class WalksBy final : public PathWalks {
  public:
   WalksBy(const Scene& scene, const Plan& plan, std::uint64_t seed, const Scattering& scattering)
-      : PathWalks(scene, plan, seed), scattering_(scattering), walk_(scene_, plan_, scattering_) {}
+      : PathWalks(scene, plan, seed),
+        scattering_(scattering),
+        inside_(inside_faces(scene)),
+        walk_(inside_, plan_, scattering_) {}
 
   void batch(std::uint64_t number, PathScorer& scorer) const override {
     RandomStream random(seed_, static_cast<std::uint64_t>(Stream::light_paths), number);
@@ -334,12 +383,13 @@ class WalksBy final : public PathWalks {
                                            bool phases) const override {
     if constexpr (bends<Scattering>)
       return std::make_unique<GradedEndpoints>(scene, endpoints, phases, scattering_.medium());
-    else
-      return std::make_unique<StraightEndpoints>(scene, endpoints, phases);
+    if (scene.faces) return std::make_unique<FacedEndpoints>(scene, endpoints, phases);
+    return std::make_unique<StraightEndpoints>(scene, endpoints, phases);
   }
 
  private:
   const Scattering scattering_;
+  const Scene inside_;  ///< the scene with the directions inside the faces
   const PathWalk<Scattering> walk_;
 };
 
@@ -379,6 +429,7 @@ GradedScattering graded_scattering(const Scene& scene) {
 std::shared_ptr<const PathWalks> path_walks(const Scene& scene, const Plan& plan,
                                             std::uint64_t seed) {
   require_walks(scene, plan.weighted);
+  refuse_unpolarised(scene);
   std::shared_ptr<const PathWalks> walks;
   if (scene.medium.mu_s == 0) return walks;
   with_any_scattering(scene, plan.phase, [&]<typename Scattering>(const Scattering& scattering) {

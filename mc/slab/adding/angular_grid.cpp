@@ -47,12 +47,15 @@ std::vector<Focus> sharp(std::vector<Focus> foci) {
   return kept;
 }
 
-std::vector<double> panel_ends(const std::vector<Focus>& all) {
+/// Returns the ends of all panels. critical: critical angles, in increasing order.
+std::vector<double> panel_ends(const std::vector<Focus>& all, const std::vector<double>& critical) {
   const auto foci = sharp(all);
   std::vector<double> cuts{0};
   for (const Focus& focus : foci)
     if (focus.angle > 0 && focus.angle < right_angle) cuts.push_back(focus.angle);
+  cuts.insert(cuts.end(), critical.begin(), critical.end());
   cuts.push_back(right_angle);
+  std::sort(cuts.begin(), cuts.end());
   std::vector<double> ends{0};
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) split(cuts[i], cuts[i + 1], foci, ends);
   return ends;
@@ -78,7 +81,7 @@ Matrix lagrange(const std::vector<double>& node, const std::vector<double>& at) 
   return values;
 }
 
-std::vector<double> mapped(const std::vector<double>& unit, double from, double to) {
+std::vector<double> mapped_to(const std::vector<double>& unit, double from, double to) {
   std::vector<double> values;
   for (const double u : unit) values.push_back(from + u * (to - from));
   return values;
@@ -86,52 +89,98 @@ std::vector<double> mapped(const std::vector<double>& unit, double from, double 
 
 }  // namespace
 
-AngularGrid::AngularGrid(const std::vector<Focus>& foci, int order, double fine)
-    : order_(order),
-      nodes_(gauss_legendre(order)),
-      last_nodes_(gauss_jacobi(order)),
+namespace {
+
+/// Returns the angle in a medium of index `to` of light that has this angle in a medium of index
+/// `from`, at most pi/2.
+double angle_in(double to, double from, double angle) {
+  return to == from ? angle : std::asin(std::min(1.0, from / to * std::sin(angle)));
+}
+
+}  // namespace
+
+AngularGrid::AngularGrid(const std::vector<Focus>& foci, int order, double fine,
+                         const GridIndices& indices)
+    : own_(indices.own),
       inner_(gauss_legendre(std::max(order + 6, 14))),
       exact_(gauss_legendre(order + 1)) {
-  const auto ends = panel_ends(foci);
-  const auto size = static_cast<Eigen::Index>(ends.size() - 1) * order;
-  for (Eigen::VectorXd* values : {&angle_, &cosine_, &weight_}) values->resize(size);
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) add_panel(ends[i], ends[i + 1], fine);
-}
-
-bool AngularGrid::is_last(const Panel& panel) const {
-  return panel.to >= right_angle;
-}
-
-const QuadratureRule& AngularGrid::nodes_of(const Panel& panel) const {
-  return is_last(panel) ? last_nodes_ : nodes_;
-}
-
-/// Adds a panel, with its nodes and subpanels. A point u of [0, 1] is mapped to theta = from + u
-/// width, or on the last panel to theta = pi/2 - u^2 width.
-void AngularGrid::add_panel(double from, double to, double fine) {
-  const double width = to - from;
-  panels_.push_back({from, to, static_cast<Eigen::Index>(panels_.size()) * order_});
-  const Panel& panel = panels_.back();
-  const bool last = is_last(panel);
-  const QuadratureRule& rule = nodes_of(panel);
-  for (int j = 0; j < order_; ++j) {
-    const double u = rule.node[j],
-                 complement = last ? width * u * u : right_angle - from - u * width;
-    angle_[panel.first + j] = right_angle - complement;
-    cosine_[panel.first + j] = std::sin(complement);
-    weight_[panel.first + j] = (last ? 2 : 1) * width * rule.weight[j];
+  auto edges = indices.smaller;
+  edges.push_back({indices.largest, true});
+  std::vector<double> critical;  // the angle of each edge in the medium of the largest index
+  for (const auto& edge : edges)
+    critical.push_back(angle_in(indices.largest, edge.index, right_angle));
+  critical.back() = right_angle;
+  const auto ends = panel_ends(foci, {critical.begin(), critical.end() - 1});
+  // Totally reflected light has no singularity at grazing angles, so that its panel needs fewer
+  // nodes.
+  constexpr int least = 3;
+  const int last_nodes = indices.smaller.empty() ? order : std::max(least, (6 * order + 9) / 10);
+  Eigen::Index size = 0;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const auto next = std::lower_bound(critical.begin(), critical.end(), ends[i + 1]);
+    const auto& edge = edges[static_cast<std::size_t>(next - critical.begin())];
+    if (edge.index > own_) break;
+    const bool root = *next == ends[i + 1];
+    const int nodes = ends[i + 1] == right_angle ? last_nodes : order;
+    const double base = root && edge.of_layer ? edge.index : indices.largest;
+    panels_.push_back({base, angle_in(base, indices.largest, ends[i]),
+                       angle_in(base, indices.largest, ends[i + 1]), root, size,
+                       root ? gauss_jacobi(nodes) : gauss_legendre(nodes)});
+    size += nodes;
   }
-  const int parts = std::max(1, static_cast<int>(std::ceil((last ? 2 : 1) * width / fine)));
+  for (Eigen::VectorXd* values : {&angle_, &cosine_, &weight_}) values->resize(size);
+  for (const Panel& panel : panels_) add_panel(panel, fine);
+}
+
+double AngularGrid::at(const Panel& panel, double u) const {
+  return angle_in(own_, panel.base, panel.angle(u));
+}
+
+double AngularGrid::cosine_at(const Panel& panel, double u) const {
+  if (own_ != panel.base) return std::cos(at(panel, u));
+  if (panel.root && panel.to == right_angle) return std::sin(u * u * (panel.to - panel.from));
+  return std::sin(right_angle - panel.angle(u));
+}
+
+double AngularGrid::derivative(const Panel& panel, double u) const {
+  if (own_ == panel.base) return panel.derivative(u);
+  return panel.derivative(u) * panel.base * std::cos(panel.angle(u)) / (own_ * cosine_at(panel, u));
+}
+
+double AngularGrid::point_at(const Panel& panel, double angle) const {
+  const double in_base = angle_in(panel.base, own_, angle), width = panel.to - panel.from;
+  return std::clamp(panel.root ? std::sqrt(std::max(0.0, (panel.to - in_base) / width))
+                               : (in_base - panel.from) / width,
+                    0.0, 1.0);
+}
+
+/// Adds the nodes and subpanels of a panel.
+void AngularGrid::add_panel(const Panel& panel, double fine) {
+  const double width = std::abs(at(panel, 1) - at(panel, 0));
+  const bool mapped = panel.base != own_;
+  const auto nodes = std::ssize(panel.rule.node);
+  for (Eigen::Index j = 0; j < nodes; ++j) {
+    const double u = panel.rule.node[static_cast<std::size_t>(j)];
+    angle_[panel.first + j] = at(panel, u);
+    cosine_[panel.first + j] = cosine_at(panel, u);
+    weight_[panel.first + j] =
+        (panel.root ? 2 : 1) * width * panel.rule.weight[static_cast<std::size_t>(j)];
+  }
+  if (mapped) weight_.segment(panel.first, nodes).setZero();
+  const int parts = std::max(1, static_cast<int>(std::ceil((panel.root ? 2 : 1) * width / fine)));
   for (int part = 0; part < parts; ++part) {
-    const auto at = mapped(inner_.node, static_cast<double>(part) / parts,
-                           static_cast<double>(part + 1) / parts);
-    Subpanel subpanel{panel.first, Eigen::VectorXd(at.size()), lagrange(rule.node, at)};
-    for (std::size_t i = 0; i < at.size(); ++i) {
+    const auto points = mapped_to(inner_.node, static_cast<double>(part) / parts,
+                                  static_cast<double>(part + 1) / parts);
+    Subpanel subpanel{panel.first, Eigen::VectorXd(points.size()),
+                      lagrange(panel.rule.node, points)};
+    for (std::size_t i = 0; i < points.size(); ++i) {
       const auto column = static_cast<Eigen::Index>(i);
-      subpanel.angle[column] = last ? to - width * at[i] * at[i] : from + width * at[i];
+      subpanel.angle[column] = at(panel, points[i]);
       subpanel.weighted_basis.col(column) *=
-          width / parts * inner_.weight[i] * (last ? 2 * at[i] : 1);
+          derivative(panel, points[i]) / parts * inner_.weight[i];
     }
+    // The integrals of the l_j, so that the integral over all directions is exact
+    if (mapped) weight_.segment(panel.first, nodes) += subpanel.weighted_basis.rowwise().sum();
     subpanels_.push_back(std::move(subpanel));
   }
 }
@@ -139,20 +188,18 @@ void AngularGrid::add_panel(double from, double to, double fine) {
 Eigen::VectorXd AngularGrid::interval_integrals(double from, double to) const {
   Eigen::VectorXd found = Eigen::VectorXd::Zero(size());
   for (const Panel& panel : panels_) {
-    const double low = std::max(from, panel.from), high = std::min(to, panel.to);
+    const double first = at(panel, 0), last = at(panel, 1),
+                 low = std::max(from, std::min(first, last)),
+                 high = std::min(to, std::max(first, last));
     if (low >= high) continue;
-    const double width = panel.to - panel.from;
-    const bool last = is_last(panel);
-    const auto unit = [&](double angle) {
-      return last ? std::sqrt((right_angle - angle) / width) : (angle - panel.from) / width;
-    };
-    const double start = unit(last ? high : low), end = unit(last ? low : high);
-    const auto at = mapped(exact_.node, start, end);
-    const Matrix values = lagrange(nodes_of(panel).node, at);
-    for (std::size_t i = 0; i < at.size(); ++i)
-      found.segment(panel.first, order_) += width * (end - start) * exact_.weight[i] *
-                                            (last ? 2 * at[i] : 1) *
-                                            values.col(static_cast<Eigen::Index>(i));
+    const double start = point_at(panel, panel.root ? high : low),
+                 end = point_at(panel, panel.root ? low : high);
+    const auto points = mapped_to(exact_.node, start, end);
+    const Matrix values = lagrange(panel.rule.node, points);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      found.segment(panel.first, values.rows()) += (end - start) * exact_.weight[i] *
+                                                   derivative(panel, points[i]) *
+                                                   values.col(static_cast<Eigen::Index>(i));
   }
   return found;
 }

@@ -11,10 +11,34 @@ namespace flatspeckle::mc {
 
 namespace {
 
-template <typename Number>
-void add(PairWavesOf<Number>& waves, const PairWaveOf<Number>& wave) {
-  waves.top.push_back(wave.top);
-  waves.bottom.push_back(wave.bottom);
+/// Returns the directions of the refracted pairs.
+template <typename Geometry, typename Number>
+auto directions(const std::vector<LayerWavesOf<Geometry, Number>>& pairs, bool are_views) {
+  std::vector<PairOf<typename Geometry::Direction>> list;
+  for (const auto& waves : pairs)
+    list.push_back(are_views ? turned_round(waves.front().pair) : waves.front().pair);
+  return list;
+}
+
+/// Returns the waves of pairs: first all refracted pairs, then, if there are faces, all their
+/// reflections. down, up: the radiance that the scattering of the refracted pairs adds or, for
+/// views, the sensitivity with which they collect it. Those of the reflections are mirror images.
+template <typename Geometry, typename Number>
+PairWavesOf<Number> with_waves(const std::vector<LayerWavesOf<Geometry, Number>>& pairs,
+                               const RowsOf<Number>& down, const RowsOf<Number>& up) {
+  const std::size_t each = pairs.front().size();
+  PairWavesOf<Number> found{{}, {}, down, up, {}, std::ssize(pairs)};
+  if (each == 2) {
+    found.down = concatenated(down, up);
+    found.up = concatenated(up, down);
+  }
+  for (std::size_t w = 0; w < each; ++w)
+    for (const auto& waves : pairs) {
+      found.top.push_back(waves[w].wave.top);
+      found.bottom.push_back(waves[w].wave.bottom);
+      found.factor.push_back(waves[w].factor);
+    }
+  return found;
 }
 
 double norm(const Rows& rows) {
@@ -34,32 +58,34 @@ DirectionModesOf<Geometry, Number>::DirectionModesOf(const Slab& slab, const Dis
       discrete_(discrete),
       highest_(highest),
       q_(Geometry::size(momentum, slab.k / slab.mu_t)) {
-  for (std::size_t layer = 0; layer < slab.layers.size(); ++layer)
-    endpoints_.push_back(endpoints(layer, momentum, lights, views));
+  const auto follow = [&](const Pairs& pairs, bool are_views) {
+    std::vector<PairInLayersOf<Geometry, Number>> followed;
+    for (const auto& pair : pairs)
+      followed.emplace_back(slab, are_views ? turned_round(pair) : pair);
+    return followed;
+  };
+  const auto of_lights = follow(lights, false), of_views = follow(views, true);
+  const auto in_layer = [](const auto& followed, std::size_t layer) {
+    std::vector<LayerWaves> waves;
+    for (const auto& pair : followed) waves.push_back(pair.layers()[layer]);
+    return waves;
+  };
+  for (std::size_t layer = 0; layer < slab.layers.size(); ++layer) {
+    const auto fed = [&](const std::vector<LayerWaves>& waves, bool are_views) {
+      return Geometry::template fed<Number>(discrete_.layers()[layer], momentum, highest_,
+                                            mc::directions<Geometry, Number>(waves, are_views));
+    };
+    const auto own_lights = in_layer(of_lights, layer), own_views = in_layer(of_views, layer);
+    const Waves of_light = fed(own_lights, false),
+                of_view = views == lights ? of_light : fed(own_views, true);
+    endpoints_.push_back({with_waves<Geometry, Number>(own_lights, of_light.down, of_light.up),
+                          with_waves<Geometry, Number>(own_views, of_view.up, of_view.down)});
+  }
 }
 
 template <typename Geometry, typename Number>
 double DirectionModesOf<Geometry, Number>::q(std::size_t layer) const {
   return q_ * (slab_.mu_t / slab_.layers[layer].mu_t);
-}
-
-/// Returns the radiance that the scattering of pairs of illuminations adds in a layer, and the
-/// sensitivity with which pairs of views collect radiance from the layer, both per mean free path.
-template <typename Geometry, typename Number>
-EndpointWavesOf<Number> DirectionModesOf<Geometry, Number>::endpoints(std::size_t layer,
-                                                                      const Momentum& momentum,
-                                                                      const Pairs& lights,
-                                                                      const Pairs& views) const {
-  const double k = slab_.k / slab_.layers[layer].mu_t;
-  const auto fed = [&](const Pairs& pairs) {
-    return Geometry::template fed<Number>(discrete_.layers()[layer], momentum, highest_, pairs);
-  };
-  const Waves of_lights = fed(lights), seen = views == lights ? of_lights : fed(views);
-  EndpointWavesOf<Number> found{of_lights, {{}, {}, seen.up, seen.down}};
-  for (const auto& pair : lights) add(found.lights, pair_wave(k, pair, slab_.departure));
-  for (const auto& pair : views)
-    add(found.views, pair_wave(k, turned_round(pair), slab_.departure));
-  return found;
 }
 
 template <typename Geometry, typename Number>
@@ -110,14 +136,14 @@ bool DirectionModesOf<Geometry, Number>::is_dark(const Part& part,
 
 template <typename Geometry, typename Number>
 Number DirectionModesOf<Geometry, Number>::extinction(std::size_t layer) const {
-  return slab_.departure.extinction(slab_.k / slab_.layers[layer].mu_t) -
-         discrete_.layers()[layer].peak_scattering();
+  const auto& of = slab_.layers[layer];
+  return slab_.departure.extinction(of.k / of.mu_t) - discrete_.layers()[layer].peak_scattering();
 }
 
 template <typename Geometry, typename Number>
 TransportOperatorOf<Number> DirectionModesOf<Geometry, Number>::transport(std::size_t layer,
                                                                           const Part& part) const {
-  const AngularGrid& grid = discrete_.grid();
+  const AngularGrid& grid = discrete_.grid(layer);
   const double extinction = std::abs(value_of(this->extinction(layer)));
   return {block(layer, part, &Scattering::difference), block(layer, part, &Scattering::sum),
           part.even * grid.size(),
@@ -128,7 +154,7 @@ TransportOperatorOf<Number> DirectionModesOf<Geometry, Number>::transport(std::s
 template <typename Geometry, typename Number>
 MatrixOf<Number> DirectionModesOf<Geometry, Number>::block(
     std::size_t layer, const Part& part, MatrixOf<Real> Scattering::*scattering) const {
-  const AngularGrid& grid = discrete_.grid();
+  const AngularGrid& grid = discrete_.grid(layer);
   const Eigen::Index n = grid.size(), count = std::ssize(part.functions);
   const Eigen::ArrayXd momentum = q(layer) * grid.angle().array().sin() / grid.cosine().array();
   Matrix extinction = Matrix::Zero(count * n, count * n), across = extinction;
@@ -156,14 +182,16 @@ MatrixOf<Number> DirectionModesOf<Geometry, Number>::block(
 template <typename Geometry, typename Number>
 auto DirectionModesOf<Geometry, Number>::part_of(const Waves& all, const Part& part) const
     -> Waves {
-  const Eigen::Index n = discrete_.grid().size(), count = std::ssize(part.functions);
+  const Eigen::Index n = value_of(all.down).cols() / functions(),
+                     count = std::ssize(part.functions);
   const auto taken = [&](const Rows& rows) {
     Rows found(rows.rows(), count * n);
     for (Eigen::Index a = 0; a < count; ++a)
       found.middleCols(a * n, n) = rows.middleCols(part.functions[a] * n, n);
     return found;
   };
-  return {all.top, all.bottom, linear(taken, all.down), linear(taken, all.up)};
+  return {all.top,    all.bottom, linear(taken, all.down), linear(taken, all.up),
+          all.factor, all.pairs};
 }
 
 template class DirectionModesOf<PlaneGeometry, double>;

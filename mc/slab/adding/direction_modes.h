@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mc/slab/adding/layer.h"
+#include "mc/slab/adding/layer_waves.h"
 #include "mc/slab/adding/ordinates.h"
 
 namespace flatspeckle::mc {
@@ -48,18 +49,23 @@ class DirectionModesOf {
   /// Returns the layers, expanded in the functions of a part. The list is empty if the
   /// illuminations contribute nothing to these functions, or the views collect nothing from them.
   std::vector<Layer> layers(const Part& part) const;
+  /// Returns the reflection at the faces for the functions of a part.
+  FaceReflectances faces(const Part& part) const {
+    return {discrete_.reflectances(slab_), std::ssize(part.functions)};
+  }
 
  private:
   using Real = RealOf<Number>;
   using Waves = PairWavesOf<Number>;
   using Scattering = typename Discrete::Ordinates::Scattering;
+  /// Returns the number of functions of direction.
+  Eigen::Index functions() const { return 1 + Geometry::function_kinds * highest_; }
   int mode(int function) const { return function > highest_ ? function - highest_ : function; }
   double q(std::size_t layer) const;
   /// Returns the extinction coefficient of a layer, in units of its mu_t, without the scattering
   /// into the forward peak of its phase function.
   Number extinction(std::size_t layer) const;
-  EndpointWavesOf<Number> endpoints(std::size_t layer, const Momentum& momentum,
-                                    const Pairs& lights, const Pairs& views) const;
+  using LayerWaves = LayerWavesOf<Geometry, Number>;
   TransportOperatorOf<Number> transport(std::size_t layer, const Part& part) const;
   MatrixOf<Number> block(std::size_t layer, const Part& part,
                          MatrixOf<Real> Scattering::*scattering) const;

@@ -26,21 +26,12 @@ M share(const M& a) {
   return FactorsOf<M>(M(identity_like(a) + a)).before(a);
 }
 
+using flatspeckle::concatenated;  // overload for rows, beside the one for lists below
+
 template <typename T>
 std::vector<T> concatenated(std::vector<T> list, const std::vector<T>& rest) {
   list.insert(list.end(), rest.begin(), rest.end());
   return list;
-}
-
-Rows concatenated(const Rows& upper, const Rows& lower) {
-  Rows both(upper.rows() + lower.rows(), upper.cols());
-  both.topRows(upper.rows()) = upper;
-  both.bottomRows(lower.rows()) = lower;
-  return both;
-}
-
-Dual<Rows> concatenated(const Dual<Rows>& upper, const Dual<Rows>& lower) {
-  return {concatenated(upper.value, lower.value), concatenated(upper.derivative, lower.derivative)};
 }
 
 void multiply(Rows& rows, Eigen::Index i, Eigen::Index j, Complex factor) {
@@ -68,6 +59,28 @@ struct Mirrored {
 };
 
 using flatspeckle::scaled;  // overload for plain rows, beside the one for UpAndDown below
+
+/// Adds the rows r, r + count, .. for each r below `count`.
+template <typename R>
+R summed_rows(const R& rows, Eigen::Index count) {
+  const auto sum = [count](const Rows& all) {
+    Rows found = all.topRows(count);
+    for (Eigen::Index first = count; first < all.rows(); first += count)
+      found += all.middleRows(first, count);
+    return found;
+  };
+  return linear(sum, rows);
+}
+template <typename R>
+R summed_columns(const R& rows, Eigen::Index count) {
+  const auto sum = [count](const Rows& all) {
+    Rows found = all.leftCols(count);
+    for (Eigen::Index first = count; first < all.cols(); first += count)
+      found += all.middleCols(first, count);
+    return found;
+  };
+  return linear(sum, rows);
+}
 
 template <typename C, typename R>
 UpAndDown<R> scaled(const std::vector<C>& factor, const UpAndDown<R>& rows) {
@@ -151,13 +164,8 @@ class Layer {
   Layer(const Operator& medium, RealOf<Number> depth, const Waves& lights, const Waves& views);
   /// Doubles the depth by adding an identical layer on top.
   void double_depth();
-  /// Returns the response of this layer if its illuminations and views are attenuated by these
-  /// factors before they enter the layer.
-  Sheet<Number> sheet(const std::vector<C>& light_factors,
-                      const std::vector<C>& view_factors) const;
-  LayerResponseOf<Number> response() const {
-    return {of_lights(leaves_.up), of_lights(leaves_.down), collected_};
-  }
+  /// Returns the response of this layer to pairs of illuminations and of views (PairWavesOf).
+  Sheet<Number> sheet(const Waves& lights, const Waves& views) const;
 
  private:
   void start_radiance(const Operator& medium);
@@ -187,8 +195,11 @@ Layer<Number>::Layer(const Operator& medium, RealOf<Number> depth, const Waves& 
     : depth_(depth),
       lights_(static_cast<Eigen::Index>(lights.top.size())),
       even_(medium.even),
-      waves_{concatenated(lights.top, views.top), concatenated(lights.bottom, views.bottom),
-             concatenated(lights.down, views.down), concatenated(lights.up, views.up)} {
+      waves_{concatenated(lights.top, views.top),
+             concatenated(lights.bottom, views.bottom),
+             concatenated(lights.down, views.down),
+             concatenated(lights.up, views.up),
+             {}} {
   start_radiance(medium);
   start_pairs(medium);
 }
@@ -292,21 +303,23 @@ void Layer<Number>::double_depth() {
 }
 
 template <typename Number>
-Sheet<Number> Layer<Number>::sheet(const std::vector<C>& light_factors,
-                                   const std::vector<C>& view_factors) const {
-  R collected = scaled(view_factors, collected_);
-  for (std::size_t l = 0; l < light_factors.size(); ++l)
-    for (std::size_t v = 0; v < view_factors.size(); ++v)
+Sheet<Number> Layer<Number>::sheet(const Waves& lights, const Waves& views) const {
+  R collected = scaled(views.factor, collected_);
+  for (std::size_t l = 0; l < lights.factor.size(); ++l)
+    for (std::size_t v = 0; v < views.factor.size(); ++v)
       multiply(collected, static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(l),
-               light_factors[l]);
+               lights.factor[l]);
   const M back = reflected();
+  const auto of_pairs = [](const Waves& waves, const R& rows) {
+    return summed_rows(R(scaled(waves.factor, rows)), waves.pairs);
+  };
   return {back,
           back,
           transmitted_,
           transmitted_,
-          scaled(light_factors, UpAndDown<R>{of_lights(leaves_.down), of_lights(leaves_.up)}),
-          scaled(view_factors, UpAndDown<R>{of_views(leaves_.down), of_views(leaves_.up)}),
-          collected};
+          {of_pairs(lights, of_lights(leaves_.down)), of_pairs(lights, of_lights(leaves_.up))},
+          {of_pairs(views, of_views(leaves_.down)), of_pairs(views, of_views(leaves_.up))},
+          summed_columns(summed_rows(collected, views.pairs), lights.pairs)};
 }
 
 /// Returns the response of two stacked layers or groups of layers. even: number of columns of
@@ -315,7 +328,7 @@ template <typename Number>
 Sheet<Number> stacked(const Sheet<Number>& above, const Sheet<Number>& below, Eigen::Index even) {
   using M = MatrixOf<Number>;
   using UpAndDownRows = UpAndDown<RowsOf<Number>>;
-  const M one = identity_like(above.top);
+  const M one = identity_like(above.bottom);
   const FactorsOf<M> of_down(M(one - product(below.top, above.bottom))),
       of_up(M(one - product(above.bottom, below.top)));
   const auto between = [&](const UpAndDownRows& upper, const UpAndDownRows& lower) {
@@ -361,37 +374,131 @@ Layer<Number> doubled(const HomogeneousLayerOf<Number>& layer) {
   return part;
 }
 
-/// Returns the factors by which illuminations or views are attenuated in the other layers before
-/// they enter each layer.
+/// Returns `rows` with column j multiplied by factor[j].
+template <typename M>
+M scaled_columns(const M& matrix, const Eigen::VectorXd& factor) {
+  const auto scale = [&factor](auto all) {
+    for (Eigen::Index j = 0; j < all.cols(); ++j) all.col(j) *= factor[j];
+    return all;
+  };
+  return linear(scale, matrix);
+}
+
+template <typename M>
+M blocks(const M& a, const M& b, const M& c, const M& d) {
+  M all(a.rows() + c.rows(), a.cols() + b.cols());
+  all << a, b, c, d;
+  return all;
+}
+template <typename M>
+Dual<M> blocks(const Dual<M>& a, const Dual<M>& b, const Dual<M>& c, const Dual<M>& d) {
+  return {blocks(a.value, b.value, c.value, d.value),
+          blocks(a.derivative, b.derivative, c.derivative, d.derivative)};
+}
+
+Rows beside(const Rows& left, const Rows& right) {
+  Rows both(left.rows(), left.cols() + right.cols());
+  both << left, right;
+  return both;
+}
+Dual<Rows> beside(const Dual<Rows>& left, const Dual<Rows>& right) {
+  return {beside(left.value, right.value), beside(left.derivative, right.derivative)};
+}
+
+/// Returns a face inside a stack, between media with `above` and `below` ordinates for each
+/// function of direction. pairs: an element with the numbers of illuminations and views.
 template <typename Number>
-auto entering(const std::vector<HomogeneousLayerOf<Number>>& layers,
-              PairWavesOf<Number> HomogeneousLayerOf<Number>::*waves) {
-  std::vector<std::vector<ComplexOf<Number>>> top, bottom;
-  for (const auto& layer : layers) {
-    top.push_back(times(layer.depth, (layer.*waves).top));
-    bottom.push_back(times(layer.depth, (layer.*waves).bottom));
-  }
-  return mc::entering(top, bottom);
+Sheet<Number> face_sheet(const Eigen::VectorXd& reflectance, Eigen::Index functions,
+                         Eigen::Index above, Eigen::Index below, const Sheet<Number>& pairs) {
+  using M = MatrixOf<Number>;
+  using R = RowsOf<Number>;
+  Matrix top = Matrix::Identity(functions * above, functions * above),
+         bottom = Matrix::Identity(functions * below, functions * below),
+         down = Matrix::Zero(functions * above, functions * below);
+  for (Eigen::Index f = 0; f < functions; ++f)
+    for (Eigen::Index j = 0; j < std::min(above, below); ++j) {
+      top(f * above + j, f * above + j) = bottom(f * below + j, f * below + j) = reflectance[j];
+      down(f * above + j, f * below + j) = 1 - reflectance[j];
+    }
+  const auto dark = [](const R& rows, Eigen::Index columns) {
+    return linear([columns](const Rows& like) -> Rows { return Rows::Zero(like.rows(), columns); },
+                  rows);
+  };
+  const auto no_radiance = [&](const UpAndDown<R>& like) {
+    return UpAndDown<R>{dark(like.down, functions * below), dark(like.up, functions * above)};
+  };
+  const auto exact = [](const Matrix& real) -> M { return flatspeckle::times(Number{1}, real); };
+  return {exact(top),
+          exact(bottom),
+          exact(down),
+          exact(Matrix(down.transpose())),
+          no_radiance(pairs.lights),
+          no_radiance(pairs.views),
+          0.0 * pairs.collected};
+}
+
+Eigen::VectorXd repeated(const Eigen::VectorXd& list, Eigen::Index times) {
+  return list.replicate(times, 1);
+}
+
+/// Returns the response of a stack between two outer faces, whose reflectances at the ordinates
+/// inside are `top` and `bottom`. Radiance a enters the stack from the upper face and b from the
+/// lower one: a is the reflected part of all radiance that leaves upwards, b of that which leaves
+/// downwards.
+template <typename Number>
+LayerResponseOf<Number> enclosed(const Sheet<Number>& stack, const Eigen::VectorXd& top,
+                                 const Eigen::VectorXd& bottom, Eigen::Index even_top,
+                                 Eigen::Index even_bottom) {
+  using M = MatrixOf<Number>;
+  using R = RowsOf<Number>;
+  const FactorsOf<M> factors(
+      blocks(M(identity_like(stack.top) - scaled_columns(stack.top, top)),
+             M(-1.0 * scaled_columns(stack.down, bottom)), M(-1.0 * scaled_columns(stack.up, top)),
+             M(identity_like(stack.bottom) - scaled_columns(stack.bottom, bottom))));
+  const R both = factors.after(
+      beside(scaled_columns(stack.lights.up, top), scaled_columns(stack.lights.down, bottom)));
+  const Eigen::Index first = top.size(), second = bottom.size();
+  const R a = linear([first](const Rows&r) -> Rows { return r.leftCols(first); }, both),
+          b = linear([second](const Rows&r) -> Rows { return r.rightCols(second); }, both);
+  const Eigen::VectorXd of_top = (1 - top.array()).matrix(),
+                        of_bottom = (1 - bottom.array()).matrix();
+  return {scaled_columns(R(stack.lights.up + product(a, stack.top) + product(b, stack.up)), of_top),
+          scaled_columns(R(stack.lights.down + product(a, stack.down) + product(b, stack.bottom)),
+                         of_bottom),
+          stack.collected + contracted(stack.views.up, a, even_top) +
+              contracted(stack.views.down, b, even_bottom)};
 }
 
 }  // namespace
 
 template <typename Number>
-LayerResponseOf<Number> response_of(const std::vector<HomogeneousLayerOf<Number>>& layers) {
-  using One = HomogeneousLayerOf<Number>;
-  if (layers.size() == 1) return doubled(layers.front()).response();
-  const auto lights = entering(layers, &One::lights), views = entering(layers, &One::views);
+LayerResponseOf<Number> response_of(const std::vector<HomogeneousLayerOf<Number>>& layers,
+                                    const FaceReflectances& faces) {
+  const auto& reflectance = faces.reflectance;
+  const auto ordinates = [&](std::size_t l) {
+    return value_of(layers[l].medium.x).rows() / faces.functions;
+  };
   std::optional<Sheet<Number>> all;
   for (std::size_t l = 0; l < layers.size(); ++l) {
-    const auto sheet = doubled(layers[l]).sheet(lights[l], views[l]);
-    all = all ? stacked(*all, sheet, layers[l].medium.even) : sheet;
+    const auto& layer = layers[l];
+    const Sheet<Number> sheet = doubled(layer).sheet(layer.lights, layer.views);
+    if (l > 0 && !reflectance.empty() && !reflectance[l].isZero(0))
+      all = stacked(
+          *all, face_sheet(reflectance[l], faces.functions, ordinates(l - 1), ordinates(l), sheet),
+          layers[l - 1].medium.even);
+    all = l > 0 ? stacked(*all, sheet, layer.medium.even) : sheet;
   }
-  return {all->lights.up, all->lights.down, all->collected};
+  if (reflectance.empty()) return {all->lights.up, all->lights.down, all->collected};
+  return enclosed(*all, repeated(reflectance.front(), faces.functions),
+                  repeated(reflectance.back(), faces.functions), layers.front().medium.even,
+                  layers.back().medium.even);
 }
 
-template LayerResponseOf<double> response_of(const std::vector<HomogeneousLayerOf<double>>&);
-template LayerResponseOf<Complex> response_of(const std::vector<HomogeneousLayerOf<Complex>>&);
+template LayerResponseOf<double> response_of(const std::vector<HomogeneousLayerOf<double>>&,
+                                             const FaceReflectances&);
+template LayerResponseOf<Complex> response_of(const std::vector<HomogeneousLayerOf<Complex>>&,
+                                              const FaceReflectances&);
 template LayerResponseOf<Dual<double>> response_of(
-    const std::vector<HomogeneousLayerOf<Dual<double>>>&);
+    const std::vector<HomogeneousLayerOf<Dual<double>>>&, const FaceReflectances&);
 
 }  // namespace flatspeckle::mc

@@ -23,10 +23,15 @@ struct TransportOperatorOf {
 /// scattering adds to L+ and L- per mean free path. For a pair of views, `down` and `up` contain
 /// the sensitivity to L- and L+, in this reversed order because by reciprocity a view is a
 /// time-reversed illumination. The signs of all but the first `even` columns are flipped.
+///
+/// The response of the layer to wave w is multiplied by factor[w] and is added to that of pair w %
+/// pairs: a pair has a second wave if faces reflect it.
 template <typename Number>
 struct PairWavesOf {
   std::vector<ComplexOf<Number>> top, bottom;
   RowsOf<Number> down, up;
+  std::vector<ComplexOf<Number>> factor;
+  Eigen::Index pairs = 0;
 };
 
 /// Waves of the illuminations and of the views of a layer.
@@ -52,29 +57,22 @@ struct HomogeneousLayerOf {
   PairWavesOf<Number> lights, views;
 };
 
+/// Reflection at the faces of a stack of layers. reflectance[l]: fraction of the power that face l,
+/// above layer l or below the last layer, reflects at each ordinate of the medium with the larger
+/// refractive index; for the first and the last face, at each ordinate inside. The first ordinates
+/// of two media with equal transverse momentum correspond to each other. Empty without faces.
+struct FaceReflectances {
+  std::vector<Eigen::VectorXd> reflectance;
+  Eigen::Index functions = 1;  ///< functions of direction, each with values at all ordinates
+};
+
 /// Computes the response of a stack of layers, listed from the top down. Each layer is built by
 /// doubling, starting from a layer so thin that its power series converges to rounding error.
-/// Layers are combined by the Redheffer star product, which could also include reflecting faces.
+/// Layers and faces are combined by the Redheffer star product. Radiance leaves the response
+/// outside of the faces.
 /// Number: double, Complex for complex extinction, or Dual<double> to include derivatives.
 template <typename Number>
-LayerResponseOf<Number> response_of(const std::vector<HomogeneousLayerOf<Number>>& layers);
-
-/// Returns the factors by which waves are attenuated in all other layers on their way to each
-/// layer, [layer][wave]. A layer as a whole attenuates a wave from above by exp(top) and a wave
-/// from below by exp(bottom), [layer][wave].
-template <typename C>
-std::vector<std::vector<C>> entering(const std::vector<std::vector<C>>& top,
-                                     const std::vector<std::vector<C>>& bottom) {
-  using std::exp;
-  auto factors = top;
-  for (std::size_t l = 0; l < top.size(); ++l)
-    for (std::size_t w = 0; w < top[l].size(); ++w) {
-      C exponent{};
-      for (std::size_t m = 0; m < top.size(); ++m)
-        if (m != l) exponent += m < l ? top[m][w] : bottom[m][w];
-      factors[l][w] = exp(exponent);
-    }
-  return factors;
-}
+LayerResponseOf<Number> response_of(const std::vector<HomogeneousLayerOf<Number>>& layers,
+                                    const FaceReflectances& faces = {});
 
 }  // namespace flatspeckle::mc

@@ -38,8 +38,8 @@ Dual<Matrix> gram(const Matrix& integrals, const Dual<std::vector<double>>& mome
 
 template <typename Geometry, typename Real>
 OrdinatesOf<Geometry, Real>::OrdinatesOf(const std::vector<Focus>& foci, int order, double fine,
-                                         Law law, Real albedo)
-    : grid_(foci, order, fine),
+                                         Law law, Real albedo, const GridIndices& indices)
+    : grid_(foci, order, fine, indices),
       law_(std::move(law)),
       albedo_(albedo),
       fine_(fine),

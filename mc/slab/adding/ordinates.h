@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <deque>
+#include <map>
 #include <mutex>
 #include <vector>
 
@@ -25,7 +27,8 @@ class OrdinatesOf {
   using Law = LawOf<Geometry, Real>;
 
   /// fine: smallest angle over which a phase function varies.
-  OrdinatesOf(const std::vector<Focus>& foci, int order, double fine, Law law, Real albedo);
+  OrdinatesOf(const std::vector<Focus>& foci, int order, double fine, Law law, Real albedo,
+              const GridIndices& indices = {});
 
   struct Scattering {
     /// Matrices albedo (F - B) and albedo (F + B), with the forward scattering F, within the upward
@@ -68,25 +71,58 @@ class OrdinatesOf {
   mutable std::deque<Scattering> of_mode_;
 };
 
-/// The layers of a slab, discretised on one angular grid.
+/// The layers of a slab, discretised on angular grids that differ only if the layers have different
+/// refractive indices.
 template <typename Geometry, typename Number>
 class DiscreteSlabOf {
  public:
+  using Slab = SlabOf<Geometry, Number>;
   using Ordinates = OrdinatesOf<Geometry, RealOf<Number>>;
 
-  DiscreteSlabOf(const SlabOf<Geometry, Number>& slab, const std::vector<Focus>& foci, int order) {
+  /// foci: angles in the layer of the largest index
+  DiscreteSlabOf(const Slab& slab, const std::vector<Focus>& foci, int order) {
     for (const auto& layer : slab.layers)
       layers_.emplace_back(
           foci, order, slab.width(),
           layer.law.has_sharp_peak() ? layer.law.truncated(kept_moments(order)) : layer.law,
-          layer.albedo);
+          layer.albedo, indices(slab, layer.index));
   }
   const std::deque<Ordinates>& layers() const { return layers_; }
-  const AngularGrid& grid() const { return layers_.front().grid(); }
-  /// Returns OrdinatesOf::root(), which is the same for all layers.
-  const Eigen::VectorXd& root() const { return layers_.front().root(); }
+  const AngularGrid& grid(std::size_t layer) const { return layers_[layer].grid(); }
+  /// Returns the largest number of ordinates in a layer.
+  Eigen::Index most_ordinates() const {
+    Eigen::Index most = 0;
+    for (const Ordinates& layer : layers_) most = std::max(most, layer.grid().size());
+    return most;
+  }
+
+  /// Returns the fraction of the power that each face reflects; empty if no face reflects.
+  std::vector<Eigen::VectorXd> reflectances(const Slab& slab) const {
+    std::vector<Eigen::VectorXd> found;
+    if (!slab.has_faces()) return found;
+    const std::ptrdiff_t layers = std::ssize(slab.layers);
+    for (std::ptrdiff_t l = 0; l <= layers; ++l) {
+      // From the inside at the outer faces, else from the medium with the larger index
+      const bool up = l == 0 || (l < layers && slab.index(l - 1) < slab.index(l));
+      const Face face{slab.index(up ? l : l - 1), slab.index(up ? l - 1 : l), slab.polarisation};
+      found.push_back(
+          grid(static_cast<std::size_t>(up ? l : l - 1)).cosine().unaryExpr([&](double cosine) {
+            return face.reflectance(cosine);
+          }));
+    }
+    return found;
+  }
 
  private:
+  static GridIndices indices(const Slab& slab, double own) {
+    std::map<double, bool> all{{slab.outside_index, false}};
+    for (const auto& layer : slab.layers) all[layer.index] = true;
+    GridIndices found{own, slab.largest_index()};
+    for (const auto& [index, of_layer] : all)
+      if (index < found.largest) found.smaller.push_back({index, of_layer});
+    return found;
+  }
+
   std::deque<Ordinates> layers_;
 };
 

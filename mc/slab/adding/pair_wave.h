@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <type_traits>
@@ -37,6 +38,35 @@ inline Eigen::Vector3d turned_round(const Eigen::Vector3d& direction) {
 template <typename Direction>
 PairOf<Direction> turned_round(const PairOf<Direction>& pair) {
   return {turned_round(pair.first), turned_round(pair.second)};
+}
+
+/// Returns the mirror image of a direction in a face.
+inline double mirrored(double angle) {
+  return std::numbers::pi - angle;
+}
+inline Eigen::Vector3d mirrored(const Eigen::Vector3d& direction) {
+  return {direction.x(), direction.y(), -direction.z()};
+}
+template <typename Direction>
+PairOf<Direction> mirrored(const PairOf<Direction>& pair) {
+  return {mirrored(pair.first), mirrored(pair.second)};
+}
+
+/// Returns a direction after refraction at a face, by which the sine of its angle from z changes by
+/// the factor `ratio`. The new sine must be at most 1.
+inline double refracted(double angle, double ratio) {
+  if (ratio == 1) return angle;
+  const double turned = std::asin(ratio * std::sin(angle));
+  return std::cos(angle) > 0 ? turned : std::numbers::pi - turned;
+}
+inline Eigen::Vector3d refracted(const Eigen::Vector3d& direction, double ratio) {
+  if (ratio == 1) return direction;
+  const double x = ratio * direction.x(), y = ratio * direction.y();
+  return {x, y, std::copysign(std::sqrt(std::max(0.0, 1 - x * x - y * y)), direction.z())};
+}
+template <typename Direction>
+PairOf<Direction> refracted(const PairOf<Direction>& pair, double ratio) {
+  return {refracted(pair.first, ratio), refracted(pair.second, ratio)};
 }
 
 inline double cosine_of(double angle) {

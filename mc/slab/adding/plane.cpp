@@ -71,15 +71,15 @@ void add(std::vector<Focus>& foci, double angle, double width) {
 
 template <typename Number>
 DoubleScatteringOf<Number>::DoubleScatteringOf(RealOf<Number> optical_depth, double k, double q,
-                                               Pair lights, Pair views,
+                                               const Endpoint& lights, const Endpoint& views,
                                                const Departure<Number>& departure)
     : optical_depth_(optical_depth),
       q_(q * departure.length),
       extinction_(departure.extinction(k)),
-      lights_(lights),
-      views_(views),
-      light_(pair_wave(k, lights, departure)),
-      view_(pair_wave(k, turned_round(views), departure)) {}
+      lights_(lights.pair),
+      views_(views.pair),
+      light_(lights.wave),
+      view_(views.wave) {}
 
 template <typename Number>
 ComplexOf<Number> DoubleScatteringOf<Number>::along(double sine, double cosine, bool down) const {
@@ -247,7 +247,7 @@ PairWavesOf<Number> PlaneGeometry::fed(const OrdinatesOf<PlaneGeometry, RealOf<N
       return rows;
     });
   };
-  return {{}, {}, ordinates.albedo() * into(0), ordinates.albedo() * into(pi)};
+  return {{}, {}, ordinates.albedo() * into(0), ordinates.albedo() * into(pi), {}};
 }
 
 template <typename Number>

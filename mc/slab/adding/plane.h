@@ -82,9 +82,14 @@ class DoubleScatteringOf {
   using Law = std::conditional_t<std::is_same_v<Number, Dual<double>>, DerivativeOf<ScatteringLaw>,
                                  ScatteringLaw>;
 
+  /// A pair of illuminations or of views in the layer, with its wave.
+  struct Endpoint {
+    Pair pair;
+    PairWaveOf<Number> wave;
+  };
   /// k, q: wavenumber and transverse momentum in units of mu_t.
-  DoubleScatteringOf(RealOf<Number> optical_depth, double k, double q, Pair lights, Pair views,
-                     const Departure<Number>& departure);
+  DoubleScatteringOf(RealOf<Number> optical_depth, double k, double q, const Endpoint& lights,
+                     const Endpoint& views, const Departure<Number>& departure);
 
   /// Returns the contribution, per unit angle, of light that travels in the direction theta between
   /// the two scatterings, if all scattering amplitudes are 1. It includes the factor 1/cos(theta).
@@ -143,6 +148,19 @@ struct PlaneGeometry {
     double optical_depth_, width_;
     std::vector<double> centres_;
   };
+
+  /// Returns the factor of the fields of a pair in a layer, relative to its transmission at the
+  /// faces. index: refractive index of the layer relative to that outside. By these factors,
+  /// radiance times OrdinatesOf::root(), and the sensitivity of views, are transmitted through a
+  /// face between two layers as the power is (the amplitude of a far view outside contains the
+  /// ratio of both indices in the plane, but not in space).
+  static double radiance_scale(double index, Polarisation polarisation) {
+    return polarisation == Polarisation::te ? std::pow(index, -1.5) : std::sqrt(index);
+  }
+
+  /// Returns the factor of the power radiance in a layer at which radiance times
+  /// OrdinatesOf::root() changes at a face between two layers only by the transmitted fraction.
+  static double power_scale(double index) { return std::sqrt(index); }
 
   static constexpr int function_kinds = 1;  ///< kinds of functions of direction: cosines only
   static constexpr int first_modes = 1;  ///< highest mode of the solution; higher ones do not exist

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <iterator>
 #include <vector>
 
+#include "flatland/media/faces.h"
 #include "flatland/request/request.h"
 #include "mc/slab/adding/bulk_derivative.h"
 #include "mc/slab/adding/pair_wave.h"
@@ -19,6 +22,8 @@ struct SlabLayerOf {
   double mu_t, depth;
   Real albedo;
   LawOf<Geometry, Real> law;
+  double k;          ///< wavenumber in the layer
+  double index = 1;  ///< refractive index
 };
 
 /// A slab. `departure` contains the frequency shift of the second field of each pair, or the
@@ -27,9 +32,30 @@ template <typename Geometry, typename Number>
 struct SlabOf {
   using Layer = SlabLayerOf<Geometry, RealOf<Number>>;
 
-  double k, mu_t, depth;      ///< mu_t: mean over the depth
+  double k, mu_t, depth;      ///< k: wavenumber outside; mu_t: mean over the depth
   std::vector<Layer> layers;  ///< from the top down
   Departure<Number> departure{};
+  double outside_index = 1;
+  Polarisation polarisation = Polarisation::tm;
+
+  /// Whether some face reflects.
+  bool has_faces() const {
+    return std::any_of(layers.begin(), layers.end(),
+                       [this](const Layer& layer) { return layer.index != outside_index; });
+  }
+  /// Returns the index of layer l; that outside for l = -1 and for l = number of layers.
+  double index(std::ptrdiff_t l) const {
+    return l < 0 || l >= std::ssize(layers) ? outside_index
+                                            : layers[static_cast<std::size_t>(l)].index;
+  }
+  /// Returns the largest index of a layer.
+  double largest_index() const {
+    double largest = 0;
+    for (const Layer& layer : layers) largest = std::max(largest, layer.index);
+    return largest;
+  }
+  /// Returns face l, which is above layer l, or below the last layer, for light that travels down.
+  Face face(std::ptrdiff_t l) const { return {index(l - 1), index(l), polarisation}; }
 
   RealOf<Number> optical_depth(const Layer& layer) const {
     return layer.mu_t * layer.depth / departure.length;

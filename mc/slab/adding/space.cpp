@@ -2,17 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <utility>
 
 #include "core/error.h"
 #include "core/numbers/gauss.h"
+#include "flatland/media/layers.h"
+#include "flatland/scene/scene_density.h"
 #include "grin/media/scattering/hg_phase.h"
 #include "grin/media/scattering/mie_phase.h"
 #include "grin/media/scattering/rayleigh_phase.h"
 #include "grin/media/scattering/table_phase.h"
 #include "grin/media/scattering/two_term_phase.h"
 #include "mc/jobs/bulk_parameter.h"
+#include "mc/slab/adding/correlated_phase.h"
 #include "mc/slab/adding/ordinates.h"
 
 namespace flatspeckle::mc {
@@ -27,7 +31,35 @@ void set_phase(BulkMedium& medium, const Phase& phase) {
   medium.g = phase.mean_cosine();
 }
 
-/// Sets the albedo and the phase function of a medium of spheres.
+/// Sets extinction and scattering of independent spheres from their density or, if that is not
+/// given, their density from the extinction.
+void set_sphere_density(BulkMedium& medium, const Scatterer& spheres) {
+  const double sigma_e = medium.cross_sections.extinction;
+  if (medium.density > 0)
+    medium.mu_t = medium.density * sigma_e;
+  else
+    medium.density = medium.mu_t / sigma_e;
+  if (!(medium.mu_t > 0 && std::isfinite(1 / medium.mu_t) && std::isfinite(medium.density)))
+    throw InputError("radius", spheres.radius,
+                     "with this density or extinction, the mean free path or the number density is "
+                     "not finite");
+  medium.packing_fraction = medium.density * scatterer_content(spheres, 3);
+  medium.albedo = medium.cross_sections.scattering / sigma_e;
+  medium.mu_s = medium.albedo * medium.mu_t;
+}
+
+/// Includes the structure factor of a medium of spheres in its phase function and scattering (C16);
+/// absorption is unchanged.
+void correlate(BulkMedium& medium, const grin::MiePhase& alone, double k) {
+  const CorrelatedPhase phase(alone, medium.structure, k);
+  const double absorption = medium.mu_t - medium.mu_s;
+  medium.mu_s *= phase.mean_structure();
+  medium.mu_t = medium.mu_s + absorption;
+  medium.albedo = medium.mu_s / medium.mu_t;
+  set_phase(medium, phase);
+}
+
+/// Sets the properties of a medium of spheres, except for its structure factor.
 void set_spheres(BulkMedium& medium, const Scatterer& scatterer, double k) {
   const double size = k * scatterer.radius;
   // Up to this size parameter SpaceLaw keeps all moments of the phase function.
@@ -38,10 +70,14 @@ void set_spheres(BulkMedium& medium, const Scatterer& scatterer, double k) {
   const grin::MieSphere sphere(size, scatterer.index);
   if (!(sphere.scattering() > 0))
     throw InputError("index", scatterer.index.real(), "spheres of this index do not scatter");
+  const double area = scatterer_content(scatterer, 2), sigma_s = area * sphere.scattering();
   const bool lossless = scatterer.index.imag() == 0;
-  medium.albedo = lossless ? 1 : sphere.scattering() / sphere.extinction();
-  medium.mu_s = medium.albedo * medium.mu_t;
-  set_phase(medium, grin::MiePhase(sphere));
+  medium.cross_sections = {sigma_s, lossless ? sigma_s : area * sphere.extinction(),
+                           sphere.mean_cosine()};
+  set_sphere_density(medium, scatterer);
+  const grin::MiePhase phase(sphere);
+  set_phase(medium, phase);
+  if (!medium.structure.independent()) correlate(medium, phase, k);
 }
 
 void set_phase(BulkMedium& medium, const Scatterer& scatterer, const ScattererValues& values) {
@@ -118,12 +154,29 @@ Matrix associated_legendre(const Eigen::VectorXd& angle, int m, int last) {
 Scene in_space(Scene slab, const ScattererValues& values) {
   if (slab.domain.kind != Domain::Kind::slab)
     throw InputError("dimension", 3, "requires domain = slab");
-  BulkMedium& medium = slab.medium;
-  medium.dimension = 3;
-  if (slab.scatterer.kind == Scatterer::Kind::mie)
-    set_spheres(medium, slab.scatterer, slab.k);
-  else
-    set_phase(medium, slab.scatterer, values);
+  const auto convert = [&](BulkMedium& medium, const Scatterer& scatterer, double k) {
+    medium.dimension = 3;
+    if (scatterer.kind == Scatterer::Kind::mie)
+      set_spheres(medium, scatterer, k);
+    else
+      set_phase(medium, scatterer, values);
+  };
+  const auto* layers = dynamic_cast<const Layers*>(slab.profile.get());
+  if (layers == nullptr) {
+    convert(slab.medium, slab.scatterer, slab.k);
+    return slab;
+  }
+  auto materials = layers->materials();
+  std::vector<double> thicknesses;
+  for (std::size_t l = 0; l < materials.size(); ++l) {
+    const double k = slab.faces ? slab.k * (materials[l].index / slab.faces->inside) : slab.k;
+    convert(materials[l].medium, materials[l].scatterer, k);
+    thicknesses.push_back(layers->thickness(l));
+  }
+  const auto in_space = std::make_shared<const Layers>(std::move(materials), thicknesses);
+  slab.profile = in_space;
+  slab.medium = in_space->mean();
+  slab.medium.dimension = 3;
   return slab;
 }
 
@@ -270,7 +323,7 @@ PairWavesOf<Number> SpaceGeometry::fed(const OrdinatesOf<SpaceGeometry, RealOf<N
       return rows;
     });
   };
-  return {{}, {}, ordinates.albedo() * into(1), ordinates.albedo() * into(-1)};
+  return {{}, {}, ordinates.albedo() * into(1), ordinates.albedo() * into(-1), {}};
 }
 
 template PairWavesOf<double> SpaceGeometry::fed<double>(const OrdinatesOf<SpaceGeometry, double>&,

@@ -19,7 +19,8 @@ namespace flatspeckle::mc {
 /// Converts a slab in the plane to a slab in space with the same scene keys. Illuminations and
 /// views lie in the plane of incidence, the phase function of the medium is per steradian, and its
 /// `dimension` is 3. Throws InputError for boxes, and for scatterers other than hg, two_term_hg,
-/// phase_table, rayleigh and mie. The albedo for mie follows from the spheres.
+/// phase_table, rayleigh and mie. For mie the albedo follows from the spheres, and so does the
+/// extinction if the scene gives their density; the phase function includes the structure factor.
 Scene in_space(Scene slab, const ScattererValues& values);
 
 /// Scattering of field pairs in space, with scalar amplitudes A = sqrt(p). The Legendre moments of
@@ -86,7 +87,7 @@ struct SpaceGeometry {
   }
 
   static Law law(const Scene& scene, double delay = 0);
-  /// Returns the scene with other spheres at the same extinction.
+  /// Returns the scene with other spheres at the same number density and independent positions.
   static Scene with_scatterer(Scene scene, const Scatterer& scatterer);
   /// Returns Law::pair() for a single scattering from the illuminations to the views.
   template <typename L>
@@ -104,6 +105,17 @@ struct SpaceGeometry {
    private:
     double width_;
   };
+
+  /// Returns the factor of the fields of a pair in a layer, relative to its transmission at the
+  /// faces. index: refractive index of the layer relative to that outside. By these factors,
+  /// radiance times OrdinatesOf::root(), and the sensitivity of views, are transmitted through a
+  /// face between two layers as the power is (the amplitude of a far view outside contains the
+  /// ratio of both indices in the plane, but not in space).
+  static double radiance_scale(double, Polarisation) { return 1; }
+
+  /// Returns the factor of the power radiance in a layer at which radiance times
+  /// OrdinatesOf::root() changes at a face between two layers only by the transmitted fraction.
+  static double power_scale(double index) { return index; }
 
   static constexpr int function_kinds = 2;  ///< kinds of functions of direction: cosines and sines
   /// Highest mode of the first solution; it is increased by refinement, like the number of

@@ -8,6 +8,7 @@
 #include "mc/paths/dynamics/frequency_shifts.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/slab/slab_jobs.h"
+#include "mc/theory/diffusion.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc::test_frequency_walks {
@@ -111,7 +112,7 @@ TEST_CASE(
       shifts.push_back(x * x * mean_free_path / (2 * depth * depth) / scene.k);
     const auto found = run_at(scene, ReversedPaths::no, shifts, 40000, 7).changes().correlation;
     for (std::size_t i = 0; i < shifts.size(); ++i) {
-      const double theory = diffusion_frequency_correlation(scene, shifts[i]);
+      const double theory = diffusion_frequency_correlation(scene, scene.k, shifts[i]);
       CHECK_WITHIN_4_SIGMA(std::abs(found.value[i]), found.error[i], Complex(theory),
                            bias * theory);
       CHECK(found.error[i] < 0.02);

@@ -17,7 +17,8 @@ inline SpaceSlab hg_space(double depth, double optical_depth, double g, double a
   const double mu_t = optical_depth / depth;
   const SpaceLaw law(
       [g](double cosine) { return grin::HenyeyGreenstein<3>{g}.density_at(cosine); });
-  return {2 * std::numbers::pi, mu_t, depth, {{mu_t, depth, albedo, law}}};
+  const double k = 2 * std::numbers::pi;
+  return {k, mu_t, depth, {{mu_t, depth, albedo, law, k}}};
 }
 
 /// Returns the unit vector into the slab with these components along it.

@@ -175,9 +175,10 @@ namespace {
 /// Checks derivatives against differences of the scenes at(step); `scale` is the step over which
 /// the values change.
 template <typename At>
-void check_derivatives(BulkParameter parameter, double scale, bool reversed, const At& at) {
+void check_derivatives(BulkParameter parameter, double scale, bool reversed, const At& at,
+                       double tolerance = is_night ? 1e-8 : 1e-6) {
   CAPTURE(static_cast<int>(parameter));
-  const Refinement refinement{is_night ? 1e-8 : 1e-6, 6};
+  const Refinement refinement{tolerance, 6};
   tests::check_sixth_order(
       slab_derivatives(at(0), reversed, refinement, parameter).value, scale,
       [&](double step) { return slab_covariance(at(step), reversed, refinement).value; });
@@ -210,7 +211,7 @@ TEST_CASE("3D slab transport: derivatives agree with finite differences of conve
   }
 }
 
-TEST_CASE("3D slab transport: derivatives by radius and index of spheres agree with differences") {
+TEST_CASE("3D slab transport: derivatives by radius and index of spheres at fixed density") {
   constexpr double depth = 200, radius = 0.2, index = 1.4;
   const auto request = memory_effect_request(wavenumber, 0, {0.1}, {0.1 / depth});
   const auto scene = [&](double wider, double denser) {
@@ -218,13 +219,17 @@ TEST_CASE("3D slab transport: derivatives by radius and index of spheres agree w
     spec.scatterer = "mie";
     spec.dimension = 3;
     spec.g = spec.albedo = std::nullopt;
+    spec.optical_depth = std::nullopt;
+    spec.density = 0.1;
     spec.radius = radius + wider;
     spec.index = std::to_string(index + denser) + "+0.01i";
     return tests::in_space(spec, request);
   };
-  check_derivatives(BulkParameter::radius, radius / 4, false,
-                    [&](double step) { return scene(step, 0); });
-  check_derivatives(BulkParameter::index, 0.1, false, [&](double step) { return scene(0, step); });
+  const double finer = is_night ? 1e-8 : 3e-7;
+  check_derivatives(
+      BulkParameter::radius, radius / 4, false, [&](double step) { return scene(step, 0); }, finer);
+  check_derivatives(
+      BulkParameter::index, 0.1, false, [&](double step) { return scene(0, step); }, finer);
 }
 
 }  // namespace flatspeckle::mc::test_space_dynamics

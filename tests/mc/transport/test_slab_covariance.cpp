@@ -281,8 +281,7 @@ TEST_CASE("slab transport: tilts with delays of a thick slab agree with diffusio
       // like absorption, a delay adds to the square of a tilt (C20)
       const double loss = 2 * delays[t] * (1 - scene.medium.g) * scene.medium.mu_s,
                    l = scene.medium.transport_mean_free_path(), q = request.tilt_q[i],
-                   expected = diffusion_field_correlation(scene.medium, depth,
-                                                          std::sqrt(q * q + 2 * loss / l));
+                   expected = diffusion_field_correlation(scene, std::sqrt(q * q + 2 * loss / l));
       CHECK(found.correlation.value[t * tilts.size() + i].real() ==
             doctest::Approx(expected).epsilon(2e-3));
     }

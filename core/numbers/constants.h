@@ -1,0 +1,8 @@
+#pragma once
+
+namespace flatspeckle {
+
+inline constexpr double light_speed = 299'792'458;           ///< in vacuum, m/s (exact)
+inline constexpr double boltzmann_constant = 1.380'649e-23;  ///< J/K (exact)
+
+}  // namespace flatspeckle

@@ -1,0 +1,124 @@
+#include "mc/paths/endpoint_factors/faced_endpoints.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace flatspeckle::mc {
+
+namespace {
+
+/// Returns the direction inside of a ray with this direction outside.
+Vec2 refracted(const Faces& faces, Vec2 outside) {
+  const Face entering = faces.entering();
+  return {outside.x * (faces.outside / faces.inside),
+          std::copysign(entering.refracted(std::abs(outside.z)), outside.z)};
+}
+
+/// Largest power of waves that were reflected r times, relative to that of unreflected waves, over
+/// all places of the medium: reflectance^r exp(-(r - 1) depth) for the most reflected ray.
+class WavePower {
+ public:
+  /// Adds a ray with this angle outside.
+  void add(const Scene& scene, double angle) {
+    const Faces& faces = *scene.faces;
+    const double cosine = std::abs(refracted(faces, direction(angle)).z);
+    rays_.push_back({faces.leaving().reflectance(cosine),
+                     std::exp(-scene.medium.mu_t * scene.domain.depth / cosine)});
+  }
+  double operator()(int reflections) const {
+    if (reflections == 0) return 1;
+    double largest = 0;
+    for (const auto& [reflectance, through] : rays_)
+      largest = std::max(largest, reflectance * std::pow(reflectance * through, reflections - 1));
+    return largest;
+  }
+
+ private:
+  struct Ray {
+    double reflectance, through;
+  };
+  std::vector<Ray> rays_;
+};
+
+}  // namespace
+
+std::vector<ScoredWaves> scored_waves(const Scene& scene) {
+  if (!scene.faces) return {{}};
+  constexpr double least = 1e-6, paths_per_power = 4;
+  constexpr int most = 64;
+  WavePower lights, views;
+  for (const Light& light : scene.request.lights) lights.add(scene, light.angle);
+  for (const View& view : scene.request.views) views.add(scene, view.angle);
+  std::vector<ScoredWaves> all;
+  for (int light = 0; light < most && lights(light) >= least; ++light)
+    for (int view = 0; view < most; ++view) {
+      const double power = lights(light) * views(view);
+      if (power < least) break;
+      all.push_back({{light, view}, std::min(1.0, paths_per_power * power)});
+    }
+  return all;
+}
+
+Scene inside_faces(Scene scene) {
+  if (!scene.faces) return scene;
+  const auto turn = [&](double& angle) {
+    angle = angle_of(refracted(*scene.faces, direction(angle)));
+  };
+  for (Light& light : scene.request.lights) turn(light.angle);
+  for (View& view : scene.request.views) turn(view.angle);
+  return scene;
+}
+
+/// The field of a far view outside contains, beside the transmission of a wave that enters from its
+/// direction, the square root of the ratio of the radiances for equal power (see
+/// Geometry::radiance_scale of mc/slab): it is divided equally between lights and views.
+FacedEndpoints::FacedEndpoints(const Scene& scene, const std::vector<Endpoint>& endpoints,
+                               bool phases)
+    : EndpointFactors(endpoints.size()),
+      domain_(scene.domain),
+      k_(scene.k),
+      mu_t_(scene.medium.mu_t),
+      phases_(phases),
+      phase_(endpoints.size()),
+      factor_(endpoints.size()) {
+  const Faces& faces = *scene.faces;
+  const Face entering = faces.entering();
+  const double index = faces.inside / faces.outside,
+               scale = scene.medium.dimension == 3              ? 1
+                       : faces.polarisation == Polarisation::te ? std::pow(index, -0.75)
+                                                                : std::pow(index, 0.25);
+  for (const Endpoint& endpoint : endpoints) {
+    const double outside = endpoint.towards.z, reflected = entering.reflected(std::abs(outside));
+    far_.push_back({refracted(faces, endpoint.towards), scale * (1 + reflected), -reflected,
+                    outside > 0 ? -scene.outside_k() * outside * domain_.depth : 0});
+  }
+  choose(0);
+}
+
+void FacedEndpoints::choose(int wave) {
+  wave_ = wave;
+  for (std::size_t j = 0; j < size(); ++j) {
+    Vec2 w = far_[j].towards;
+    if (wave % 2 == 1) w.z = -w.z;
+    directions_.set(j, w, angle_of(w));
+    factor_[j] = far_[j].amplitude * std::pow(far_[j].reflection, wave);
+  }
+}
+
+void FacedEndpoints::attenuate(Vec2 x, std::span<Complex> out) {
+  for (std::size_t j = 0; j < size(); ++j) {
+    const Vec2 w = directions_[j];
+    // Depth to be crossed to the face of the endpoint, over all reflections
+    const double crossed = wave_ * domain_.depth + (w.z > 0 ? domain_.depth - x.z : x.z);
+    double inside = crossed / std::abs(w.z);
+    if (domain_.kind == Domain::Kind::box && w.x != 0)
+      inside = std::min(inside, (domain_.width / 2 - (w.x > 0 ? x.x : -x.x)) / std::abs(w.x));
+    log_attenuation_[j] = -mu_t_ * inside / 2;
+    const double magnitude = factor_[j] * std::exp(log_attenuation_[j]);
+    out[j] = magnitude;
+    if (phases_)
+      out[j] *= std::polar(1.0, far_[j].phase + k_ * (std::abs(w.z) * crossed - w.x * x.x));
+  }
+}
+
+}  // namespace flatspeckle::mc
