@@ -110,6 +110,8 @@ std::optional<Invariant> paths_power(const Scene& scene, double samples, std::ui
   constexpr std::size_t groups = 16;
   constexpr double most_samples = 1 << 22, rounding = 1e-9;
   if (scene.index || scene.medium.dimension == 3 || !(scene.medium.mu_s > 0)) return std::nullopt;
+  // The layer around a box with faces guides a part of the light away from all views.
+  if (scene.faces && scene.domain.kind == Domain::Kind::box) return std::nullopt;
   const mc::Plan plan =
       mc::make_plan(seen_from(scene, std::vector<double>(views)), mc::ReversedPaths::no);
   if (samples < static_cast<double>(groups * plan.paths_per_batch)) return std::nullopt;

@@ -86,6 +86,16 @@ inline Dual<Rows> concatenated(const Dual<Rows>& upper, const Dual<Rows>& lower)
   return {concatenated(upper.value, lower.value), concatenated(upper.derivative, lower.derivative)};
 }
 
+/// Returns the columns of one matrix followed by those of another.
+inline Rows beside(const Rows& left, const Rows& right) {
+  Rows both(left.rows(), left.cols() + right.cols());
+  both << left, right;
+  return both;
+}
+inline Dual<Rows> beside(const Dual<Rows>& left, const Dual<Rows>& right) {
+  return {beside(left.value, right.value), beside(left.derivative, right.derivative)};
+}
+
 template <typename A, typename B>
 Dual<A> product(const Dual<A>& a, const Dual<B>& b) {
   return {product(a.value, b.value),

@@ -32,7 +32,7 @@ void add_keys(Keys& keys, DynamicsValues& values) {
       .unit("Pa s")
       .only_of("delays with temperature");
   keys.add("particle_radius", values.particle_radius,
-           "Radius of the particles that diffuse (default: radius)")
+           "Radius of the particles that diffuse (default: that of the scatterers)")
       .positive()
       .unit("length")
       .only_of("delays with temperature");
@@ -82,7 +82,8 @@ std::optional<double> diffusion_constant(const Keys& keys, const DynamicsValues&
     if (text) throw InputError("diffusion, temperature: give only one of them");
     require_unit("temperature", value);
     const double viscosity = keys.required(values.viscosity);
-    const auto& radius = values.particle_radius ? keys.read(values.particle_radius) : spec.radius;
+    std::optional<double> radius = spec.diameter ? *spec.diameter / 2 : spec.radius;
+    if (values.particle_radius) radius = keys.read(values.particle_radius);
     if (!radius)
       throw InputError("temperature", value,
                        "requires particle_radius for scatterers without a radius");

@@ -72,9 +72,9 @@ class Delays(ProgramTest):
         self.assertAlmostEqual(expected, 4.28e-13, delta=1e-15)
         np.testing.assert_allclose(file["delay"].attrs["diffusion"], expected, rtol=1e-12)
         self.assertIn("diffusion constant 4.28", done.stdout)
-        spheres = {"scatterer": "mie", "radius": 0.05, "index": 1.2}
-        _, file = self.run_delays(**water, **spheres, mean_free_path=100)
-        np.testing.assert_allclose(file["delay"].attrs["diffusion"], 10 * expected, rtol=1e-12)
+        for size in ({"radius": 0.05}, {"diameter": 0.1}):
+            _, file = self.run_delays(**water, scatterer="mie", **size, index=1.2, mean_free_path=100)
+            np.testing.assert_allclose(file["delay"].attrs["diffusion"], 10 * expected, rtol=1e-12)
 
     def test_walks_of_flowing_scatterers_in_seconds(self):
         thin = {**SLAB, "dimension": None, "mean_free_path": None, "optical_depth": 1e-8, "g": 0.3, "method": "mc",

@@ -396,15 +396,6 @@ Dual<M> blocks(const Dual<M>& a, const Dual<M>& b, const Dual<M>& c, const Dual<
           blocks(a.derivative, b.derivative, c.derivative, d.derivative)};
 }
 
-Rows beside(const Rows& left, const Rows& right) {
-  Rows both(left.rows(), left.cols() + right.cols());
-  both << left, right;
-  return both;
-}
-Dual<Rows> beside(const Dual<Rows>& left, const Dual<Rows>& right) {
-  return {beside(left.value, right.value), beside(left.derivative, right.derivative)};
-}
-
 /// Returns a face inside a stack, between media with `above` and `below` ordinates for each
 /// function of direction. pairs: an element with the numbers of illuminations and views.
 template <typename Number>
