@@ -160,7 +160,9 @@ void add_faces(ExtremeRows& rows) {
               ", OD " + short_number(bulk.optical_depth) + (dimension == 3 ? ", in space" : "");
           rows.add("transport, " + name, "all shares of power = 1", lossless_faces, bulk, index,
                    incidence, dimension);
-          if (bulk.optical_depth == 10)
+          // Paths of light that grazes the faces inside are undersampled, also without faces.
+          const bool grazes = std::sin(incidence) > 0.99 * index;
+          if (bulk.optical_depth == 10 && !grazes)
             rows.add("paths, " + name, "paths, in errors", faces_by_paths, bulk, index, incidence,
                      dimension);
         }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numbers/phasor.h"
+
 namespace flatspeckle::mc {
 
 namespace {
@@ -80,6 +82,7 @@ FacedEndpoints::FacedEndpoints(const Scene& scene, const std::vector<Endpoint>& 
       mu_t_(scene.medium.mu_t),
       phases_(phases),
       phase_(endpoints.size()),
+      magnitude_(endpoints.size()),
       factor_(endpoints.size()) {
   const Faces& faces = *scene.faces;
   const Face entering = faces.entering();
@@ -113,12 +116,17 @@ void FacedEndpoints::attenuate(Vec2 x, std::span<Complex> out) {
     double inside = crossed / std::abs(w.z);
     if (domain_.kind == Domain::Kind::box && w.x != 0)
       inside = std::min(inside, (domain_.width / 2 - (w.x > 0 ? x.x : -x.x)) / std::abs(w.x));
-    log_attenuation_[j] = -mu_t_ * inside / 2;
-    const double magnitude = factor_[j] * std::exp(log_attenuation_[j]);
-    out[j] = magnitude;
-    if (phases_)
-      out[j] *= std::polar(1.0, far_[j].phase + k_ * (std::abs(w.z) * crossed - w.x * x.x));
+    constexpr double log_of_nothing = -1e4;  // finite, for the vectorised exp
+    log_attenuation_[j] = std::max(-mu_t_ * inside / 2, log_of_nothing);
+    phase_[j] = far_[j].phase + k_ * (std::abs(w.z) * crossed - w.x * x.x);
   }
+  if (phases_) {
+    damped_phasors(phase_, log_attenuation_, out);
+  } else {
+    damping(log_attenuation_, magnitude_);
+    std::copy(magnitude_.begin(), magnitude_.end(), out.begin());
+  }
+  for (std::size_t j = 0; j < size(); ++j) out[j] *= factor_[j];
 }
 
 }  // namespace flatspeckle::mc

@@ -50,7 +50,7 @@ class FacedEndpoints : public EndpointFactors {
     double phase;       ///< at the face where light enters or leaves
   };
   std::vector<Far> far_;
-  std::vector<double> phase_, factor_;
+  std::vector<double> phase_, magnitude_, factor_;
 };
 
 }  // namespace flatspeckle::mc
