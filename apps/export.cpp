@@ -114,7 +114,8 @@ class ExportTable {
   /// Adds a column for each axis: the values of its scale, or the index if it has none.
   void add_axes() {
     const auto scales = file_.axes(names_.front());
-    std::size_t after = number_of_values(shape_);  // number of elements for each index along the axis
+    std::size_t after =
+        number_of_values(shape_);  // number of elements for each index along the axis
     for (std::size_t axis = 0; axis < shape_.size(); ++axis) {
       const std::size_t extent = shape_[axis];
       if (extent > 0) after /= extent;

@@ -149,17 +149,15 @@ struct PlaneGeometry {
     std::vector<double> centres_;
   };
 
-  /// Returns the factor of the fields of a pair in a layer, relative to its transmission at the
-  /// faces. index: refractive index of the layer relative to that outside. By these factors,
-  /// radiance times OrdinatesOf::root(), and the sensitivity of views, are transmitted through a
-  /// face between two layers as the power is (the amplitude of a far view outside contains the
-  /// ratio of both indices in the plane, but not in space).
+  /// Returns the factor of pairs of lights and of pairs of views in a layer (C47). index: its
+  /// refractive index relative to that outside. With this factor, radiance times
+  /// OrdinatesOf::root() is transmitted through a face between two layers as the power is (C50).
   static double radiance_scale(double index, Polarisation polarisation) {
     return polarisation == Polarisation::te ? std::pow(index, -1.5) : std::sqrt(index);
   }
 
-  /// Returns the factor of the power radiance in a layer at which radiance times
-  /// OrdinatesOf::root() changes at a face between two layers only by the transmitted fraction.
+  /// Returns the number by which the radiance of power in a layer is divided. Radiance times
+  /// OrdinatesOf::root() is then transmitted through a face between two layers as the power is.
   static double power_scale(double index) { return std::sqrt(index); }
 
   static constexpr int function_kinds = 1;  ///< kinds of functions of direction: cosines only
