@@ -6,6 +6,7 @@
 #include "apps/results/moments_table.h"
 #include "apps/results/tilt_search.h"
 #include "apps/results/view_power.h"
+#include "core/error.h"
 #include "core/session/session.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/paths/estimators/reflection_theory.h"
@@ -76,6 +77,11 @@ class CovarianceExperiment : public Experiment {
     take_q_depths(keys, q_depths_, spec_);
     choose_tilts(keys, tilt_count_, spec_, method_, run_, seed());
     scene_ = with_dimension(make_scene(keys, spec_), spec_);
+    // Delays are scaled by one wavenumber, which layers of different index do not have.
+    if (scene_->faces && !spec_.medium_index && !extras_.dynamics.delays.empty())
+      throw InputError(
+          "delays: require one refractive index; give the key medium_index instead of a column of "
+          "layers");
     if (!only_prints_) estimation_ = made_estimation(reversed);
     disregard_unused(keys, spec_, {method_});
     neglected_ = Neglected(*scene_);
