@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <set>
@@ -18,6 +19,8 @@
 #include "core/result/guarded_read.h"
 #include "core/result/version.h"
 #include "core/run/interrupt.h"
+#include "core/run/progress.h"
+#include "core/run/stopwatch.h"
 #include "core/session/journal.h"
 #include "core/session/session.h"
 #include "mc/fit/fit_datasets.h"
@@ -64,6 +67,7 @@ struct FitKeys {
   bool trust_paths = false;
   bool plan = false;
   double patterns = 1000;
+  std::vector<std::string> choose;
   VaryValues varied;
   RunSettings run;
 };
@@ -104,6 +108,10 @@ void add_keys(Keys& keys, FitKeys& values) {
   keys.add("patterns", values.patterns,
            "Number of independent speckle patterns measured in each view")
       .positive()
+      .only_of("plan");
+  keys.add("choose", values.choose,
+           "How many of tilts, or of view_angles, the plan may use, as tilts=12: those without "
+           "which the relative errors grow least are left out")
       .only_of("plan");
   add_vary_key(keys, values.varied);
   keys.group("Plan", "plan");
@@ -149,11 +157,17 @@ void check_depths(const mc::FitTask& task) {
 
 /// Checks the scene of a measurement, and marks the keys that this scene uses as read.
 void read_scene(const Keys& keys, const SceneSpec& scene) {
-  const Keyed<SceneSpec> keyed(scene);
-  const Scene made = make_scene(keyed.keys, keyed.values);
+  SceneSpec values;
+  Keys own;
+  add_keys(own, values);
+  add_dimension_key(own, values);
+  add_faces_keys(own, values);
+  values = scene;
+  own.read(values.dimension);
+  const Scene made = make_scene(own, values);
   if (made.profile || made.index)
     throw InputError("layers, index_field: must not be given: fit requires homogeneous media");
-  keys.merge_reads(keyed.keys);
+  keys.merge_reads(own);
 }
 
 /// Returns the scenes of all measurements, with lights and views from the measurements and the free
@@ -171,9 +185,25 @@ void check_scenes(const Keys& keys, const mc::FitTask& task) {
   for (const SceneSpec& scene : middle_scenes(task)) read_scene(keys, scene);
 }
 
+/// Reads how many tilts and views a plan chooses.
+void read_choice(const Keys& keys, const FitKeys& values, mc::PlanTask& task) {
+  for (const std::string& text : keys.read(values.choose)) {
+    const std::size_t equals = text.find('=');
+    const std::string name(trimmed(text.substr(0, equals)));
+    const bool tilts = name == "tilts";
+    const auto& list = tilts ? task.scene.tilts : task.scene.view_angles;
+    const auto most =
+        equals == std::string::npos ? std::nullopt : read_number(text.substr(equals + 1));
+    if (!(tilts || name == "view_angles") || !most || *most != std::floor(*most) ||
+        !(*most >= 1 && *most <= static_cast<double>(list.size())))
+      throw InputError("choose", text,
+                       "must be tilts=N or view_angles=N, with N from 1 to the number given");
+    (tilts ? task.most_tilts : task.most_views) = static_cast<std::size_t>(*most);
+  }
+}
+
 mc::PlanTask plan_of(const Keys& keys, const FitKeys& values, const mc::MovingSpec& medium) {
   mc::PlanTask task;
-  keys.read(values.medium.dimension);
   task.scene = medium;
   task.scene.covariance = "memory_effect";
   task.patterns = keys.read(values.patterns);
@@ -182,6 +212,7 @@ mc::PlanTask plan_of(const Keys& keys, const FitKeys& values, const mc::MovingSp
     if (free.start.value_or(0) == 0)
       throw InputError("free", free.key, "must have a value other than 0 in the scene for a plan");
   read_scene(keys, task.scene);
+  read_choice(keys, values, task);
   return task;
 }
 
@@ -240,7 +271,6 @@ std::optional<mc::PathSettings> paths_of(const Keys& keys, const FitKeys& values
 mc::FitTask task_of(const Keys& keys, const FitKeys& values, const Session& session) {
   refuse_views(keys, values);
   mc::FitTask task;
-  keys.read(values.medium.dimension);
   task.starts = static_cast<int>(keys.read(values.starts));
   task.most_iterations = static_cast<int>(keys.read(values.most_iterations));
   task.free = mc::read_free_parameters(keys.required(values.free), values.medium);
@@ -253,6 +283,32 @@ mc::FitTask task_of(const Keys& keys, const FitKeys& values, const Session& sess
   mc::check(task);
   return task;
 }
+
+/// Progress of several plans, which take about the same number of solutions of transport.
+class PlanProgress {
+ public:
+  explicit PlanProgress(std::size_t plans) : plans_(plans) {}
+
+  /// Returns the function that a plan calls after each solution.
+  std::function<void(std::size_t, std::size_t)> of_plan(std::size_t number) {
+    return [this, number](std::size_t solved, std::size_t of) {
+      const double wall = watch_.seconds();
+      const auto done = static_cast<double>(number * of + solved),
+                 all = static_cast<double>(plans_ * of);
+      progress_.update(wall, {.done = plans_ > 1 ? std::to_string(number) + " of " +
+                                                       std::to_string(plans_) + " plans"
+                                                 : "",
+                              .samples = done,
+                              .rate = done / wall,
+                              .seconds_left = wall * (all / done - 1)});
+    };
+  }
+
+ private:
+  std::size_t plans_;
+  Stopwatch watch_;
+  Progress progress_{"plan", "solutions"};
+};
 
 /// Makes and prints plans of a measurement for all combinations of the varied keys. Returns the
 /// exit status.
@@ -269,8 +325,11 @@ int run_plans(const Session& session, const Subcommand& command, const FitKeys& 
   if (!command.settle()) return ExitStatus::done;
   return session.once(ResultFile(session.out()), [&](ResultFile& file) {
     std::vector<mc::PlanPoint> plans;
-    for (std::size_t i = 0; i < points.count(); ++i)
+    PlanProgress progress(points.count());
+    for (std::size_t i = 0; i < points.count(); ++i) {
+      tasks[i].solved = progress.of_plan(i);
       plans.push_back({points.name(i), mc::fit_plan(tasks[i])});
+    }
     mc::write_plans(file, tasks.front(), plans);
     print_plans(tasks.front(), plans);
     return Made{"information of circular Gaussian fields; transport through slabs"};
@@ -279,9 +338,11 @@ int run_plans(const Session& session, const Subcommand& command, const FitKeys& 
 
 int run_plan(const Session& session, const Subcommand& command, const FitKeys& values) {
   if (!values.varied.vary.empty()) return run_plans(session, command, values);
-  const mc::PlanTask task = plan_of(command.keys(), values, values.medium);
+  mc::PlanTask task = plan_of(command.keys(), values, values.medium);
   if (!command.settle()) return ExitStatus::done;
   return session.once(ResultFile(session.out()), [&](ResultFile& file) {
+    PlanProgress progress(1);
+    task.solved = progress.of_plan(0);
     const mc::FitPlan plan = mc::fit_plan(task);
     mc::write_plan(file, task, plan);
     print_plan(task, plan);

@@ -54,6 +54,12 @@ double tail_probability(double chi_squared, double freedom) {
 
 using Eigen::Index;
 
+void print_chosen(const char* what, const std::vector<double>& chosen, std::size_t given) {
+  std::printf("chosen %zu of %zu %s:", chosen.size(), given, what);
+  for (const double angle : chosen) std::printf(" %.6g", angle);
+  std::puts("");
+}
+
 void print_growth(const mc::PlanTask& task, const char* what, const std::vector<double>& angles,
                   const Eigen::MatrixXd& growth) {
   std::printf("factors by which the errors grow without one %s\n%-12s", what, "");
@@ -139,6 +145,11 @@ void print_plan(const mc::PlanTask& task, const mc::FitPlan& plan) {
   }
   std::printf("from %g independent patterns of each view; condition number %.3g\n", task.patterns,
               plan.condition);
+  if (task.most_tilts > 0) print_chosen("tilts", plan.tilts, task.scene.tilts.size());
+  if (task.most_views > 0) print_chosen("views", plan.views, task.scene.view_angles.size());
+  if (task.most_tilts + task.most_views > 0)
+    std::printf("the choice increases the errors by factors of at most %.3g\n",
+                plan.growth_by_choice.maxCoeff());
   if (plan.views.size() > 1) print_growth(task, "view", plan.views, plan.without_view);
   if (plan.tilts.size() > 1) print_growth(task, "tilt", plan.tilts, plan.without_tilt);
 }

@@ -120,9 +120,9 @@ LeastSquaresFit refined_fit(const FitTask& task, const BoundedLeastSquares& prob
       levenberg_marquardt(problem, starts.front(), task.most_iterations, tolerance);
   if (!(best.converged && is_likely(best.chi_squared(), degrees_of_freedom(best, data))))
     best = best_fit(problem, starts, task.most_iterations, tolerance);
-  const int before = model.order();
+  const Resolution before = model.resolution();
   fit.numerical = model.refine(media_at(task, best.parameters), data.errors(), share);
-  if (model.order() == before) return best;
+  if (model.resolution() == before) return best;
   auto trace = std::move(best.trace);
   best = levenberg_marquardt(problem, best.parameters, task.most_iterations, tolerance);
   trace.insert(trace.end(), best.trace.begin(), best.trace.end());

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,23 +17,36 @@
 
 namespace flatspeckle::mc {
 
+struct Refined;
+
+/// Resolution of a solution.
+struct Resolution {
+  int order;  ///< nodes per panel of the angular grid
+  int modes;  ///< highest mode of the azimuth, in space
+
+  /// Returns the next larger order or mode.
+  static int next(int number) { return (4 * number + 2) / 3; }
+  Resolution finer_order() const { return {next(order), modes}; }
+  Resolution finer_modes() const { return {order, next(modes)}; }
+  bool operator==(const Resolution&) const = default;
+};
+
 /// Settings for the refinement of a deterministic solution. The number of ordinates is increased
 /// until the solution agrees, within a relative tolerance, with the solution on a quarter fewer
 /// ordinates.
 struct Refinement {
   double tolerance = 1e-6;
-  int least_order = 5;  ///< least number of nodes per panel
   /// Largest number of ordinates, downward and upward together. If refinement ends because this
-  /// number is reached, the error includes the remaining difference. 0: one solution without
-  /// refinement in the plane; one step of refinement in space.
+  /// number is reached, the error includes the remaining difference.
   int most_ordinates = 1500;
+  /// If given, there is one solution with this resolution, whose errors are not estimated.
+  std::optional<Resolution> fixed{};
+  /// If given, the tolerance is divided by 4, at most four times, until this returns true.
+  std::function<bool(const Refined&)> suffices{};
 
   /// Returns the number of nodes per panel of the first solution. For small tolerances fewer than 7
   /// have never been sufficient without faces, which cut panels into shorter ones.
-  int first_order(bool has_faces) const {
-    return std::max(least_order, tolerance > 1e-5 || has_faces ? 5 : 7);
-  }
-  static int next_order(int order) { return (4 * order + 2) / 3; }
+  int first_order(bool has_faces) const { return tolerance > 1e-5 || has_faces ? 5 : 7; }
 };
 
 /// Changes of a value by the last three refinements, the most recent in `last`; infinite for
@@ -53,7 +67,8 @@ struct Changes {
 /// (error_of()).
 struct Refined {
   std::vector<Complex> value, error;
-  int ordinates = 0;  ///< largest number of ordinates in any part of the solution
+  int ordinates = 0;        ///< largest number of ordinates in any part of the solution
+  Resolution resolution{};  ///< the highest of any part of the solution of a covariance
 
   void append(const Refined& other);
 };

@@ -55,14 +55,6 @@ std::vector<SlabLayerOf<Geometry, double>> layers_of(const Scene& scene, const L
   return list;
 }
 
-/// Resolution of a solution: nodes per panel, and the highest azimuthal mode.
-struct Resolution {
-  int order, modes;
-
-  Resolution finer_order() const { return {Refinement::next_order(order), modes}; }
-  Resolution finer_modes() const { return {order, Refinement::next_order(modes)}; }
-};
-
 /// Contribution of each link of a ChainGroup, followed by their derivatives for Dual<double>.
 struct Solution {
   std::vector<Complex> value;
@@ -91,8 +83,10 @@ class CovarianceRefiner {
   CovarianceRefiner(const Slab& slab, const Request& request, bool reversed,
                     const Refinement& refinement)
       : slab_(slab), request_(request), refinement_(refinement), few_(flat(scattered_once())) {
-    const Resolution first{std::max(refinement.first_order(slab.has_faces()), slab.least_order()),
-                           Geometry::first_modes};
+    Resolution first = refinement.fixed.value_or(
+        Resolution{refinement.first_order(slab.has_faces()), Geometry::first_modes});
+    first.order = std::max(first.order, slab.least_order());
+    if (!Geometry::refines_modes) first.modes = Geometry::first_modes;
     for (Group& group : grouped(slab, chains(slab, request, reversed)))
       parts_.push_back({std::move(group), first, {}, {}, {}, {}});
   }
@@ -101,13 +95,21 @@ class CovarianceRefiner {
     solve([this](Part& part) { part.coarse = solved(part.group, part.at); });
     for (Part& part : parts_) part.value = part.coarse.value;
     if (scatters_twice_apart()) add_double_scattering();
-    if (!Geometry::refines_modes && refinement_.most_ordinates == 0)
-      return {values(), std::vector<Complex>(few_.size()), ordinates_};
-    while (std::ranges::any_of(parts_, [](const Part& part) { return !part.done; })) {
-      solve([this](Part& part) { refine(part); });
+    if (refinement_.fixed)
+      return {values(), std::vector<Complex>(few_.size()), ordinates_, *refinement_.fixed};
+    refine_to_tolerance();
+    constexpr double step = 4,
+                     smallest = 1.0 / 256;  // factors by which the tolerance is decreased
+    const double tolerance = refinement_.tolerance;
+    Refined found = solution();
+    while (refinement_.suffices && !refinement_.suffices(found) &&
+           refinement_.tolerance > tolerance * smallest) {
+      refinement_.tolerance /= step;
       settle();
+      refine_to_tolerance();
+      found = solution();
     }
-    return {values(), errors(), ordinates_};
+    return found;
   }
 
  private:
@@ -117,8 +119,8 @@ class CovarianceRefiner {
     /// Solutions with the resolutions `at`, at.finer_order() and at.finer_modes().
     Solution coarse, finer, wider;
     std::vector<Complex> value;
-    /// done: the part has converged. near: the last change was at most 100 times the tolerance.
-    bool done = false, near = false;
+    Changes by_order{}, by_modes{};  ///< changes relative to the scales of the entries
+    bool done = false;     ///< whether the part has converged or has reached the largest size
     bool moved = false;    ///< whether no solution at the resolution `at` exists yet
     double imbalance = 0;  ///< relative error of the power scattered to the ordinates (imbalance())
   };
@@ -151,7 +153,24 @@ class CovarianceRefiner {
     return values;
   }
 
-  /// Calls solve_part for the parts that have not converged. Parts with equal foci share one
+  Refined solution() const {
+    Refined found{values(), errors(), ordinates_};
+    for (const Part& part : parts_) {
+      found.resolution.order = std::max(found.resolution.order, part.at.finer_order().order);
+      found.resolution.modes = std::max(found.resolution.modes, part.at.finer_modes().modes);
+    }
+    return found;
+  }
+
+  void refine_to_tolerance() {
+    while (std::ranges::any_of(parts_, [](const Part& part) { return !part.done; })) {
+      solve([this](Part& part) { refine(part); });
+      add_changes();
+      settle();
+    }
+  }
+
+  /// Calls solve_part for the parts that are not done. Parts with equal foci share one
   /// angular grid for each order, the number of nodes per panel.
   template <typename Solve>
   void solve(const Solve& solve_part) {
@@ -161,6 +180,7 @@ class CovarianceRefiner {
       if (part.done) continue;
       open.push_back(&part);
       for (const int order : {part.at.order, part.at.finer_order().order}) {
+        if (refinement_.fixed && order != part.at.order) continue;
         auto& grid = grids[{part.group.foci, order}];
         if (!grid) grid = std::move(grids_[{part.group.foci, order}]);
         if (!grid) grid = std::make_unique<Discrete>(slab_, part.group.foci, order);
@@ -299,26 +319,39 @@ class CovarianceRefiner {
     }
   }
 
-  /// Marks a part as converged if its solutions at the last two resolutions agree, or if the next
-  /// solution would be too large. Chooses the next resolution of the other parts.
-  void settle() {
-    const double tolerance = refinement_.tolerance / 2;
+  /// Records the changes of the parts that were refined last.
+  void add_changes() {
     const auto of_entries = scales_with_derivatives(request_.entries, sum(&Part::value));
     for (Part& part : parts_) {
       if (part.done) continue;
       std::vector<double> scale;
       for (std::size_t i = 0; i < part.value.size(); ++i)
         scale.push_back(of_entries[entry_of(part.group, i)]);
-      const double by_order = largest_change(part.finer.value, part.coarse.value, scale),
-                   by_modes = largest_change(part.wider.value, part.coarse.value, scale),
-                   worst = std::max(by_order, by_modes);
+      part.by_order.add(largest_change(part.finer.value, part.coarse.value, scale));
+      part.by_modes.add(
+          Geometry::refines_modes ? largest_change(part.wider.value, part.coarse.value, scale) : 0);
+    }
+  }
+
+  /// Marks a part as done if its last changes are at most half the tolerance and the previous ones
+  /// were small too, because one small change may be accidental; or if the next solution would be
+  /// too large. Chooses the next resolution of the other parts.
+  void settle() {
+    const double tolerance = refinement_.tolerance / 2;
+    const auto small = [&](const Changes& changes) { return changes.last <= tolerance; };
+    const auto confirmed = [&](const Changes& changes) {
+      return changes.before <= 100 * tolerance;
+    };
+    for (Part& part : parts_) {
+      const bool all_small = small(part.by_order) && small(part.by_modes);
+      const auto open = [&](const Changes& changes) {
+        return all_small ? !confirmed(changes) : !small(changes);
+      };
+      const bool refine_order = open(part.by_order),
+                 refine_modes = Geometry::refines_modes && open(part.by_modes);
       const int size = std::max(part.finer.ordinates, part.wider.ordinates);
-      // One small difference may be accidental: the previous one must have been small too.
-      part.done = (worst <= tolerance && part.near) || 4 * size > 3 * refinement_.most_ordinates;
-      part.near = worst <= 100 * tolerance;
-      if (!part.done)
-        move(part, by_order > tolerance || worst <= tolerance,
-             Geometry::refines_modes && (by_modes > tolerance || worst <= tolerance));
+      part.done = !(refine_order || refine_modes) || 4 * size > 3 * refinement_.most_ordinates;
+      if (!part.done) move(part, refine_order, refine_modes);
     }
   }
 

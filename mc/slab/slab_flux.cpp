@@ -333,7 +333,7 @@ Refined refined_shares(const Refinement& refinement, int order, int most_order,
   for (double worst = 1; worst > refinement.tolerance || !changes.front().are_enough();) {
     stop_if_interrupted();
     if (4 * found.ordinates > 3 * refinement.most_ordinates || order >= most_order) break;
-    order = Refinement::next_order(order);
+    order = Resolution::next(order);
     FluxSolution finer = solve(order);
     found = {finer.shares, finer.shares, finer.ordinates};
     for (std::size_t i = 0; i < before.shares.size(); ++i) {

@@ -80,21 +80,16 @@ double range_error(const CovarianceRequest& request, const Refined& refined) {
   return std::abs(other / range - 1);
 }
 
-/// Decreases the tolerance until the error of the memory-effect range is at most twice the
-/// tolerance of `refinement`. If the correlation curve is flat, small errors of the entries may
-/// cause a large error of the tilt at which it crosses a given level.
+/// Solves the slab; for a memory_effect request, decreases the tolerance until the error of the
+/// range is at most twice the tolerance of `refinement`. If the correlation curve is flat, small
+/// errors of the entries may cause a large error of the tilt at which it crosses a given level.
 Refined refined_range(const Scene& scene, bool reversed, Refinement refinement) {
-  constexpr double step = 4,
-                   flattest = 256;  // largest factor by which the tolerance is decreased
-  const double tolerance = refinement.tolerance, of_range = 2 * tolerance;
-  Refined refined = slab_covariance(scene, reversed, refinement);
-  if (scene.request.kind != CovarianceRequest::Kind::memory_effect) return refined;
-  for (double finer = step; finer <= flattest && range_error(scene.request, refined) > of_range;
-       finer *= step) {
-    refinement.tolerance = tolerance / finer;
-    refined = slab_covariance(scene, reversed, refinement);
-  }
-  return refined;
+  if (scene.request.kind == CovarianceRequest::Kind::memory_effect)
+    refinement.suffices = [&request = scene.request,
+                           most = 2 * refinement.tolerance](const Refined& refined) {
+      return !(range_error(request, refined) > most);
+    };
+  return slab_covariance(scene, reversed, refinement);
 }
 
 /// Returns the parameters by which transport computes derivatives: bulk_parameters() and, for

@@ -80,7 +80,7 @@ RUNS = {
     "recover": ("recover", {"frames": "frames.csv", "points": 2, "samples": None, "threads": None}),
     "fit": ("fit", {**FIT, "samples": None}),
     "fit_paths": ("fit", {**FIT, "method": "mc", "samples": None}),
-    "fit_plan": ("fit", {"plan": True, "free": ["g=0:0.8"], "g": 0.5, "depth": 100, "optical_depth": 2,
+    "fit_plan": ("fit", {"plan": True, "choose": "tilts=1", "free": ["g=0:0.8"], "g": 0.5, "depth": 100, "optical_depth": 2,
                          "tilts": [0.002], "samples": None}),
     "fit_decay": ("fit", {"free": ["diffusion=0.001:5"], "depth": 50, "g": 0.6, "optical_depth": 5,
                           "measurement": "decay.csv", "samples": None}),

@@ -100,6 +100,7 @@ class BadFit(RefusingTest):
     def test_plan(self):
         plan = {**SLAB, "g": 0.8, "tilts": 0.0001}
         words = ["fit", "--plan", "--free", "g=0.5:0.95"]
+        self.assert_refused(["choose = tilts=3", "from 1"], "fit", "--plan", "--free", "g=-0.5:0.95", **plan, choose="tilts=3")
         self.assert_refused(["must have a value"], *words, **{**plan, "g": None})
         self.assert_refused(["must have a value"], "fit", "--plan", "--free", "g=-0.5:0.95", **{**plan, "g": 0})
         self.assert_refused(["tilts"], *words, **{**plan, "tilts": None})

@@ -56,32 +56,32 @@ bool SlabModel::reversed() const {
 
 double SlabModel::refine(const Media& media, const VectorXd& errors, double share) {
   constexpr int most = 30;
-  VectorXd found = solved(media, order_);
+  VectorXd found = solved(media, resolution_);
   while (true) {
-    const int next = Refinement::next_order(order_);
+    const Resolution next{Resolution::next(resolution_.order), Resolution::next(resolution_.modes)};
     const VectorXd finer = solved(media, next);
     const double change = (finer - found).cwiseQuotient(errors).cwiseAbs().maxCoeff();
-    if (change < share || next > most) return change;
-    order_ = next;
+    if (change < share || next.order > most) return change;
+    resolution_ = next;
     found = finer;
   }
 }
 
-VectorXd SlabModel::solved(const Media& media, int order) const {
+VectorXd SlabModel::solved(const Media& media, const Resolution& at) const {
   VectorXd all(size_);
   for (const Group& group : groups_)
-    group.flux ? solve_flux(group, media, all) : solve_fields(group, media, order, all);
+    group.flux ? solve_flux(group, media, all) : solve_fields(group, media, at, all);
   return all;
 }
 
-void SlabModel::solve_fields(const Group& group, const Media& media, int order,
+void SlabModel::solve_fields(const Group& group, const Media& media, const Resolution& at,
                              VectorXd& all) const {
   // A hundredth of this relative tolerance applies to the integrals over paths with two
   // scatterings.
   constexpr double tolerance = 1e-4;
   const Medium& first = media[group.curves.front()];
   const Scene joint = joint_scene(media, group.curves);
-  const Refinement once{tolerance, order, 0};
+  const Refinement once{.tolerance = tolerance, .fixed = at};
   const auto solve = [&](const FieldChange& change) {
     return slab_covariance(joint, group.reversed, once, change);
   };
@@ -103,7 +103,7 @@ void SlabModel::solve_fields(const Group& group, const Media& media, int order,
 }
 
 void SlabModel::solve_flux(const Group& group, const Media& media, VectorXd& all) const {
-  constexpr Refinement precise{1e-5};
+  const Refinement precise{1e-5};
   constexpr std::size_t bins = 1, shares = flux_shares + bins;
   Scene joint = media[group.curves.front()].scene;
   Lights& lights = joint.request.lights;

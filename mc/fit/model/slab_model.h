@@ -5,11 +5,12 @@
 #include <Eigen/Core>
 
 #include "mc/fit/task/curve_values.h"
+#include "mc/slab/refinement.h"
 
 namespace flatspeckle::mc {
 
 /// Computes the measured curves of slabs by solving the transport of field pairs. The values are a
-/// smooth function of the medium, because the number of ordinates does not change between calls of
+/// smooth function of the medium, because the resolution does not change between calls of
 /// values(). Curves of the same slab with the same delays are solved together. Reversed paths are
 /// included if needs_reversed() returns true.
 class SlabModel {
@@ -19,14 +20,14 @@ class SlabModel {
   SlabModel(std::vector<Curve> curves, const Media& media);
 
   /// Returns the values of all curves, concatenated. media: the medium of each curve.
-  Eigen::VectorXd values(const Media& media) const { return solved(media, order_); }
+  Eigen::VectorXd values(const Media& media) const { return solved(media, resolution_); }
 
-  /// Increases the number of ordinates until a further increase changes no value by more than
+  /// Increases the resolution until a further increase changes no value by more than
   /// `share` of its error. Returns the largest change by that further increase, in units of the
   /// errors.
   double refine(const Media& media, const Eigen::VectorXd& errors, double share);
 
-  int order() const { return order_; }
+  const Resolution& resolution() const { return resolution_; }
   bool reversed() const;
 
  private:
@@ -38,15 +39,16 @@ class SlabModel {
   };
 
   bool can_share(const Group& group, const Media& media, std::size_t curve) const;
-  Eigen::VectorXd solved(const Media& media, int order) const;
-  void solve_fields(const Group& group, const Media& media, int order, Eigen::VectorXd& all) const;
+  Eigen::VectorXd solved(const Media& media, const Resolution& at) const;
+  void solve_fields(const Group& group, const Media& media, const Resolution& at,
+                    Eigen::VectorXd& all) const;
   void solve_flux(const Group& group, const Media& media, Eigen::VectorXd& all) const;
 
   std::vector<Curve> curves_;
   std::vector<Eigen::Index> first_;  ///< index of each curve's first value among all values
   Eigen::Index size_ = 0;
   std::vector<Group> groups_;
-  int order_ = 5;  ///< nodes per panel of the angular grid
+  Resolution resolution_{5, 2};
 };
 
 }  // namespace flatspeckle::mc

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/LU>
 
@@ -32,6 +33,8 @@ const DatasetTable plan_table{
           "error without this view, divided by the error with all views"},
          {"growth_without_tilt", Data::real, "tilt parameter", "1",
           "error without this tilt, divided by the error with all tilts"},
+         {"growth_by_choice", Data::real, "parameter", "1",
+          "error with the chosen views and tilts, divided by the error with all that were given"},
          {"point", Data::numbers, "", "1", "number of the point"},
          {"point_name", Data::text, "point", "", "values that are varied at this point"},
          {"point_planned", Data::estimate, "point parameter", "",
@@ -55,6 +58,8 @@ void write_plan(ResultFile& file, const PlanTask& task, const FitPlan& plan) {
   root.put("patterns_to_percent", row_major(plan.patterns_to_percent));
   root.put("view_angle", plan.views);
   root.put("tilt", plan.tilts);
+  if (task.most_views + task.most_tilts > 0)
+    root.put("growth_by_choice", row_major(plan.growth_by_choice));
   root.put("growth_without_view", row_major(plan.without_view));
   root.put("growth_without_tilt", row_major(plan.without_tilt));
   root.attribute("patterns", task.patterns);
@@ -88,9 +93,14 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Returns the covariance matrix of the fields in each view. The first field belongs to the
-/// illumination without tilt, the others to the tilted illuminations.
-std::vector<MatrixXcd> covariances(Scene scene) {
+/// Covariance matrix of the fields in each view, and the resolution of the solution. The first
+/// field belongs to the illumination without tilt, the others to the tilted illuminations.
+struct Covariances {
+  std::vector<MatrixXcd> of_view;
+  Resolution resolution;
+};
+
+Covariances covariances(Scene scene, const Refinement& refinement) {
   const CovarianceRequest tilts = scene.request;
   const std::size_t views = tilts.reference_views, fields = 1 + tilts.moves;
   CovarianceRequest& all = scene.request;
@@ -105,42 +115,16 @@ std::vector<MatrixXcd> covariances(Scene scene) {
     for (std::size_t i = 0; i < fields; ++i)
       for (std::size_t j = 0; j <= i; ++j)
         all.entries.push_back({channel(view, i), channel(view, j)});
-  constexpr Refinement precise{1e-6};
-  const auto values = slab_covariance(scene, false, precise).value;
-  std::vector<MatrixXcd> found;
-  auto next = values.begin();
+  const Refined solution = slab_covariance(scene, false, refinement);
+  Covariances found{{}, solution.resolution};
+  auto next = solution.value.begin();
   for (std::size_t view = 0; view < views; ++view) {
-    MatrixXcd& c = found.emplace_back(fields, fields);
+    MatrixXcd& c = found.of_view.emplace_back(fields, fields);
     for (Index i = 0; i < c.rows(); ++i)
       for (Index j = 0; j <= i; ++j, ++next) {
         c(i, j) = *next;
         c(j, i) = std::conj(*next);
       }
-  }
-  return found;
-}
-
-/// Covariances of the fields in each view, with derivatives by the coordinates of the parameters.
-struct PlannedFields {
-  std::vector<MatrixXcd> covariance;
-  std::vector<std::vector<MatrixXcd>> derivatives;  ///< [view][parameter]
-};
-
-PlannedFields fields_of(const PlanTask& task, const VectorXd& at) {
-  constexpr double step = 1e-3;  // in units of the distance between the bounds
-  const auto c = [&](const VectorXd& x) {
-    return covariances(scene_of(with_parameters(task.scene, task.free, x)));
-  };
-  const VectorXd lower = lower_coordinates(task.free), upper = upper_coordinates(task.free);
-  PlannedFields found{c(at), {}};
-  found.derivatives.resize(found.covariance.size());
-  for (Index i = 0; i < at.size(); ++i) {
-    VectorXd high = at, low = at;
-    high[i] = std::min(at[i] + step * (upper[i] - lower[i]), upper[i]);
-    low[i] = std::max(at[i] - step * (upper[i] - lower[i]), lower[i]);
-    const auto above = c(high), below = c(low);
-    for (std::size_t v = 0; v < above.size(); ++v)
-      found.derivatives[v].push_back((above[v] - below[v]) / (high[i] - low[i]));
   }
   return found;
 }
@@ -153,30 +137,72 @@ MatrixXcd without(const MatrixXcd& matrix, Index field) {
   return found;
 }
 
-/// Returns the Fisher information of all fields, except those in the given view and those of the
-/// given tilt (`field`). -1: no view or no tilt is left out.
-MatrixXd total_information(const PlannedFields& fields, Index parameters, Index view, Index field) {
-  MatrixXd total = MatrixXd::Zero(parameters, parameters);
-  for (std::size_t v = 0; v < fields.covariance.size(); ++v) {
-    if (static_cast<Index>(v) == view) continue;
-    MatrixXcd covariance = fields.covariance[v];
-    auto derivatives = fields.derivatives[v];
-    if (field >= 0) {
-      covariance = without(covariance, field);
-      for (auto& derivative : derivatives) derivative = without(derivative, field);
-    }
-    total += field_information(covariance, derivatives);
+/// Covariances of the fields in each view, with derivatives by the coordinates of the parameters.
+struct PlannedFields {
+  std::vector<MatrixXcd> covariance;
+  std::vector<std::vector<MatrixXcd>> derivatives;  ///< [view][parameter]
+
+  PlannedFields without_view(std::size_t view) const {
+    PlannedFields found = *this;
+    found.covariance.erase(found.covariance.begin() + static_cast<std::ptrdiff_t>(view));
+    found.derivatives.erase(found.derivatives.begin() + static_cast<std::ptrdiff_t>(view));
+    return found;
   }
-  return total;
+  PlannedFields without_tilt(std::size_t tilt) const {
+    const auto field = static_cast<Index>(tilt) + 1;
+    PlannedFields found = *this;
+    for (MatrixXcd& of_view : found.covariance) of_view = without(of_view, field);
+    for (auto& of_view : found.derivatives)
+      for (MatrixXcd& derivative : of_view) derivative = without(derivative, field);
+    return found;
+  }
+
+  /// Returns the Fisher information of all fields.
+  MatrixXd information(Index parameters) const {
+    MatrixXd total = MatrixXd::Zero(parameters, parameters);
+    for (std::size_t v = 0; v < covariance.size(); ++v)
+      total += field_information(covariance[v], derivatives[v]);
+    return total;
+  }
+};
+
+/// Computes the derivatives by differences of solutions with one resolution, so that these vary
+/// smoothly.
+PlannedFields fields_of(const PlanTask& task, const VectorXd& at) {
+  constexpr double step = 1e-3;  // in units of the distance between the bounds
+  constexpr double tolerance = 1e-4;
+  const std::size_t count = 1 + 2 * task.free.size();
+  std::size_t done = 0;
+  const auto solved = [&](const VectorXd& x, const Refinement& refinement) {
+    auto found = covariances(scene_of(with_parameters(task.scene, task.free, x)), refinement);
+    if (task.solved) task.solved(++done, count);
+    return found;
+  };
+  const Covariances here = solved(at, {.tolerance = tolerance});
+  const Refinement same{.tolerance = tolerance, .fixed = here.resolution};
+  const VectorXd lower = lower_coordinates(task.free), upper = upper_coordinates(task.free);
+  PlannedFields found{here.of_view, {}};
+  found.derivatives.resize(found.covariance.size());
+  for (Index i = 0; i < at.size(); ++i) {
+    VectorXd high = at, low = at;
+    high[i] = std::min(at[i] + step * (upper[i] - lower[i]), upper[i]);
+    low[i] = std::max(at[i] - step * (upper[i] - lower[i]), lower[i]);
+    const auto above = solved(high, same).of_view, below = solved(low, same).of_view;
+    for (std::size_t v = 0; v < above.size(); ++v)
+      found.derivatives[v].push_back((above[v] - below[v]) / (high[i] - low[i]));
+  }
+  return found;
 }
 
-/// Fisher information of a plan, with all fields or without some of them.
+/// A plan whose views and tilts can be left out.
 class Planned {
  public:
-  static constexpr Index none = -1;
-
   explicit Planned(const PlanTask& task)
-      : task_(task), at_(std::ssize(task.free)), bounds_(bounds_of(task.free)) {
+      : task_(task),
+        views_{task.scene.view_angles, &PlannedFields::without_view, task.most_views},
+        tilts_{task.scene.tilts, &PlannedFields::without_tilt, task.most_tilts},
+        at_(std::ssize(task.free)),
+        bounds_(bounds_of(task.free)) {
     for (Index i = 0; i < at_.size(); ++i) {
       const FreeParameter& free = task.free[static_cast<std::size_t>(i)];
       at_[i] = free.coordinate(free.start.value());
@@ -185,25 +211,68 @@ class Planned {
   }
 
   const VectorXd& at() const { return at_; }
+  const std::vector<double>& views() const { return views_.angles; }
+  const std::vector<double>& tilts() const { return tilts_.angles; }
 
-  Information known(Index view, Index field) const {
-    const MatrixXd one = total_information(fields_, at_.size(), view, field);
-    return information_of(bounds_, task_.patterns * one);
-  }
+  Information known() const { return known(fields_); }
 
-  /// Returns the errors if one of `count` views or tilts is left out, divided by the errors with
-  /// all fields, [left out][parameter]. left_out(i): information without view or tilt i.
-  template <typename LeftOut>
-  MatrixXd growth(Index count, const LeftOut& left_out) const {
-    const VectorXd all = known(none, none).errors();
-    MatrixXd found(count, at_.size());
-    for (Index i = 0; i < count; ++i)
-      found.row(i) = left_out(i).errors().cwiseQuotient(all).transpose();
-    return found;
+  MatrixXd growth_without_views() const { return growth(views_); }
+  MatrixXd growth_without_tilts() const { return growth(tilts_); }
+
+  /// Leaves out the views and tilts that are not chosen.
+  void choose() {
+    while (true) {
+      Angles* of = nullptr;
+      std::size_t omitted = 0;
+      double least = std::numeric_limits<double>::infinity();
+      for (Angles* all : {&views_, &tilts_})
+        for (std::size_t i = 0;
+             all->most > 0 && all->angles.size() > all->most && i < all->angles.size(); ++i)
+          if (const double sum = squared_errors((fields_.*all->without)(i));
+              of == nullptr || sum < least)
+            of = all, omitted = i, least = sum;
+      if (of == nullptr) return;
+      fields_ = (fields_.*of->without)(omitted);
+      of->angles.erase(of->angles.begin() + static_cast<std::ptrdiff_t>(omitted));
+    }
   }
 
  private:
+  struct Angles {
+    std::vector<double> angles;
+    /// Returns the fields without the view or tilt with this index.
+    PlannedFields (PlannedFields::*without)(std::size_t) const;
+    std::size_t most;  ///< number to choose; 0: all
+  };
+
+  Information known(const PlannedFields& fields) const {
+    return information_of(bounds_, task_.patterns * fields.information(at_.size()));
+  }
+
+  /// Returns the sum of the squared relative errors of the parameters.
+  double squared_errors(const PlannedFields& fields) const {
+    const VectorXd errors = known(fields).errors();
+    double sum = 0;
+    for (Index i = 0; i < errors.size(); ++i) {
+      const FreeParameter& free = task_.free[static_cast<std::size_t>(i)];
+      sum += std::pow(errors[i] * free.derivative(at_[i]) / free.start.value(), 2);
+    }
+    return sum;
+  }
+
+  /// Returns the errors if one view or tilt is left out, divided by the errors with all fields,
+  /// [left out][parameter].
+  MatrixXd growth(const Angles& all) const {
+    const VectorXd errors = known().errors();
+    MatrixXd found(std::ssize(all.angles), at_.size());
+    for (std::size_t i = 0; i < all.angles.size(); ++i)
+      found.row(static_cast<Index>(i)) =
+          known((fields_.*all.without)(i)).errors().cwiseQuotient(errors).transpose();
+    return found;
+  }
+
   const PlanTask& task_;
+  Angles views_, tilts_;
   VectorXd at_;
   BoundedLeastSquares bounds_;
   PlannedFields fields_;
@@ -238,11 +307,14 @@ MatrixXd field_information(const MatrixXcd& covariance, const std::vector<Matrix
 }
 
 FitPlan fit_plan(const PlanTask& task) {
-  const Planned planned(task);
-  const Information all = planned.known(Planned::none, Planned::none);
+  Planned planned(task);
   FitPlan plan;
+  const VectorXd with_all = planned.known().errors();
+  planned.choose();
+  const Information all = planned.known();
   plan.values.resize(planned.at().size());
   plan.errors = all.errors();
+  plan.growth_by_choice = plan.errors.cwiseQuotient(with_all);
   for (Index i = 0; i < plan.values.size(); ++i) {
     const FreeParameter& free = task.free[static_cast<std::size_t>(i)];
     plan.values[i] = free.start.value();
@@ -253,12 +325,10 @@ FitPlan fit_plan(const PlanTask& task) {
   plan.patterns_to_percent =
       task.patterns * (100 * plan.errors.cwiseQuotient(plan.values)).cwiseAbs2();
   check_finite(task, plan);
-  plan.views = task.scene.view_angles;
-  plan.tilts = task.scene.tilts;
-  plan.without_view = planned.growth(
-      std::ssize(plan.views), [&](Index view) { return planned.known(view, Planned::none); });
-  plan.without_tilt = planned.growth(
-      std::ssize(plan.tilts), [&](Index tilt) { return planned.known(Planned::none, tilt + 1); });
+  plan.views = planned.views();
+  plan.tilts = planned.tilts();
+  plan.without_view = planned.growth_without_views();
+  plan.without_tilt = planned.growth_without_tilts();
   return plan;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,11 @@ struct PlanTask {
   std::vector<FreeParameter> free;  ///< each with a start, the value for which the plan is made
   MovingSpec scene;                 ///< a slab, with covariance = memory_effect
   double patterns = 1;
+  /// Numbers of views and tilts to choose among those of the scene; 0: all of them. Those whose
+  /// omission increases the sum of the squared relative errors least are left out, one by one.
+  std::size_t most_views = 0, most_tilts = 0;
+  /// Called after each solution of transport with the numbers of finished and of all solutions.
+  std::function<void(std::size_t, std::size_t)> solved{};
 };
 
 struct FitPlan {
@@ -26,7 +33,9 @@ struct FitPlan {
   double condition = 0;
   /// Number of patterns that reduces each error to a hundredth of the value.
   Eigen::VectorXd patterns_to_percent;
-  std::vector<double> views, tilts;
+  std::vector<double> views, tilts;  ///< those chosen, in the order of the scene
+  /// Errors divided by those with all views and tilts of the scene.
+  Eigen::VectorXd growth_by_choice;
   /// Errors if one view or one tilt is left out, divided by the errors without omission,
   /// [left out][parameter].
   Eigen::MatrixXd without_view, without_tilt;

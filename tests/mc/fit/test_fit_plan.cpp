@@ -52,4 +52,27 @@ TEST_CASE("fit plan: errors fall as 1 / sqrt(patterns) and grow without one view
   }
 }
 
+TEST_CASE("fit plan: the tilt that is left out is the one without which errors grow least") {
+  const PlanTask all = plan_of(1000);
+  const FitPlan plan = fit_plan(all);
+  Eigen::Index omitted = 0;
+  const Eigen::ArrayXd relative = (plan.errors.array() / plan.values.array()).square();
+  (plan.without_tilt.array().square().matrix() * relative.matrix()).minCoeff(&omitted);
+  PlanTask choice = all;
+  choice.most_tilts = 2;
+  const FitPlan chosen = fit_plan(choice);
+  auto left = plan.tilts;
+  left.erase(left.begin() + omitted);
+  CHECK(chosen.tilts == left);
+  CHECK(chosen.views == plan.views);
+  PlanTask direct = all;
+  direct.scene.tilts = left;
+  const FitPlan expected = fit_plan(direct);
+  for (Eigen::Index i = 0; i < expected.errors.size(); ++i) {
+    CHECK(chosen.errors[i] == doctest::Approx(expected.errors[i]).epsilon(1e-3));
+    CHECK(chosen.growth_by_choice[i] ==
+          doctest::Approx(plan.without_tilt(omitted, i)).epsilon(1e-9));
+  }
+}
+
 }  // namespace flatspeckle::mc::test_fit_plan

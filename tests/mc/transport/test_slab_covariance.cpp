@@ -137,7 +137,7 @@ TEST_CASE("slab transport: the cone of coherent backscattering agrees with Monte
 
 TEST_CASE("slab transport: converges to nine digits") {
   for (const double g : {0.0, 0.9, -0.5}) {
-    const auto fine = intensity_correlation_ladder(10, g, 0.99, {1e-12, 20}),
+    const auto fine = intensity_correlation_ladder(10, g, 0.99, {.tolerance = 1e-12, .fixed = Resolution{36, 1}}),
                coarse = intensity_correlation_ladder(10, g, 0.99, {1e-9});
     for (std::size_t i = 0; i < fine.size(); ++i)
       CHECK(coarse[i] == doctest::Approx(fine[i]).epsilon(1e-9));
