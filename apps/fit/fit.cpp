@@ -126,7 +126,7 @@ void add_keys(Keys& keys, FitKeys& values) {
   add_medium_keys(keys, values.medium);
   for (const char* of_placements : {"count", "placement"}) keys.remove(of_placements);
   add_structure_key(keys, values.medium);
-  add_dimension_key(keys, values.medium);
+  add_space_keys(keys, values.medium);
   add_faces_keys(keys, values.medium);
   mc::add_motion_keys(keys, values.medium);
   add_output_key(keys, values.run);
@@ -160,7 +160,7 @@ void read_scene(const Keys& keys, const SceneSpec& scene) {
   SceneSpec values;
   Keys own;
   add_keys(own, values);
-  add_dimension_key(own, values);
+  add_space_keys(own, values);
   add_faces_keys(own, values);
   values = scene;
   own.read(values.dimension);
@@ -211,6 +211,9 @@ mc::PlanTask plan_of(const Keys& keys, const FitKeys& values, const mc::MovingSp
   for (const auto& free : task.free)
     if (free.start.value_or(0) == 0)
       throw InputError("free", free.key, "must have a value other than 0 in the scene for a plan");
+  if (std::ranges::find(task.scene.tilts, 0.0) != task.scene.tilts.end())
+    throw InputError("tilts", 0,
+                     "must not be 0 in a plan, which always has the field without tilt");
   read_scene(keys, task.scene);
   read_choice(keys, values, task);
   return task;

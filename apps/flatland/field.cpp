@@ -24,6 +24,7 @@ struct FieldKeys {
   std::optional<std::int64_t> paths_per_field;
   double target_error = mc::FieldDemand().covariance_error;
   std::string method = "auto";
+  double camera_tolerance = mc::FieldDemand().camera_tolerance;
   MethodSettings estimation;
 };
 
@@ -35,6 +36,7 @@ void add_field_keys(Keys& keys, FieldKeys& values) {
   add_index_keys(keys, values.spec);
   add_structure_key(keys, values.spec);
   add_view_keys(keys, values.spec);
+  add_space_keys(keys, values.spec);
   keys.add("tilts", values.spec.tilts,
            "Rotations of the light; fields are computed under each rotation, in the same views")
       .angle();
@@ -52,6 +54,12 @@ void add_field_keys(Keys& keys, FieldKeys& values) {
   keys.add("target_error", values.target_error,
            "Relative error of the covariance from which fields are drawn")
       .between(0, 1);
+  keys.add(
+          "tolerance", values.camera_tolerance,
+          "Largest relative rms error of the fast sums over the pixels of a camera; with a smaller "
+          "error than they reach, every pixel is summed directly")
+      .between(0, 1)
+      .only_of("a camera (camera_pixels)");
   add_mc_keys(keys, values.estimation);
 }
 
@@ -65,29 +73,33 @@ mc::FieldDemand demand_of(const Keys& keys, const FieldKeys& values) {
   if (demand.method != covariance)
     if (const auto& paths_each = keys.read(values.paths_per_field))
       demand.paths_per_field = static_cast<std::uint64_t>(*paths_each);
+  if (values.spec.camera_pixels && demand.method != covariance)
+    demand.camera_tolerance = keys.read(values.camera_tolerance);
   if (demand.method != paths) demand.covariance_error = keys.read(values.target_error);
   return demand;
 }
 
-/// Returns the angles of the single light in `lights` rotated by each of the tilts; without tilts,
-/// returns `lights`.
-std::vector<double> rotated(const std::vector<double>& lights, const std::vector<double>& tilts) {
-  if (tilts.empty()) return lights;
-  if (lights.size() != 1) throw InputError("tilts: require exactly one angle in light_angles");
-  std::vector<double> angles;
-  for (double tilt : tilts) angles.push_back(lights.front() + tilt);
-  return angles;
-}
-
-Scene field_scene(const Keys& keys, SceneSpec& spec) {
+Scene field_scene(const Keys& keys, const SceneSpec& spec) {
   if (spec.domain == "slab")
     throw InputError("domain", spec.domain,
                      "must be box: the speckles of an infinite slab are infinitely fine");
-  auto lights = rotated(keys.read(spec.light_angles), keys.read(spec.tilts));
-  std::swap(spec.light_angles, lights);
-  Scene scene = make_scene(keys, spec);
-  std::swap(spec.light_angles, lights);  // restores the given angles
-  scene.request = mc::field_request(scene.request.lights, scene.request.views);
+  const auto& tilts = keys.read(spec.tilts);
+  const bool turned = spec.dimension == 3 && !tilts.empty();
+  keys.read(spec.dimension);
+  const double turn = turned ? keys.read(spec.tilt_azimuth).value_or(0) : 0;
+  Scene scene = with_dimension(make_scene(keys, spec), spec);
+  const CovarianceRequest given = scene.request;
+  Lights lights = given.lights;
+  if (!tilts.empty()) {
+    if (lights.size() != 1) throw InputError("tilts: require exactly one angle in light_angles");
+    lights = tilted_lights(given.lights.front(), tilts, given.lights.front().azimuth + turn);
+  }
+  scene.request = mc::field_request(lights, given.views);
+  scene.request.camera = given.camera;
+  scene.request.tilts = tilts;
+  scene.request.tilt_azimuth = given.lights.front().azimuth + turn;
+  scene.request.tilt_q =
+      tilt_momenta(scene.k, given.lights.front(), tilts, scene.request.tilt_azimuth);
   return scene;
 }
 
@@ -169,7 +181,7 @@ class FieldExperiment : public OneShot {
     };
     const auto drawn = mc::draw_fields(*scene_, demand_, settings_, print_plan);
     write_medium(file, *scene_);
-    const auto summary = mc::write_fields(file, *scene_, values_.spec.tilts, drawn);
+    const auto summary = mc::write_fields(file, *scene_, drawn);
     const double paths = drawn.plan.method == mc::FieldMethod::covariance
                              ? static_cast<double>(drawn.plan.covariance_paths)
                              : static_cast<double>(drawn.plan.paths_per_field * demand_.fields);

@@ -29,7 +29,7 @@ void print_table(const Scene& scene, const mc::FluxEstimates& flux) {
     std::printf("%8.4f  ", angle);
     print(flux.reflectance, light);
     print(flux.transmittance, light);
-    std::printf("%-12.6g ", mc::direct_transmittance(scene, angle));
+    std::printf("%-12.6g ", mc::direct_transmittance(scene, scene.request.lights[light]));
     if (scene.faces) std::printf("%-12.6g ", mc::specular_reflectance(scene, angle));
     if (box) print(flux.side_loss, light);
     print(flux.absorptance, light);
@@ -65,7 +65,7 @@ class FluxExperiment : public Experiment {
     keys.add("angle_bins", angle_bins_,
              "Number of equal bins of the exit angle, over (-pi, pi] or in 3D over (0, pi)")
         .from(1, 100000);
-    add_dimension_key(keys, spec_);
+    add_space_keys(keys, spec_);
     add_faces_keys(keys, spec_);
     keys.add("method", method_,
              "mc: Monte Carlo; transport: deterministic, for slabs; auto: transport for slabs "
@@ -82,10 +82,6 @@ class FluxExperiment : public Experiment {
     keys.read(angle_bins_);
     keys.read(spec_.dimension);
     scene_ = with_dimension(make_scene(keys, spec_), spec_);
-    if (by_mc() && spec_.dimension == 3)
-      throw InputError("dimension", 3,
-                       "requires method = transport with a tolerance; leave out method = mc, "
-                       "samples and seconds");
     if (scene_->faces && scene_->domain.kind == Domain::Kind::box)
       throw InputError("medium_index", scene_->faces->inside, "requires domain = slab in flux");
     job_ = made_job();

@@ -64,11 +64,11 @@ Placement read_places(const std::string& path, const Scatterer& scatterer) {
 
 void require_in_box(const Placement& placement, const Domain& box, const std::string& path) {
   for (std::size_t row = 0; row < placement.size(); ++row) {
-    const auto [x, z] = placement[row].position;
-    if (std::abs(x) <= box.width / 2 && z >= 0 && z <= box.depth) continue;
+    const Vec at = placement[row].position;
+    if (box.contains(at)) continue;
     throw InputError("placement", path,
-                     "row " + std::to_string(row + 1) + ", (" + number_text(x) + ", " +
-                         number_text(z) +
+                     "row " + std::to_string(row + 1) + ", (" + number_text(at.x) + ", " +
+                         number_text(at.z) +
                          "), must lie inside the box |x| <= width / 2, 0 <= z <= depth");
   }
 }

@@ -91,7 +91,7 @@ struct PlacementDraw {
   double packing(double gap) const {
     double area = 0;
     for (double radius : radii) area += std::numbers::pi * std::pow(radius + gap / 2, 2);
-    return area / box.area();
+    return area / box.content();
   }
   bool equal_disks() const {
     return !radii.empty() &&
@@ -122,7 +122,7 @@ std::size_t number_of(const PlaceKeys& values, const Domain& box, double mean_ar
                          ? "count, packing_fraction: give only one of them"
                          : "count is not given: give count or, for disks, packing_fraction");
   if (values.count) return static_cast<std::size_t>(*values.count);
-  const double number = *values.packing_fraction * box.area() / mean_area;
+  const double number = *values.packing_fraction * box.content() / mean_area;
   if (!(std::llround(number) >= 1 && number <= most_scatterers))
     throw InputError("packing_fraction", *values.packing_fraction,
                      "must result in 1 to 10000000 scatterers");
@@ -191,10 +191,10 @@ MeasuredStructureFactor measure(const PlacementDraw& drawing, std::uint64_t seed
   // The largest q is almost four times the position of the peak of the structure factor of a dense
   // fluid. The shells in q are narrow compared with this peak.
   const double q_max =
-      8 * std::numbers::pi * std::sqrt(static_cast<double>(drawing.count) / drawing.box.area());
+      8 * std::numbers::pi * std::sqrt(static_cast<double>(drawing.count) / drawing.box.content());
   MeasuredStructureFactor measured(drawing.box, q_max, q_max / 80);
   for (std::uint64_t r = 0; r < realizations; ++r) {
-    std::vector<Vec2> centres;
+    std::vector<Vec> centres;
     for (const auto& placed : draw(drawing, seed, r)) centres.push_back(placed.position);
     measured.add(centres);
   }

@@ -138,7 +138,7 @@ void print_summary(const wave::WaveSolution& solution) {
 /// sensors.
 struct Sensors {
   std::vector<double> angles;
-  std::vector<Vec2> points;
+  std::vector<Vec> points;
 };
 
 Sensors sensors_of(const Keys& keys, const SceneSpec& spec) {
@@ -164,11 +164,11 @@ void require_index_from_table(const SceneSpec& spec, const Placement& placement)
 
 wave::WaveSolution solved(const SolveKeys& values, const Placement& placement, double wavelength,
                           const std::optional<wave::MapGrid>& grid,
-                          const std::vector<Vec2>& sensors) {
+                          const std::vector<Vec>& sensors) {
   wave::SolveOptions options{.tolerance = values.tolerance, .sensors = sensors};
   options.method = solvers.at(values.solver);
   if (grid)
-    for (const Vec2& point : wave::map_sensors(*grid, placement)) options.sensors.push_back(point);
+    for (const Vec& point : wave::map_sensors(*grid, placement)) options.sensors.push_back(point);
   return wave::solve(placement, 2 * std::numbers::pi / wavelength, values.spec.light_angles,
                      options);
 }
@@ -217,7 +217,7 @@ std::string plan_of(const wave::Spectrum& spectrum, const WavelengthList& wavele
 }
 
 /// Returns the four corners of the smallest box that contains all scatterers.
-std::vector<Vec2> corners_around(const Placement& placement) {
+std::vector<Vec> corners_around(const Placement& placement) {
   const auto [low, high] = bounds_of(placement, &PlacedScatterer::position);
   return {low, {high.x, low.z}, {low.x, high.z}, high};
 }
@@ -300,7 +300,7 @@ class SolveExperiment : public OneShot {
     const double shortest = wavelengths_->values.empty()
                                 ? keys.read(spec.wavelength)
                                 : *std::ranges::min_element(wavelengths_->values);
-    for (const Vec2& sensor : sensors_.points) {
+    for (const Vec& sensor : sensors_.points) {
       require_outside(placement_, sensor);
       require_phase("near_sensors", sensor, 2 * std::numbers::pi / shortest);
     }

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/error.h"
+#include "core/keys/csv.h"
 #include "core/numbers/blas.h"
 #include "flatland/scene/scene_density.h"
 #include "mc/paths/estimators/covariance_estimator.h"
@@ -58,11 +59,20 @@ void add_transport_keys(Keys& keys, MethodSettings& settings) {
       .only_of("method = transport");
 }
 
+/// Whether a table that can be read has this column.
+bool has_column(const std::string& path, const std::string& name) try {
+  return read_csv(path).has(name);
+} catch (const InputError&) {
+  return false;  // make_scene() reports what is wrong with the table
+}
+
 void choose_method(const Keys& keys, std::string& method, const SceneSpec& spec,
                    const RunSettings& run) {
   if (keys.read(method) != "auto") return;
   const bool to_last = keys.given(run.samples) || keys.given(run.seconds);
-  const bool varies = !spec.layers.empty() || spec.index_field != "homogeneous";
+  const bool by_mc = !spec.layers.empty() && spec.dimension == 2 && !spec.medium_index &&
+                     !has_column(spec.layers, "medium_index"),
+             varies = by_mc || spec.index_field != "homogeneous";
   method = spec.domain == "slab" && !varies && !to_last ? "transport" : "mc";
 }
 

@@ -124,7 +124,7 @@ Estimation transport_delays(const Scene& scene, mc::ReversedPaths reversed,
   mc::check_delays(scene, dynamics.delays);
   require_changing("delays", scene.request);
   const mc::Motion& motion = dynamics.motion;
-  if (motion.velocity != Vec2{} || motion.shear != 0)
+  if (motion.velocity != Vec{} || motion.shear != 0)
     throw InputError("velocity, shear: require method = mc");
   if (scene.request.has_reference() && !dynamics.exposure.times.empty())
     throw InputError("exposures: require covariance = intensity");

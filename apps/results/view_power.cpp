@@ -36,12 +36,12 @@ const DatasetTable power_table{
 namespace {
 
 /// Returns the scene with another request: intensities for its first light, as a plane wave, in
-/// far-field views at these angles.
-Scene seen_from(const Scene& scene, const std::vector<double>& angles) {
+/// these far-field views.
+Scene seen_from(const Scene& scene, std::vector<View> views) {
   const Light& first = scene.request.lights.front();
   Scene lit = scene;
-  lit.request = intensity_request(Lights({first.kind == Light::Kind::plane ? first.angle : 0.0}),
-                                  far_views(angles));
+  lit.request = intensity_request(Lights{first.kind == Light::Kind::plane ? first : plane_wave(0)},
+                                  std::move(views));
   return lit;
 }
 
@@ -59,9 +59,7 @@ GroupedSums sums_of(const BatchJob& job, double samples) {
 /// Returns the width of the incident beam, transverse to its direction, that meets the medium. For
 /// a slab, it is divided by the illuminated length.
 double aperture(const Scene& scene) {
-  const double angle = scene.request.lights.front().angle;
-  const mc::LightAperture entered(scene.domain, {std::sin(angle), std::cos(angle)});
-  return entered.face() + entered.side();
+  return mc::LightAperture(scene.domain, scene.request.lights.front().direction()).all();
 }
 
 struct Share {
@@ -84,21 +82,38 @@ Share scattered_out(const Scene& lit, double samples, std::uint64_t seed) {
 
 constexpr int views = 48;
 
-/// Returns the fraction of the incident power that is scattered into all directions. The intensity
-/// is integrated over equidistant far-field views, of which the first has a random angle.
+/// Returns far-field views that sample all directions: in the plane equidistant ones, of which the
+/// first has a random angle; in space one at random in each of equal parts of the sphere.
+std::vector<View> all_around(int dimension, RandomStream& random) {
+  std::vector<View> list;
+  if (dimension == 2) {
+    const double first = random.uniform();
+    for (int view = 0; view < views; ++view)
+      list.push_back(far_view(2 * std::numbers::pi * (view + first) / views - std::numbers::pi));
+    return list;
+  }
+  constexpr int rings = 6, in_ring = views / rings;
+  for (int ring = 0; ring < rings; ++ring)
+    for (int view = 0; view < in_ring; ++view) {
+      const double cosine = 2 * (ring + random.uniform()) / rings - 1;
+      list.push_back(
+          far_view(std::acos(cosine), 2 * std::numbers::pi * (view + random.uniform()) / in_ring));
+    }
+  return list;
+}
+
+/// Returns the fraction of the incident power that is scattered into all directions, by the
+/// intensity in the views of all_around().
 double seen_share(const Scene& scene, double samples, std::uint64_t seed, std::uint64_t group) {
   RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), group);
-  const double first = random.uniform();
-  std::vector<double> angles;
-  for (int view = 0; view < views; ++view)
-    angles.push_back(2 * std::numbers::pi * (view + first) / views - std::numbers::pi);
-  const Scene lit = seen_from(scene, angles);
+  const Scene lit = seen_from(scene, all_around(scene.medium.dimension, random));
   const FieldJob job =
       mc::covariance_job(lit, mc::make_plan(lit, mc::ReversedPaths::no), seed + group);
   const GroupedSums sums = sums_of(job.batches, samples);
+  const double all = scene.medium.dimension == 3 ? 4 * std::numbers::pi : 2 * std::numbers::pi;
   double power = 0;
   for (const Complex intensity : job.covariance(sums.total_samples(), sums.total()))
-    power += intensity.real() * 2 * std::numbers::pi / views;
+    power += intensity.real() * all / views;
   return power / aperture(lit);
 }
 
@@ -109,11 +124,11 @@ double seen_share(const Scene& scene, double samples, std::uint64_t seed, std::u
 std::optional<Invariant> paths_power(const Scene& scene, double samples, std::uint64_t seed) {
   constexpr std::size_t groups = 16;
   constexpr double most_samples = 1 << 22, rounding = 1e-9;
-  if (scene.index || scene.medium.dimension == 3 || !(scene.medium.mu_s > 0)) return std::nullopt;
+  if (scene.index || !(scene.medium.mu_s > 0)) return std::nullopt;
   // The layer around a box with faces guides a part of the light away from all views.
   if (scene.faces && scene.domain.kind == Domain::Kind::box) return std::nullopt;
   const mc::Plan plan =
-      mc::make_plan(seen_from(scene, std::vector<double>(views)), mc::ReversedPaths::no);
+      mc::make_plan(seen_from(scene, std::vector<View>(views)), mc::ReversedPaths::no);
   if (samples < static_cast<double>(groups * plan.paths_per_batch)) return std::nullopt;
   const double used = std::min(samples, most_samples);
   const std::uint64_t apart = ~seed;  // seed of random numbers that the result does not use
@@ -125,7 +140,7 @@ std::optional<Invariant> paths_power(const Scene& scene, double samples, std::ui
   for (const double share : shares) mean += share / groups;
   for (const double share : shares) square += std::pow(share - mean, 2);
   const double error = std::sqrt(square / (groups * (groups - 1)));
-  const Share expected = scattered_out(seen_from(scene, {0}), used, apart);
+  const Share expected = scattered_out(seen_from(scene, {far_view(0)}), used, apart);
   if (!(expected.value > 0)) return std::nullopt;
   return Invariant{
       std::abs(mean / expected.value - 1),
@@ -135,7 +150,7 @@ std::optional<Invariant> paths_power(const Scene& scene, double samples, std::ui
 /// Returns the power balance of the slab: reflected, transmitted and absorbed power, each computed
 /// separately, must add up to the incident power.
 Invariant flux_balance(const Scene& slab, double tolerance) {
-  const Scene lit = seen_from(slab, {0});
+  const Scene lit = seen_from(slab, {far_view(0)});
   const auto job = mc::slab_flux_job(lit, 1, {tolerance});
   return mc::power_balance(job, sums_of(job.batches, 2), mc::unscattered_shares(lit)).front();
 }
@@ -150,14 +165,14 @@ std::optional<Invariant> transport_power(const Scene& slab, double tolerance) {
   if (!(slab.medium.mu_s > 0)) return std::nullopt;
   if (slab.profile || slab.medium.dimension == 3) return flux_balance(slab, tolerance);
   const mc::Refinement refinement{.tolerance = tolerance, .most_ordinates = most_ordinates};
-  Scene lit = seen_from(slab, {0});
+  Scene lit = seen_from(slab, {far_view(0)});
   const auto power = [&](int count) -> Share {
     const QuadratureRule rule = gauss_legendre(count);
     std::vector<double> angles;
     for (const double quadrant :
          {-std::numbers::pi, -std::numbers::pi / 2, 0.0, std::numbers::pi / 2})
       for (const double node : rule.node) angles.push_back(quadrant + node * std::numbers::pi / 2);
-    lit = seen_from(slab, angles);
+    lit = seen_from(slab, far_views(angles));
     const FieldJob job = mc::slab_covariance_job(lit, false, refinement);
     const Estimate found = jackknife(sums_of(job.batches, 2), job.covariance);
     Share share;
@@ -195,11 +210,11 @@ std::optional<Invariant> waves_power(const Scene& scene, double tolerance, std::
   const int count = 2 * static_cast<int>(size + 10 * std::cbrt(size) + 20);
   if (scene.placement.mean_count * count > most) return std::nullopt;
   std::vector<double> angles;
-  const double forward = seen_from(scene, {0}).request.lights.angles().front();
+  const double forward = seen_from(scene, {far_view(0)}).request.lights.angles().front();
   for (int i = 0; i < count; ++i)
     angles.push_back(
         std::remainder(forward + 2 * std::numbers::pi * i / count, 2 * std::numbers::pi));
-  const FieldJob job = wave::wave_job(seen_from(scene, angles), seed, tolerance);
+  const FieldJob job = wave::wave_job(seen_from(scene, far_views(angles)), seed, tolerance);
   const GroupedSums sums = sums_of(job.batches, placements);
   const auto mean = job.mean(placements, sums.total());
   const auto covariance = job.covariance(placements, sums.total());
@@ -231,7 +246,7 @@ std::optional<Invariant> view_power(const Scene& scene, const DoneWork& work) {
 std::optional<Invariant> received_power(const Scene& scene, const DoneWork& work) {
   constexpr double least = 2000, most = 20000;
   if (work.method != "mc" || part * work.samples < least) return std::nullopt;
-  const auto walks = mc::power_walks(seen_from(scene, {0}), work.seed);
+  const auto walks = mc::power_walks(seen_from(scene, {far_view(0)}), work.seed);
   if (!walks) return std::nullopt;
   const auto paths = static_cast<std::uint64_t>(std::min(part * work.samples, most));
   const auto [first, second, later] = mc::path_power(walks, paths);

@@ -66,7 +66,7 @@ CurveSweep::CurveSweep()
   add_mc_keys(keys, methods);
   add_wave_keys(keys, methods);
   add_transport_keys(keys, methods);
-  add_dimension_key(keys, base);
+  add_space_keys(keys, base);
   add_faces_keys(keys, base);
   add_run_keys(keys, run_);
   keys.remove("keep_state");  // this key applies only to a single run

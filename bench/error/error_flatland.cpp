@@ -296,8 +296,8 @@ struct Flow {
       const auto still = mc::slab_covariance(scene, reversed, {tolerance}, {.delay = delay}).value;
       for (std::size_t e = 0; e < still.size(); ++e) {
         const auto [light, view] = scene.request.channels[scene.request.entries[e].a];
-        const Vec2 turn = direction(scene.request.lights[light].angle) -
-                          direction(scene.request.views[view].angle);
+        const Vec turn = direction(scene.request.lights[light].angle) -
+                         direction(scene.request.views[view].angle);
         found.value.push_back(std::polar(1.0, -scene.k * dot(turn, motion.velocity) * delay) *
                               still[e]);
       }

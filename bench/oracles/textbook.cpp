@@ -19,7 +19,7 @@ constexpr std::uint64_t stream = 1001;  // not used by the estimator under test
 
 struct Ray {
   double angle;
-  Vec2 w;
+  Vec w;
 };
 
 Ray ray(double angle) {
@@ -113,7 +113,7 @@ class Walker {
 
   void walk() {
     const auto chosen = static_cast<std::size_t>(random_.uniform() * light_count());
-    const Vec2 first = sample_first(lights_[chosen]);
+    const Vec first = sample_first(lights_[chosen]);
     for (std::size_t i = 0; i < lights_.size(); ++i) {
       density_[i] = first_density(first, lights_[i]) / light_count();
       light_first_[i] = light_factor(first, lights_[i]);
@@ -129,7 +129,7 @@ class Walker {
     if (reversed_) view_amplitudes(first, turned_round(start), view_first_);
 
     double weight = 1;
-    Vec2 x = first;
+    Vec x = first;
     Ray w = start;
     while (true) {
       const double flight = -std::log(random_.uniform()) / scene_.medium.mu_t;
@@ -149,7 +149,7 @@ class Walker {
   double light_count() const { return static_cast<double>(lights_.size()); }
 
   /// Adds single scattering, B = 1 of C14.
-  void single_scattering(Vec2 x) {
+  void single_scattering(Vec x) {
     double density = 0;
     for (double p : density_) density += p;
     for (std::size_t v = 0; v < views_.size(); ++v) view_last_[v] = view_factor(x, views_[v]);
@@ -163,7 +163,7 @@ class Walker {
 
   /// Adds multiple scattering, B >= 2 of C14. The last scatterer is at x and is reached in
   /// direction w.
-  void multiple_scattering(Vec2 x, const Ray& w, double weight) {
+  void multiple_scattering(Vec x, const Ray& w, double weight) {
     view_amplitudes(x, w, view_last_);
     if (reversed_) light_amplitudes(x, turned_round(w), light_last_);
     for (std::size_t c = 0; c < field_.size(); ++c) {
@@ -182,22 +182,22 @@ class Walker {
   }
 
   /// The endpoint factors e_i(x) and e_v(x) of C13.
-  Complex light_factor(Vec2 x, const Ray& light) const {
+  Complex light_factor(Vec x, const Ray& light) const {
     const double inside = scene_.domain.distance_to_edge(x, -light.w);
     return std::polar(std::exp(-scene_.medium.mu_t * inside / 2), scene_.k * dot(light.w, x));
   }
-  Complex view_factor(Vec2 x, const Ray& view) const {
+  Complex view_factor(Vec x, const Ray& view) const {
     const double inside = scene_.domain.distance_to_edge(x, view.w);
     return std::polar(std::exp(-scene_.medium.mu_t * inside / 2), -scene_.k * dot(view.w, x));
   }
 
   /// Computes e_i(x) A(i -> w) for every illumination.
-  void light_amplitudes(Vec2 x, const Ray& w, std::vector<Complex>& out) const {
+  void light_amplitudes(Vec x, const Ray& w, std::vector<Complex>& out) const {
     for (std::size_t i = 0; i < lights_.size(); ++i)
       out[i] = product(light_factor(x, lights_[i]), scattering_.amplitude(lights_[i], w));
   }
   /// Computes A(w -> v) e_v(x) for every detection direction.
-  void view_amplitudes(Vec2 x, const Ray& w, std::vector<Complex>& out) const {
+  void view_amplitudes(Vec x, const Ray& w, std::vector<Complex>& out) const {
     for (std::size_t v = 0; v < views_.size(); ++v)
       out[v] = product(view_factor(x, views_[v]), scattering_.amplitude(w, views_[v]));
   }
@@ -211,7 +211,7 @@ class Walker {
   }
 
   /// Samples an entry point uniformly over the illuminated faces, projected along the light.
-  Vec2 sample_entry(const Ray& light) {
+  Vec sample_entry(const Ray& light) {
     const Domain& domain = scene_.domain;
     const double z = light.w.z > 0 ? 0 : domain.depth;
     if (domain.kind == Domain::Kind::slab) return {0, z};
@@ -222,15 +222,15 @@ class Walker {
             (across - face) / std::abs(light.w.x)};
   }
 
-  Vec2 sample_first(const Ray& light) {
-    const Vec2 entry = sample_entry(light);
+  Vec sample_first(const Ray& light) {
+    const Vec entry = sample_entry(light);
     const double mu_t = scene_.medium.mu_t;
     const double absorbed = std::expm1(-mu_t * scene_.domain.distance_to_edge(entry, light.w));
     return entry + -std::log1p(random_.uniform() * absorbed) / mu_t * light.w;
   }
 
   /// Returns the density with which sample_first samples x for an illumination.
-  double first_density(Vec2 x, const Ray& light) const {
+  double first_density(Vec x, const Ray& light) const {
     const double mu_t = scene_.medium.mu_t;
     const double behind = scene_.domain.distance_to_edge(x, -light.w);
     const double chord = behind + scene_.domain.distance_to_edge(x, light.w);

@@ -12,9 +12,9 @@ inline Placement copies(const Placement& cluster, const std::vector<wave::Cluste
   Placement all;
   for (const auto& [centre, angle] : places)
     for (const auto& [position, scatterer] : cluster) {
-      const auto [x, z] = position;
       const double c = std::cos(angle), s = std::sin(angle);
-      all.push_back({centre + Vec2{c * x + s * z, c * z - s * x}, scatterer});
+      all.push_back({centre + Vec{c * position.x + s * position.z, c * position.z - s * position.x},
+                     scatterer});
     }
   return all;
 }

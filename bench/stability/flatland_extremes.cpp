@@ -169,7 +169,7 @@ Finding no_tilt() {
 Finding edges() {
   const Domain domain{Domain::Kind::box, 20, 10};
   double worst = 0;
-  const auto check = [&](Vec2 from, double angle, double expected) {
+  const auto check = [&](Vec from, double angle, double expected) {
     worst = larger(worst, std::abs(domain.distance_to_edge(from, direction(angle)) - expected));
   };
   check({3, 5}, pi / 2, 7);
@@ -199,7 +199,7 @@ Finding compressibility(double eta) {
 Finding dense_fluid() {
   const double radius = 0.5, packing = 0.68;
   const Domain domain{Domain::Kind::box, 12, 10};
-  const auto count = static_cast<std::size_t>(packing * domain.area() / (pi * radius * radius));
+  const auto count = static_cast<std::size_t>(packing * domain.content() / (pi * radius * radius));
   const std::vector<double> radii(count, radius);
   RandomStream random(5, 1, 0);
   const auto centres = draw_equilibrium_disks(domain, radii, random);

@@ -63,7 +63,7 @@ Finding along_needle() {
 
 /// Checks reciprocity (C13): a near source with far-field detection against a plane wave with a
 /// near sensor at the same point, on faces, on corners and inside.
-Finding near_reciprocity(Vec2 point) {
+Finding near_reciprocity(Vec point) {
   const std::vector<double> views{0.3, pi - 0.4};
   const Bulk bulk{2.5, 0.5};
   flatspeckle::Lights back;
@@ -78,7 +78,7 @@ Finding near_reciprocity(Vec2 point) {
 }
 
 /// Checks that the intensity is continuous when a sensor crosses a face or a corner.
-Finding across_edge(Vec2 point, Vec2 outwards) {
+Finding across_edge(Vec point, Vec outwards) {
   const auto at = [&](double off) {
     const auto request = intensity_request({0.2}, {near_sensor(point + off * outwards)});
     return covariance(hg_box(20, {2.5, 0.5}, request), ReversedPaths::automatic, 4000).value[0];
@@ -122,7 +122,7 @@ Finding turns(double g) {
   return mean_in_errors(
       400000,
       [&](int i) {
-        const Vec2 from = direction(0.3 * i), step = scattering.sample(from, random) - from;
+        const Vec from = direction(0.3 * i), step = scattering.sample(from, random) - from;
         return dot(step, step) / 2;
       },
       1 - g, 0.1);

@@ -78,13 +78,13 @@ Finding decay_row(double albedo, double g) {
 
 /// Checks the integral of a plane wave over a box without attenuation, with k L = 1e6 along both
 /// sides: sinc functions times the area.
-Finding wave_integral(Vec2 kappa) {
+Finding wave_integral(Vec kappa) {
   const double extent = 1e6 / k;
   const Domain domain{Domain::Kind::box, extent, extent};
   const auto found =
-      attenuated_wave_integral(domain, 0, kappa, {Vec2{0, -1}, {0, 1}, {0, -1}, {0, 1}});
+      attenuated_wave_integral(domain, 0, kappa, {Vec{0, -1}, {0, 1}, {0, -1}, {0, 1}});
   const auto sinc = [](double a) { return a == 0 ? 1 : std::sin(a) / a; };
-  const Complex exact = domain.area() * sinc(kappa.x * extent / 2) * sinc(kappa.z * extent / 2) *
+  const Complex exact = domain.content() * sinc(kappa.x * extent / 2) * sinc(kappa.z * extent / 2) *
                         std::polar(1.0, kappa.z * extent / 2);
   return {std::abs(found - exact) / std::abs(exact), 1e-6};
 }
@@ -93,7 +93,7 @@ Finding wave_integral(Vec2 kappa) {
 Finding backscattering_integral(double optical_depth) {
   const Domain domain{Domain::Kind::box, 20, 10};
   const double mu_t = optical_depth / 10;
-  const Vec2 up{0, -1};
+  const Vec up{0, -1};
   const double exact = -20 * std::expm1(-2 * optical_depth) / (2 * mu_t);
   return {std::abs(attenuated_wave_integral(domain, mu_t, {0, 0}, {up, up, up, up}) / exact - 1.0),
           1e-9};
@@ -103,7 +103,7 @@ Finding backscattering_integral(double optical_depth) {
 /// is exp(-mu_t width) everywhere.
 Finding grazing_integral() {
   const Domain domain{Domain::Kind::box, 20, 10};
-  const Vec2 w = direction(pi / 2);
+  const Vec w = direction(pi / 2);
   const auto found = attenuated_wave_integral(domain, 0.1, {0, 0}, {-w, w, -w, w});
   return {std::abs(found / (200 * std::exp(-2)) - 1.0), 1e-9};
 }
@@ -157,8 +157,8 @@ void add_diffusion(ExtremeRows& rows) {
 }
 
 void add_integrals(ExtremeRows& rows) {
-  rows.add("single scattering, k L 1e6, phases across", "sinc", wave_integral, Vec2{0.3 * k, 0});
-  rows.add("single scattering, k L 1e6, phases in depth", "sinc", wave_integral, Vec2{0, -0.7 * k});
+  rows.add("single scattering, k L 1e6, phases across", "sinc", wave_integral, Vec{0.3 * k, 0});
+  rows.add("single scattering, k L 1e6, phases in depth", "sinc", wave_integral, Vec{0, -0.7 * k});
   rows.add_each("single scattering straight back, OD ", {1e-12, 1.0, 1e4}, "", "closed form",
                 backscattering_integral);
   rows.add("single scattering along a box, exactly pi/2", "exp(-mu_t width) area",

@@ -48,7 +48,7 @@ Finding rugged_map() {
   double worst = 0;
   for (const double angle : {0.0, 0.3, -1.2, pi / 2})
     for (const double share : {1e-6, 0.3, 0.999}) {
-      const Vec2 x{0.3, 1e-3}, w = direction(angle);
+      const Vec x{0.3, 1e-3}, w = direction(angle);
       const double edge = box.domain.distance_to_edge(x, w),
                    depth = share * map.optical_depth(x, w, edge),
                    length = map.reach(x, w, depth, edge);
@@ -57,7 +57,7 @@ Finding rugged_map() {
   return {worst, 1e-9};
 }
 
-flatspeckle::IndexField linear(Vec2 gradient) {
+flatspeckle::IndexField linear(Vec gradient) {
   flatspeckle::IndexField field;
   field.kind = flatspeckle::IndexField::Kind::linear;
   field.gradient = gradient;
@@ -69,7 +69,7 @@ Finding curves_in_both_senses() {
   const mc::LinearMedium medium({Domain::Kind::box, 20, 10}, linear({0.01, 0.05}));
   double worst = 0;
   for (const double distance : {1e-9, 1e-3, 1.0, 20.0}) {
-    const Vec2 from{0.2, 0.1}, to = from + distance * direction(0.4);
+    const Vec from{0.2, 0.1}, to = from + distance * direction(0.4);
     const auto there = medium.curve(from, to), back = medium.curve(to, from);
     if (!there || !back) return {1, 0};
     worst = larger({worst, std::abs(there->path / back->path - 1),

@@ -28,7 +28,7 @@ namespace {
 // Two equal disks with the origin midway between them; the gap is in radii. The axis is oblique,
 // because along x or z some components of the translation vanish.
 Placement pair(const Scatterer& scatterer, double gap, double axis = 0.7) {
-  const Vec2 half = (1 + gap / 2) * scatterer.radius * direction(axis);
+  const Vec half = (1 + gap / 2) * scatterer.radius * direction(axis);
   return {{-half, scatterer}, {half, scatterer}};
 }
 

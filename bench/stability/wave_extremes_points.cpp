@@ -65,13 +65,13 @@ Finding soft_rim() {
   const Scatterer one = disk(Kind::soft, 5);
   const Placement placement{{{0, 0}, one}, {{2 * one.radius, 2 * one.radius}, one}};
   double worst = 0;
-  std::vector<Vec2> sensors;
+  std::vector<Vec> sensors;
   for (const double angle : {0.0, 1.3, 3.0})
     sensors.push_back((1 + 1e-9) * one.radius * direction(angle));
   auto options = to(1e-10);
   options.sensors = sensors;
   const auto solution = solve(placement, k, {0.3}, options);
-  for (const Vec2 sensor : sensors) {
+  for (const Vec sensor : sensors) {
     const Complex incident = std::polar(1.0, k * dot(direction(0.3), sensor));
     worst = larger(worst, std::abs(solution.near_field(sensor) + incident));
   }
@@ -81,12 +81,12 @@ Finding soft_rim() {
 /// Checks sums over charges in clusters that are 1e-7 wavelengths wide and 300 wavelengths apart.
 Finding clustered_sum() {
   RandomStream random(2, 0, 0);
-  std::vector<Vec2> points;
+  std::vector<Vec> points;
   std::vector<Complex> charges;
   for (int cluster = 0; cluster < 40; ++cluster) {
-    const Vec2 centre{300 * random.uniform(), 300 * random.uniform()};
+    const Vec centre{300 * random.uniform(), 300 * random.uniform()};
     for (int i = 0; i < 50; ++i) {
-      points.push_back(centre + 1e-7 * Vec2{random.uniform(), random.uniform()});
+      points.push_back(centre + 1e-7 * Vec{random.uniform(), random.uniform()});
       charges.push_back({random.uniform() - 0.5, random.uniform() - 0.5});
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace flatspeckle {
@@ -11,6 +12,10 @@ class AngleTable {
   /// Reads a CSV file with columns angle (radians, increasing from 0 to pi) and value (not
   /// negative, not all 0). Throws InputError; the message names the key.
   AngleTable(const std::string& key, const std::string& path);
+
+  /// angles: increasing from 0 to pi.
+  AngleTable(std::vector<double> angles, std::vector<double> values)
+      : angles_(std::move(angles)), values_(std::move(values)) {}
 
   double operator()(double angle) const;
   const std::vector<double>& angles() const { return angles_; }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flatland/media/domain.h"
+
 namespace flatspeckle {
 
 /// Polarisation at a face (conventions, C45). tm, also for scalar waves in space: u and its normal
@@ -20,6 +22,11 @@ struct Face {
   double refracted(double cosine) const {
     const double ratio = from / to;
     return std::sqrt(std::max(0.0, 1 - ratio * ratio * (1 - cosine) * (1 + cosine)));
+  }
+  /// Returns the direction behind the face of a ray that travels along w.
+  Vec refracted(Vec w) const {
+    const double ratio = from / to;
+    return {w.x * ratio, std::copysign(refracted(std::abs(w.z)), w.z), w.y * ratio};
   }
   /// Returns the amplitude of the reflected field (C45): 1 or -1 if the wave is totally
   /// reflected, whose phase is not computed.

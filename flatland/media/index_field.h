@@ -27,7 +27,7 @@ class IndexTable {
 /// Gaussian contribution to the index: height exp(-r^2 / (2 width^2)) at distance r from the
 /// centre.
 struct IndexBlob {
-  Vec2 centre;
+  Vec centre;
   double height = 0, width = 1;
 };
 
@@ -39,7 +39,7 @@ struct IndexField {
   enum class Kind { homogeneous, linear, parabolic, blobs, ultrasound, grid, mean_field };
   Kind kind = Kind::homogeneous;
   double origin = 1;  ///< n at the origin (linear), at x = 0 (parabolic), or of the background
-  Vec2 gradient;      ///< for linear: n^2 = origin^2 + dot(gradient, position)
+  Vec gradient;       ///< for linear: n^2 = origin^2 + dot(gradient, position)
   double alpha = 0;   ///< for parabolic: n^2 = origin^2 - alpha^2 x^2
   std::vector<IndexBlob> blobs;  ///< for blobs: Gaussians that are added to origin
   /// for ultrasound: n = origin + sound_amplitude J_0(sound_wavenumber x)
@@ -50,7 +50,7 @@ struct IndexField {
   bool is_around() const { return kind != Kind::mean_field; }
   /// Whether n^2 is a polynomial of at most second degree in position; square() returns its value.
   bool is_quadratic() const { return kind == Kind::linear || kind == Kind::parabolic; }
-  double square(Vec2 x) const {
+  double square(Vec x) const {
     return origin * origin + dot(gradient, x) - alpha * alpha * x.x * x.x;
   }
   std::string describe() const;

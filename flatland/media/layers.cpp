@@ -15,7 +15,7 @@ Layers::Layers(std::vector<Material> materials, const std::vector<double>& thick
   }
 }
 
-std::size_t Layers::material_at(Vec2 x) const {
+std::size_t Layers::material_at(Vec x) const {
   const auto inner = std::upper_bound(faces_.begin() + 1, faces_.end() - 1, x.z);
   return static_cast<std::size_t>(inner - faces_.begin()) - 1;
 }
@@ -33,14 +33,14 @@ double Layers::depth_at(double z) const {
 
 /// If the path stays within one layer, returns mu_t times its length, because the difference of the
 /// optical depths of its ends would lose digits.
-double Layers::optical_depth(Vec2 x, Vec2 w, double length) const {
+double Layers::optical_depth(Vec x, Vec w, double length) const {
   const double end = x.z + length * w.z;
   const std::size_t layer = material_at(x);
   if (layer == material_at({0, end})) return mu(layer) * length;
   return (depth_at(end) - depth_at(x.z)) / w.z;
 }
 
-double Layers::reach(Vec2 x, Vec2 w, double optical_depth, double longest) const {
+double Layers::reach(Vec x, Vec w, double optical_depth, double longest) const {
   double gone = 0;
   for (auto layer = static_cast<std::ptrdiff_t>(material_at(x));; layer += w.z > 0 ? 1 : -1) {
     const auto here = static_cast<std::size_t>(layer);

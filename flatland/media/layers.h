@@ -20,7 +20,7 @@ class Layers : public MediumProfile {
   /// Calls f(layer, length) for each layer that the straight path from x along w crosses, with the
   /// length of the path in that layer.
   template <typename F>
-  void each_part(Vec2 x, Vec2 w, double length, const F& f) const {
+  void each_part(Vec x, Vec w, double length, const F& f) const {
     double gone = 0;
     for (auto layer = material_at(x);; w.z > 0 ? ++layer : --layer) {
       const double face = w.z > 0 ? faces_[layer + 1] : faces_[layer],
@@ -32,11 +32,11 @@ class Layers : public MediumProfile {
     }
   }
 
-  std::size_t material_at(Vec2 x) const override;
-  double relative_density(Vec2) const override { return 1; }
+  std::size_t material_at(Vec x) const override;
+  double relative_density(Vec) const override { return 1; }
   double most_density() const override;
-  double optical_depth(Vec2 x, Vec2 w, double length) const override;
-  double reach(Vec2 x, Vec2 w, double optical_depth, double longest) const override;
+  double optical_depth(Vec x, Vec w, double length) const override;
+  double reach(Vec x, Vec w, double optical_depth, double longest) const override;
   BulkMedium mean() const override;
   void write(ResultFile& file) const override;
   std::string describe() const override;

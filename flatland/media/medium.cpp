@@ -153,12 +153,15 @@ bool is_physical(const BulkMedium& medium) {
          medium.mu_s <= (1 + rounding) * medium.mu_t && std::abs(medium.g) <= 1 + rounding;
 }
 
-BulkMedium bulk_medium(const Scatterer& scatterer, double k, double density) {
+BulkMedium bulk_medium(const Scatterer& scatterer, double k, double density, int dimension) {
   constexpr double tolerance = 1e-13;
+  const Radial kind = dimension == 3 ? Radial::spherical : Radial::cylindrical;
   BulkMedium medium;
+  medium.dimension = dimension;
   medium.has_scatterers = true;
-  medium.t_matrix = t_matrix(scatterer, k, isolated_order(scatterer, k, tolerance));
-  medium.cross_sections = cross_sections(medium.t_matrix, k);
+  medium.t_matrix = t_matrix(scatterer, k, isolated_order(scatterer, k, tolerance, kind), kind);
+  medium.cross_sections = dimension == 3 ? cross_sections_in_space(medium.t_matrix, k)
+                                         : cross_sections(medium.t_matrix, k);
   medium.g = medium.cross_sections.g;
   medium.albedo = medium.cross_sections.extinction == 0
                       ? 0
@@ -171,8 +174,12 @@ void set_density(BulkMedium& medium, const Scatterer& scatterer, double k, doubl
   medium.density = density;
   medium.mu_s = density * medium.cross_sections.scattering;
   medium.mu_t = density * medium.cross_sections.extinction;
-  if (scatterer.is_disk())
-    medium.packing_fraction = density * std::numbers::pi * scatterer.radius * scatterer.radius;
+  if (scatterer.is_disk()) medium.packing_fraction = density * scatterer.content(medium.dimension);
+  if (medium.dimension == 3) {  // k_eff - k = (2 pi rho / k) f(0) (C58)
+    medium.k_shift =
+        2 * std::numbers::pi * density / k * amplitude_in_space(medium.t_matrix, k, 1).real();
+    return;
+  }
   // k_eff - k = (2 rho / (i k)) sum_n T_n (C15)
   long double sum_imag = medium.t_matrix[0].imag();
   for (std::size_t n = 1; n < medium.t_matrix.size(); ++n)

@@ -66,9 +66,9 @@ struct BulkMedium {
   double mu_s = 0, mu_t = 0;
   double g = 0, albedo = 1;
   double k_shift = 0;  ///< Re k_eff - k (C15); 0 without scatterers
-  /// Whether the medium consists of scatterers in the plane. Otherwise it has a phase function, and
-  /// of the members from `density` to `structure` at most those of spheres are set, which are all
-  /// but the T-matrix.
+  /// Whether the medium consists of scatterers with a T-matrix. Otherwise it has a phase function,
+  /// and of the members from `density` to `structure` at most those of spheres of scatterer = mie
+  /// are set, which are all but the T-matrix.
   bool has_scatterers = false;
   double density = 0;            ///< number of scatterers per area, in space per volume
   double packing_fraction = 0;   ///< fraction of the area, in space of the volume, that they fill
@@ -86,10 +86,11 @@ struct BulkMedium {
 /// Whether the coefficients are finite and scattering does not exceed extinction, up to rounding.
 bool is_physical(const BulkMedium& medium);
 
-/// Returns a medium of scatterers that have a T-matrix. density: number of scatterers per area.
-BulkMedium bulk_medium(const Scatterer& scatterer, double k, double density);
-/// Sets the number of scatterers per area of a medium, and the properties that depend on that
-/// number.
+/// Returns a medium of scatterers that have a T-matrix. density: number of scatterers per area, in
+/// space per volume. The phase function in space is not set.
+BulkMedium bulk_medium(const Scatterer& scatterer, double k, double density, int dimension = 2);
+/// Sets the number of scatterers per area or volume of a medium, and the properties that depend on
+/// that number.
 void set_density(BulkMedium& medium, const Scatterer& scatterer, double k, double density);
 /// Returns a medium given by a phase function and an extinction coefficient.
 BulkMedium bulk_medium(const Scatterer& bulk, const BulkPhase& phase, double mu_t);

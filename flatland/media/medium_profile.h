@@ -35,23 +35,23 @@ class MediumProfile {
   virtual ~MediumProfile() = default;
 
   const std::vector<Material>& materials() const { return materials_; }
-  virtual std::size_t material_at(Vec2 x) const = 0;
-  virtual double relative_density(Vec2 x) const = 0;
+  virtual std::size_t material_at(Vec x) const = 0;
+  virtual double relative_density(Vec x) const = 0;
 
-  double mu_t(Vec2 x) const { return relative_density(x) * bulk(x).mu_t; }
-  double mu_s(Vec2 x) const { return relative_density(x) * bulk(x).mu_s; }
-  double albedo(Vec2 x) const { return bulk(x).albedo; }
+  double mu_t(Vec x) const { return relative_density(x) * bulk(x).mu_t; }
+  double mu_s(Vec x) const { return relative_density(x) * bulk(x).mu_s; }
+  double albedo(Vec x) const { return bulk(x).albedo; }
   /// Returns the number of scatterers per area.
-  double density(Vec2 x) const { return relative_density(x) * bulk(x).density; }
+  double density(Vec x) const { return relative_density(x) * bulk(x).density; }
   /// Returns an upper bound of density().
   virtual double most_density() const = 0;
 
   /// Returns the integral of mu_t over a straight path of the given length from x along w. The path
   /// must lie in the domain.
-  virtual double optical_depth(Vec2 x, Vec2 w, double length) const = 0;
+  virtual double optical_depth(Vec x, Vec w, double length) const = 0;
   /// Returns the distance from x along w after which the path has the given optical depth; at most
   /// `longest`.
-  virtual double reach(Vec2 x, Vec2 w, double optical_depth, double longest) const = 0;
+  virtual double reach(Vec x, Vec w, double optical_depth, double longest) const = 0;
 
   /// Returns the average over the whole domain: means of mu_t, mu_s, absorption, density and
   /// k_shift, and the mean of g weighted by mu_s. The result has no T-matrix.
@@ -63,7 +63,7 @@ class MediumProfile {
   virtual std::string describe() const = 0;
 
  private:
-  const BulkMedium& bulk(Vec2 x) const { return materials_[material_at(x)].medium; }
+  const BulkMedium& bulk(Vec x) const { return materials_[material_at(x)].medium; }
 
   std::vector<Material> materials_;
 };

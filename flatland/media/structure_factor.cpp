@@ -125,11 +125,11 @@ MeasuredStructureFactor::MeasuredStructureFactor(const Domain& box, double q_max
 
 /// Returns |sum_j exp(i q.r_j)|^2, with r_j the centres, for q = (2 pi n / width, 2 pi m / depth):
 /// [n][m + most_m].
-std::vector<double> MeasuredStructureFactor::density_waves(std::span<const Vec2> centres) const {
+std::vector<double> MeasuredStructureFactor::density_waves(std::span<const Vec> centres) const {
   const std::size_t columns = 2 * most_m_ + 1;
   const auto m = static_cast<std::ptrdiff_t>(most_m_);
   std::vector<double> real((most_n_ + 1) * columns), imaginary(real.size());
-  for (const Vec2& centre : centres) {
+  for (const Vec& centre : centres) {
     const Phasors x(2 * std::numbers::pi * centre.x / box_.width, 0,
                     static_cast<std::ptrdiff_t>(most_n_));
     const Phasors z(2 * std::numbers::pi * centre.z / box_.depth, -m, m);
@@ -147,7 +147,7 @@ std::vector<double> MeasuredStructureFactor::density_waves(std::span<const Vec2>
   return real;
 }
 
-void MeasuredStructureFactor::add(std::span<const Vec2> centres) {
+void MeasuredStructureFactor::add(std::span<const Vec> centres) {
   const auto waves = density_waves(centres);
   const auto number = static_cast<double>(centres.size());
   std::vector<double> found(members_.size());

@@ -45,7 +45,7 @@ class MeasuredStructureFactor {
   MeasuredStructureFactor(const Domain& box, double q_max, double shell_width);
 
   /// Adds one realization, which must not be empty.
-  void add(std::span<const Vec2> centres);
+  void add(std::span<const Vec> centres);
 
   /// Returns the mean of f(|q|) over the wavevectors of each shell.
   std::vector<double> shell_means(const std::function<double(double)>& f) const;
@@ -60,7 +60,7 @@ class MeasuredStructureFactor {
     std::size_t shell;
   };
 
-  std::vector<double> density_waves(std::span<const Vec2> centres) const;
+  std::vector<double> density_waves(std::span<const Vec> centres) const;
 
   Domain box_;
   std::size_t most_n_, most_m_;

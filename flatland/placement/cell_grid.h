@@ -15,14 +15,14 @@ class CellGrid {
  public:
   explicit CellGrid(double cell_size) : cell_size_(cell_size) {}
 
-  void insert(Vec2 position, std::size_t number) {
+  void insert(Vec position, std::size_t number) {
     cells_[key(column(position.x), column(position.z))].push_back({position, number});
   }
 
   /// Calls visit(position, number) for the points within one cell size, and for some farther
   /// points, until a call returns true. Returns whether any call returned true.
   template <typename Visit>
-  bool any_near(Vec2 position, Visit visit) const {
+  bool any_near(Vec position, Visit visit) const {
     const std::int64_t cx = column(position.x), cz = column(position.z);
     for (std::int64_t x = cx - 1; x <= cx + 1; ++x) {
       for (std::int64_t z = cz - 1; z <= cz + 1; ++z) {
@@ -37,7 +37,7 @@ class CellGrid {
 
  private:
   struct Occupant {
-    Vec2 position;
+    Vec position;
     std::size_t number;
   };
 

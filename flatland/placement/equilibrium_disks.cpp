@@ -59,11 +59,11 @@ class Fluid {
       : box_(box), random_(random), chains_(box, radii) {
     double area = 0;
     for (double radius : radii) area += std::numbers::pi * radius * radius;
-    packing_ = area / box.area();
+    packing_ = area / box.content();
     const double disks = static_cast<double>(radii.size());
     const double mean_diameter = 2 * std::accumulate(radii.begin(), radii.end(), 0.0) / disks;
-    chain_length_ =
-        contacts_per_chain * free_distance(packing_, mean_diameter, std::sqrt(box.area() / disks));
+    chain_length_ = contacts_per_chain *
+                    free_distance(packing_, mean_diameter, std::sqrt(box.content() / disks));
   }
 
   /// Places all disks, with reduced radii if the packing is high, then grows them to full size
@@ -83,11 +83,11 @@ class Fluid {
 
   /// Returns all centres, shifted by one common random vector, which makes the density exactly
   /// uniform.
-  std::vector<Vec2> centres() {
-    const Vec2 shift = anywhere();
-    std::vector<Vec2> result;
+  std::vector<Vec> centres() {
+    const Vec shift = anywhere();
+    std::vector<Vec> result;
     for (std::size_t disk = 0; disk < chains_.size(); ++disk) {
-      Vec2 moved = chains_.centre(disk) + shift;
+      Vec moved = chains_.centre(disk) + shift;
       moved.x -= box_.width * std::floor(moved.x / box_.width + 0.5);
       moved.z -= box_.depth * std::floor(moved.z / box_.depth);
       result.push_back(moved);
@@ -122,7 +122,7 @@ class Fluid {
     }
   }
 
-  Vec2 anywhere() {
+  Vec anywhere() {
     const double x = (random_.uniform() - 0.5) * box_.width;
     return {x, random_.uniform() * box_.depth};
   }
@@ -154,7 +154,7 @@ EventChains::EventChains(const Domain& box, std::span<const double> radii)
   previous_.assign(size(), none);
 }
 
-Vec2 EventChains::centre(std::size_t disk) const {
+Vec EventChains::centre(std::size_t disk) const {
   return {at_[0][disk] - length_[0] / 2, at_[1][disk]};
 }
 
@@ -186,16 +186,16 @@ void EventChains::visit_near(const std::array<double, 2>& point, Visit visit) co
     for (int j = -1; j <= 1; ++j) {
       const Neighbours z = neighbour(cell[1], j, cells_[1], length_[1]);
       for (std::uint32_t l = first_in({x.cell, z.cell}); l != none; l = next_[l])
-        visit(l, Vec2{at_[0][l] + x.shift - point[0], at_[1][l] + z.shift - point[1]});
+        visit(l, Vec{at_[0][l] + x.shift - point[0], at_[1][l] + z.shift - point[1]});
     }
   }
 }
 
-bool EventChains::place(std::size_t disk, Vec2 centre, double scale) {
+bool EventChains::place(std::size_t disk, Vec centre, double scale) {
   const std::array<double, 2> point{centre.x + length_[0] / 2, centre.z};
   const double radius = scale * radius_[disk];
   bool free = true;
-  visit_near(point, [&](std::uint32_t other, Vec2 distance) {
+  visit_near(point, [&](std::uint32_t other, Vec distance) {
     free = free && length(distance) > radius + reach_[other];
   });
   if (!free) return false;
@@ -211,7 +211,7 @@ bool EventChains::place(std::size_t disk, Vec2 centre, double scale) {
 
 bool EventChains::grow(std::size_t disk) {
   double free_radius = radius_[disk];
-  visit_near({at_[0][disk], at_[1][disk]}, [&](std::uint32_t other, Vec2 distance) {
+  visit_near({at_[0][disk], at_[1][disk]}, [&](std::uint32_t other, Vec distance) {
     if (other != disk) free_radius = std::min(free_radius, length(distance) - reach_[other]);
   });
   reach_[disk] = std::max(reach_[disk], free_radius);
@@ -270,8 +270,8 @@ double EventChains::move(std::size_t axis, std::size_t first, double length) {
   }
 }
 
-std::vector<Vec2> draw_equilibrium_disks(const Domain& box, std::span<const double> radii,
-                                         RandomStream& random) {
+std::vector<Vec> draw_equilibrium_disks(const Domain& box, std::span<const double> radii,
+                                        RandomStream& random) {
   if (radii.empty()) return {};
   Fluid fluid(box, radii, random);
   fluid.fill();

@@ -22,12 +22,12 @@ class EventChains {
 
   std::size_t size() const { return reach_.size(); }
   /// Returns the centre of a placed disk, in the box |x| <= width/2, 0 <= z <= depth.
-  Vec2 centre(std::size_t disk) const;
+  Vec centre(std::size_t disk) const;
   double reach(std::size_t disk) const { return reach_[disk]; }
 
   /// Places a disk that is not placed yet, with `scale` times its radius. Returns false and changes
   /// nothing if it would overlap another disk.
-  bool place(std::size_t disk, Vec2 centre, double scale = 1);
+  bool place(std::size_t disk, Vec centre, double scale = 1);
   /// Grows a placed disk up to its radius, as far as its neighbours allow. Returns whether the disk
   /// has its full radius.
   bool grow(std::size_t disk);
@@ -75,7 +75,7 @@ class EventChains {
 /// depends only on the arguments. Preconditions: the packing fraction is at most 0.69 (the fluid
 /// freezes above), and the box is at least three times as wide and deep as the largest diameter.
 /// Throws InputError if disks of very different size cannot be placed.
-std::vector<Vec2> draw_equilibrium_disks(const Domain& box, std::span<const double> radii,
-                                         RandomStream& random);
+std::vector<Vec> draw_equilibrium_disks(const Domain& box, std::span<const double> radii,
+                                        RandomStream& random);
 
 }  // namespace flatspeckle

@@ -15,7 +15,7 @@ namespace flatspeckle {
 
 namespace {
 
-Vec2 uniform_in(const Domain& box, RandomStream& random) {
+Vec uniform_in(const Domain& box, RandomStream& random) {
   const double x = (random.uniform() - 0.5) * box.width;
   return {x, random.uniform() * box.depth};
 }
@@ -31,19 +31,18 @@ std::uint64_t poisson_number(double mean, RandomStream& random) {
 }
 
 /// Places disks by random sequential addition. Radii include half the gap.
-std::vector<Vec2> add_disks(const Domain& box, std::span<const double> radii,
-                            RandomStream& random) {
+std::vector<Vec> add_disks(const Domain& box, std::span<const double> radii, RandomStream& random) {
   CellGrid grid(2 * *std::max_element(radii.begin(), radii.end()));
-  std::vector<Vec2> centres;
+  std::vector<Vec> centres;
   constexpr std::uint64_t most_tries = 100'000'000;
   for (std::uint64_t tries = 0; centres.size() < radii.size(); ++tries) {
     if (tries == most_tries)
       throw InputError("the disks cannot be packed: random sequential addition of " +
                        std::to_string(radii.size()) +
                        " disks does not end; lower the density or min_gap");
-    const Vec2 position = uniform_in(box, random);
+    const Vec position = uniform_in(box, random);
     const double radius = radii[centres.size()];
-    const bool taken = grid.any_near(position, [&](Vec2 other, std::size_t number) {
+    const bool taken = grid.any_near(position, [&](Vec other, std::size_t number) {
       return length(position - other) < radius + radii[number];
     });
     if (taken) continue;
@@ -95,7 +94,7 @@ Placement draw_placement(const Domain& box, const Scatterer& scatterer, const Pl
   if (rule.kind != PlacementRule::Kind::poisson) {
     const std::vector<double> radii(static_cast<std::size_t>(std::llround(rule.mean_count)),
                                     scatterer.radius);
-    for (const Vec2& centre : draw_disks(box, radii, rule.kind, rule.min_gap, random))
+    for (const Vec& centre : draw_disks(box, radii, rule.kind, rule.min_gap, random))
       placement.push_back({centre, scatterer});
     return placement;
   }
@@ -105,8 +104,8 @@ Placement draw_placement(const Domain& box, const Scatterer& scatterer, const Pl
   return placement;
 }
 
-std::vector<Vec2> draw_disks(const Domain& box, std::span<const double> radii,
-                             PlacementRule::Kind kind, double min_gap, RandomStream& random) {
+std::vector<Vec> draw_disks(const Domain& box, std::span<const double> radii,
+                            PlacementRule::Kind kind, double min_gap, RandomStream& random) {
   if (radii.empty()) return {};
   // The largest disks are placed first, because they would not fit among many small ones.
   std::vector<std::size_t> order(radii.size());
@@ -117,13 +116,13 @@ std::vector<Vec2> draw_disks(const Domain& box, std::span<const double> radii,
   double packing = 0;
   for (std::size_t disk : order) {
     reaches.push_back(radii[disk] + min_gap / 2);
-    packing += std::numbers::pi * reaches.back() * reaches.back() / box.area();
+    packing += std::numbers::pi * reaches.back() * reaches.back() / box.content();
   }
   check_packing(box, kind, packing, 2 * reaches.front());
   const auto drawn = kind == PlacementRule::Kind::equilibrium
                          ? draw_equilibrium_disks(box, reaches, random)
                          : add_disks(box, reaches, random);
-  std::vector<Vec2> centres(radii.size());
+  std::vector<Vec> centres(radii.size());
   for (std::size_t i = 0; i < order.size(); ++i) centres[order[i]] = drawn[i];
   return centres;
 }
@@ -162,14 +161,14 @@ Placement read_placement(const std::string& path, const Scatterer& scatterer) {
     throw InputError(path + ": column radius is missing, and the key radius is not given");
   Placement placement;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const Vec2 position{table.column("x")[row], table.column("z")[row]};
+    const Vec position{table.column("x")[row], table.column("z")[row]};
     placement.push_back({position, row_scatterer(table, row, scatterer, path)});
   }
   check_no_overlap(placement);
   return placement;
 }
 
-void require_outside(const Placement& placement, Vec2 sensor) {
+void require_outside(const Placement& placement, Vec sensor) {
   for (const auto& [position, scatterer] : placement) {
     const double distance = length(sensor - position);
     if (scatterer.is_disk() ? distance >= scatterer.radius : distance > 0) continue;
@@ -185,12 +184,12 @@ double smallest_gap(const Placement& placement, double within) {
   CellGrid grid(2 * largest + within);
   for (std::size_t j = 0; j < placement.size(); ++j) {
     const auto& [position, scatterer] = placement[j];
-    grid.any_near(position, [&, here = position, radius = scatterer.disk_radius()](Vec2 other,
-                                                                                   std::size_t l) {
-      const double reach = radius + placement[l].scatterer.disk_radius();
-      smallest = std::min(smallest, length(here - other) - reach);
-      return false;
-    });
+    grid.any_near(position,
+                  [&, here = position, radius = scatterer.disk_radius()](Vec other, std::size_t l) {
+                    const double reach = radius + placement[l].scatterer.disk_radius();
+                    smallest = std::min(smallest, length(here - other) - reach);
+                    return false;
+                  });
     grid.insert(position, j);
   }
   return smallest;
@@ -203,7 +202,7 @@ void check_no_overlap(const Placement& placement) {
   CellGrid grid(largest > 0 ? 2 * largest : tiny);
   for (std::size_t j = 0; j < placement.size(); ++j) {
     const PlacedScatterer& here = placement[j];
-    grid.any_near(here.position, [&, j](Vec2 other, std::size_t l) {
+    grid.any_near(here.position, [&, j](Vec other, std::size_t l) {
       const double reach = here.scatterer.disk_radius() + placement[l].scatterer.disk_radius();
       if (length(here.position - other) > reach) return false;
       throw InputError("placement: scatterers " + std::to_string(l + 1) + " and " +

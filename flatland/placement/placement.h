@@ -13,7 +13,7 @@
 namespace flatspeckle {
 
 struct PlacedScatterer {
-  Vec2 position;
+  Vec position;
   Scatterer scatterer;
 };
 
@@ -55,8 +55,8 @@ Placement draw_placement(const Domain& box, const Scatterer& scatterer, const Pl
 
 /// Draws the centres of disks with the given radii by hard_disk or equilibrium; the largest are
 /// placed first. Throws InputError under the conditions of check_packing().
-std::vector<Vec2> draw_disks(const Domain& box, std::span<const double> radii,
-                             PlacementRule::Kind kind, double min_gap, RandomStream& random);
+std::vector<Vec> draw_disks(const Domain& box, std::span<const double> radii,
+                            PlacementRule::Kind kind, double min_gap, RandomStream& random);
 
 /// Throws InputError if the packing fraction is too high for the rule. Random sequential addition
 /// jams at 0.547 and becomes far too slow well below; the equilibrium fluid freezes at 0.70. For
@@ -74,7 +74,7 @@ inline constexpr double default_gap = 1e-3;
 Placement read_placement(const std::string& path, const Scatterer& scatterer);
 
 /// Throws InputError if a near sensor lies inside a disk or on a point.
-void require_outside(const Placement& placement, Vec2 sensor);
+void require_outside(const Placement& placement, Vec sensor);
 
 /// Returns the smallest gap between the rims of two disks, or `within` if all gaps are larger.
 double smallest_gap(const Placement& placement, double within);

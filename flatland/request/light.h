@@ -13,20 +13,23 @@ namespace flatspeckle {
 struct Light {
   enum class Kind { plane, point, beam };
   Kind kind = Kind::plane;
-  double angle = 0;  ///< direction of a plane wave or of a beam's axis (C2)
-  Vec2 point;        ///< position of a point source, or of a beam's focus
-  double waist = 0;  ///< 1/e radius of a beam's field at its focus
+  double angle = 0;    ///< direction of a plane wave or of a beam's axis, from +z (C2)
+  Vec point;           ///< position of a point source, or of a beam's focus
+  double waist = 0;    ///< 1/e radius of a beam's field at its focus
+  double azimuth = 0;  ///< rotation of the direction about z, from x towards y (C55)
+
+  Vec direction() const { return flatspeckle::direction(angle, azimuth); }
   auto operator<=>(const Light&) const = default;
 };
 
-inline Light plane_wave(double angle) {
-  return {Light::Kind::plane, angle, {}, 0};
+inline Light plane_wave(double angle, double azimuth = 0) {
+  return {Light::Kind::plane, angle, {}, 0, azimuth};
 }
-inline Light point_source(Vec2 point) {
+inline Light point_source(Vec point) {
   return {Light::Kind::point, 0, point, 0};
 }
-inline Light gaussian_beam(double angle, Vec2 focus, double waist) {
-  return {Light::Kind::beam, angle, focus, waist};
+inline Light gaussian_beam(double angle, Vec focus, double waist, double azimuth = 0) {
+  return {Light::Kind::beam, angle, focus, waist, azimuth};
 }
 
 /// List of illuminations. A list of numbers is converted to plane waves with these angles (C2).

@@ -13,11 +13,30 @@
 
 namespace flatspeckle {
 
-std::vector<Vec2> read_points(const std::string& key, const std::string& path) {
-  const Table table = read_key_table(key, path, {"x", "z"});
-  std::vector<Vec2> points;
+std::vector<View> FarCamera::views() const {
+  const double x = std::abs(axis.x) + aperture, y = std::abs(axis.y) + aperture;
+  if (x * x + y * y >= 1)
+    throw InputError(
+        "camera_aperture", aperture,
+        "must be smaller: a corner of the camera would see directions past the horizon");
+  std::vector<View> list;
+  for (std::size_t row = 0; row < pixels; ++row)
+    for (std::size_t column = 0; column < pixels; ++column) {
+      const double vx = cosine(axis.x, column), vy = cosine(axis.y, row),
+                   z = std::copysign(std::sqrt(1 - vx * vx - vy * vy), axis.z);
+      list.push_back(far_view(std::atan2(std::hypot(vx, vy), z), std::atan2(vy, vx)));
+    }
+  return list;
+}
+
+std::vector<Vec> read_points(const std::string& key, const std::string& path, bool in_space) {
+  std::vector<std::string> columns{"x", "z"};
+  if (in_space) columns.emplace_back("y");
+  const Table table = read_key_table(key, path, columns);
+  std::vector<Vec> points;
   for (std::size_t row = 0; row < table.rows(); ++row)
-    points.push_back({table.column("x")[row], table.column("z")[row]});
+    points.push_back({table.column("x")[row], table.column("z")[row],
+                      table.has("y") ? table.column("y")[row] : 0});
   return points;
 }
 
@@ -104,58 +123,115 @@ class Moves {
   std::vector<std::uint32_t> reference_, moved_;
 };
 
-Light tilted(Light light, double tilt) {
-  const double angle = light.angle + tilt;
-  if (std::cos(angle) * std::cos(light.angle) <= 0)
-    throw InputError("tilts", tilt, "takes the light past the horizon");
-  light.angle = angle;
-  return light;
-}
+/// Direction in which transverse momenta change: x in the plane, any azimuth in space.
+class Across {
+ public:
+  explicit Across(double azimuth) : azimuth_(azimuth), along_(direction(pi / 2, azimuth)) {
+    along_.z = 0;
+  }
 
-double tilt_over_k(const Light& light, double tilt) {
-  return tilt == 0 ? 0 : std::sin(light.angle + tilt) - std::sin(light.angle);
-}
+  Light tilted(Light light, double tilt) const {
+    const double before = light.direction().z;
+    if (light.azimuth == azimuth_)
+      light.angle += tilt;
+    else if (tilt != 0)
+      point(light, rotated(light.direction(), tilt));
+    if (light.direction().z * before <= 0)
+      throw InputError("tilts", tilt, "takes the light past the horizon");
+    return light;
+  }
 
-/// Returns the far view on the same side of the medium for which sin(angle) is larger by q_over_k
-/// than for `view`. key and value are used in error messages.
-View deflected(const View& view, double q_over_k, const std::string& key, double value) {
-  if (q_over_k == 0) return view;
-  const double sine = std::sin(view.angle) + q_over_k;
-  if (std::abs(sine) >= 1)
+  double tilt_over_k(const Light& light, double tilt) const {
+    if (tilt == 0) return 0;
+    if (light.azimuth == azimuth_) return std::sin(light.angle + tilt) - std::sin(light.angle);
+    return dot(along_, rotated(light.direction(), tilt) - light.direction());
+  }
+
+  /// Returns the far view on the same side of the medium whose transverse momentum is larger by
+  /// q_over_k than that of `view`, in units of k. key and value are used in error messages.
+  View deflected(View view, double q_over_k, const std::string& key, double value) const {
+    if (q_over_k == 0) return view;
+    if (view.azimuth == azimuth_) return deflected_in_plane(view, q_over_k, key, value);
+    Vec w = view.direction() + q_over_k * along_;
+    const double transverse = w.x * w.x + w.y * w.y;
+    if (transverse >= 1) refuse(view, key, value);
+    w.z = std::copysign(std::sqrt(1 - transverse), w.z);
+    point(view, w);
+    return view;
+  }
+
+  template <typename End>
+  End translated(End end, double shift) const {
+    end.point = end.point + shift * along_;
+    return end;
+  }
+
+ private:
+  /// Rotates w about the axis that is parallel to the faces and perpendicular to along_.
+  Vec rotated(Vec w, double tilt) const {
+    const double across = dot(along_, w), deep = w.z;
+    const Vec rest = w - across * along_ - Vec{0, deep};
+    return rest + (std::cos(tilt) * across + std::sin(tilt) * deep) * along_ +
+           Vec{0, std::cos(tilt) * deep - std::sin(tilt) * across};
+  }
+
+  template <typename End>
+  static void point(End& end, Vec w) {
+    end.angle = std::atan2(std::hypot(w.x, w.y), w.z);
+    end.azimuth = std::atan2(w.y, w.x);
+  }
+
+  [[noreturn]] static void refuse(const View& view, const std::string& key, double value) {
     throw InputError(key, value,
                      "takes view angle " + std::to_string(view.angle) + " past the horizon");
-  const double forward = std::asin(sine);
-  if (std::cos(view.angle) >= 0) return far_view(forward);
-  return far_view(sine >= 0 ? pi - forward : -pi - forward);
-}
+  }
 
-Light translated(Light light, double shift) {
-  light.point.x += shift;
-  return light;
-}
+  static View deflected_in_plane(const View& view, double q_over_k, const std::string& key,
+                                 double value) {
+    const double sine = std::sin(view.angle) + q_over_k;
+    if (std::abs(sine) >= 1) refuse(view, key, value);
+    const double forward = std::asin(sine);
+    if (std::cos(view.angle) >= 0) return far_view(forward, view.azimuth);
+    return far_view(sine >= 0 ? pi - forward : -pi - forward, view.azimuth);
+  }
 
-View translated(View view, double shift) {
-  if (view.near) view.point.x += shift;
-  return view;
-}
+  double azimuth_;
+  Vec along_;
+};
 
 /// For each tilt of the light, adds the fields in the matched views: k sin(view angle) changes by
 /// as much as k sin(light angle) (C19).
 void add_matched(CovarianceRequest& request, Moves& moves, const Light& light) {
+  const Across across(request.tilt_azimuth);
   for (double tilt : request.tilts) {
-    const double q_over_k = tilt_over_k(light, tilt);
-    moves.add(tilted(light, tilt),
-              [&](const View& view) { return deflected(view, q_over_k, "tilts", tilt); });
+    const double q_over_k = across.tilt_over_k(light, tilt);
+    moves.add(across.tilted(light, tilt),
+              [&](const View& view) { return across.deflected(view, q_over_k, "tilts", tilt); });
   }
 }
 
-void set_tilts(CovarianceRequest& request, double k, const Light& light,
-               std::vector<double> tilts) {
+void set_tilts(CovarianceRequest& request, double k, const Light& light, std::vector<double> tilts,
+               double azimuth) {
   request.tilts = std::move(tilts);
-  for (double tilt : request.tilts) request.tilt_q.push_back(k * tilt_over_k(light, tilt));
+  request.tilt_azimuth = azimuth;
+  request.tilt_q = tilt_momenta(k, light, request.tilts, azimuth);
 }
 
 }  // namespace
+
+Lights tilted_lights(const Light& light, const std::vector<double>& tilts, double tilt_azimuth) {
+  Lights lights;
+  for (const double tilt : tilts) lights.push_back(Across(tilt_azimuth).tilted(light, tilt));
+  return lights;
+}
+
+std::vector<double> tilt_momenta(double k, const Light& light, const std::vector<double>& tilts,
+                                 double tilt_azimuth) {
+  std::vector<double> momenta;
+  for (const double tilt : tilts)
+    momenta.push_back(k * Across(tilt_azimuth).tilt_over_k(light, tilt));
+  return momenta;
+}
 
 bool CovarianceRequest::transmission_only() const {
   return std::all_of(views.begin(), views.end(),
@@ -204,36 +280,48 @@ CovarianceRequest pairs_request(const std::vector<AnglePair>& pairs) {
   request.kind = CovarianceRequest::Kind::pairs;
   ChannelList channels(request);
   for (const auto& pair : pairs) {
-    const auto a = channels.number(plane_wave(pair.light1), far_view(pair.view1));
-    request.entries.push_back({a, channels.number(plane_wave(pair.light2), far_view(pair.view2))});
+    const auto& azimuths = pair.azimuths;
+    const auto a = channels.number(plane_wave(pair.light1, azimuths[0]),
+                                   far_view(pair.view1, azimuths[1])),
+               b = channels.number(plane_wave(pair.light2, azimuths[2]),
+                                   far_view(pair.view2, azimuths[3]));
+    request.entries.push_back({a, b});
   }
   return request;
 }
 
 CovarianceRequest memory_effect_request(double k, double light, const std::vector<double>& views,
                                         std::vector<double> tilts) {
+  return memory_effect_request(k, plane_wave(light), far_views(views), std::move(tilts), 0);
+}
+
+CovarianceRequest memory_effect_request(double k, const Light& light,
+                                        const std::vector<View>& views, std::vector<double> tilts,
+                                        double tilt_azimuth) {
   CovarianceRequest request;
   request.kind = CovarianceRequest::Kind::memory_effect;
-  const auto reference_views = far_views(views);
-  set_tilts(request, k, plane_wave(light), std::move(tilts));
-  Moves moves(request, plane_wave(light), reference_views);
-  add_matched(request, moves, plane_wave(light));
+  set_tilts(request, k, light, std::move(tilts), tilt_azimuth);
+  Moves moves(request, light, views);
+  add_matched(request, moves, light);
   moves.list_entries();
   return request;
 }
 
 CovarianceRequest tilt_shift_request(double k, const Light& light, const std::vector<View>& views,
-                                     std::vector<double> tilts, std::vector<double> shifts) {
+                                     std::vector<double> tilts, std::vector<double> shifts,
+                                     double tilt_azimuth) {
   CovarianceRequest request;
   request.kind = CovarianceRequest::Kind::tilt_shift;
   request.shifts = std::move(shifts);
-  set_tilts(request, k, light, std::move(tilts));
+  set_tilts(request, k, light, std::move(tilts), tilt_azimuth);
+  const Across across(tilt_azimuth);
   Moves moves(request, light, views);
   for (double tilt : request.tilts) {
-    const Light moved = tilted(light, tilt);
+    const Light moved = across.tilted(light, tilt);
     for (double shift : request.shifts)
       moves.add(moved, [&](const View& view) {
-        return view.near ? translated(view, shift) : deflected(view, shift / k, "shifts", shift);
+        return view.near ? across.translated(view, shift)
+                         : across.deflected(view, shift / k, "shifts", shift);
       });
   }
   if (!views.front().near) add_matched(request, moves, light);
@@ -242,13 +330,16 @@ CovarianceRequest tilt_shift_request(double k, const Light& light, const std::ve
 }
 
 CovarianceRequest translation_request(const Light& light, const std::vector<View>& views,
-                                      std::vector<double> shifts) {
+                                      std::vector<double> shifts, double azimuth) {
   CovarianceRequest request;
   request.kind = CovarianceRequest::Kind::translation;
   request.shifts = std::move(shifts);
+  request.tilt_azimuth = azimuth;
+  const Across across(azimuth);
   Moves moves(request, light, views);
   for (double shift : request.shifts)
-    moves.add(translated(light, shift), [&](const View& view) { return translated(view, shift); });
+    moves.add(across.translated(light, shift),
+              [&](const View& view) { return view.near ? across.translated(view, shift) : view; });
   moves.list_entries();
   return request;
 }

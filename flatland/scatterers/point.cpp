@@ -17,8 +17,8 @@ void read_point(const Keys& keys, const ScattererValues& values, Scatterer& made
   made.phase_shift = phase_shift.value_or(made.phase_shift);
 }
 
-// Returns T_0 of C8; the T_n of all other orders are 0.
-std::vector<ScaledComplex> point_t_matrix(const Scatterer& point, double, int order) {
+// Returns T_0 of C8 and C57; the T_n of all other orders are 0.
+std::vector<ScaledComplex> point_t_matrix(const Scatterer& point, double, int order, Radial) {
   std::vector<ScaledComplex> t(order + 1);
   const long double angle = 2 * static_cast<long double>(point.phase_shift);
   t[0] = point.albedo != 1 ? ExtendedComplex(-point.albedo)

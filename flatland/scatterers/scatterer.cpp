@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "core/contract.h"
 #include "core/error.h"
@@ -59,13 +61,15 @@ std::string index_fault(Complex index) {
   return "";
 }
 
-std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k, int order) {
+std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k, int order,
+                                           Radial kind) {
   FS_EXPECT(!scatterer.is_bulk());
-  return kind_of(scatterer).t_matrix(scatterer, k * scatterer.radius, order);
+  return kind_of(scatterer).t_matrix(scatterer, k * scatterer.radius, order, kind);
 }
 
-std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int order) {
-  const auto scaled = scaled_t_matrix(scatterer, k, order);
+std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int order,
+                                      Radial kind) {
+  const auto scaled = scaled_t_matrix(scatterer, k, order, kind);
   std::vector<ExtendedComplex> t;
   for (const ScaledComplex& t_n : scaled) t.push_back(static_cast<ExtendedComplex>(t_n));
   return t;
@@ -82,10 +86,10 @@ int oscillating_order(const Scatterer& scatterer, double k) {
   return static_cast<int>(std::ceil(size));
 }
 
-int isolated_order(const Scatterer& scatterer, double k, double tolerance) {
+int isolated_order(const Scatterer& scatterer, double k, double tolerance, Radial kind) {
   if (!scatterer.is_disk()) return 0;
   for (int size = oscillating_order(scatterer, k) + 8;; size *= 2) {
-    const auto t = t_matrix(scatterer, k, size);
+    const auto t = t_matrix(scatterer, k, size, kind);
     long double largest = 0;
     for (const auto& t_n : t) largest = std::max(largest, std::abs(t_n));
     int order = size;
@@ -124,6 +128,43 @@ std::vector<Complex> amplitudes(const std::vector<ExtendedComplex>& t, double k,
     for (std::size_t i = 0; i < count; ++i)
       values[first + i] = far_field_factor(k) * block.sum(Complex(t[0]), i);
   }
+  return values;
+}
+
+CrossSections cross_sections_in_space(const std::vector<ExtendedComplex>& t, double k) {
+  long double scattered = 0, lost = 0, cosine = 0;
+  for (std::size_t l = 0; l < t.size(); ++l) {
+    const auto many = static_cast<long double>(2 * l + 1), next = static_cast<long double>(l + 1);
+    scattered += many * std::norm(t[l]);
+    lost -= many * t[l].real();
+    if (l + 1 < t.size()) cosine += 2 * next * (t[l] * std::conj(t[l + 1])).real();
+  }
+  const long double unit = 4 * std::numbers::pi_v<long double> / (static_cast<long double>(k) * k);
+  return {static_cast<double>(unit * scattered),
+          static_cast<double>(unit * std::max(lost, scattered)),
+          scattered > 0 ? static_cast<double>(cosine / scattered) : 0};
+}
+
+Complex amplitude_in_space(const std::vector<ExtendedComplex>& t, double k, double cosine) {
+  long double before = 0, legendre = 1;
+  ExtendedComplex sum = 0;
+  for (std::size_t l = 0; l < t.size(); ++l) {
+    sum += static_cast<long double>(2 * l + 1) * legendre * t[l];
+    const auto next = (static_cast<long double>(2 * l + 1) * cosine * legendre -
+                       static_cast<long double>(l) * before) /
+                      static_cast<long double>(l + 1);
+    before = std::exchange(legendre, next);
+  }
+  return Complex(0, -1 / k) * Complex(sum);
+}
+
+std::vector<Complex> amplitudes_in_space(const std::vector<ExtendedComplex>& t, double k) {
+  const std::size_t intervals = 2048 * std::max<std::size_t>(t.size(), 1);
+  std::vector<Complex> values;
+  for (std::size_t i = 0; i <= intervals; ++i)
+    values.push_back(amplitude_in_space(
+        t, k,
+        std::cos(std::numbers::pi * static_cast<double>(i) / static_cast<double>(intervals))));
   return values;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/numbers/bessel.h"
 #include "core/numbers/complex.h"
 #include "core/numbers/scaled.h"
 
@@ -28,6 +29,11 @@ struct Scatterer {
   bool is_bulk() const { return kind == Kind::hg || kind == Kind::mie || kind == Kind::other_bulk; }
 
   double disk_radius() const { return is_disk() ? radius : 0; }
+  /// Returns the area of a cylinder's cross-section or, in space, the volume of a sphere.
+  double content(int dimension) const {
+    const double square = std::numbers::pi * radius * radius;
+    return dimension == 3 ? 4 * square * radius / 3 : square;
+  }
 
   bool operator==(const Scatterer&) const = default;
 };
@@ -35,19 +41,23 @@ struct Scatterer {
 /// Returns the reason why a cylinder cannot have this index, for error messages; empty if it can.
 std::string index_fault(Complex index);
 
-/// Returns T_n for n = 0 .. order; T_{-n} = T_n (conventions, C7 and C8). k: wavenumber outside.
+/// Returns T_n for n = 0 .. order (conventions, C7 and C8, where T_{-n} = T_n; in space C57).
+/// k: wavenumber outside.
 /// Precondition: the scatterer has a T-matrix (not is_bulk()).
-std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k, int order);
+std::vector<ScaledComplex> scaled_t_matrix(const Scatterer& scatterer, double k, int order,
+                                           Radial kind = Radial::cylindrical);
 /// Returns the T_n of scaled_t_matrix() in long double; values below the range of long double
 /// become 0.
-std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int order);
+std::vector<ExtendedComplex> t_matrix(const Scatterer& scatterer, double k, int order,
+                                      Radial kind = Radial::cylindrical);
 
 /// Returns the order up to which T_n may oscillate or resonate; beyond it |T_n| falls. Throws
 /// InputError if it is above 10000.
 int oscillating_order(const Scatterer& scatterer, double k);
 
 /// Returns the order beyond which no |T_n| exceeds tolerance times the largest one.
-int isolated_order(const Scatterer& scatterer, double k, double tolerance);
+int isolated_order(const Scatterer& scatterer, double k, double tolerance,
+                   Radial kind = Radial::cylindrical);
 
 /// Cross-sections of a scatterer; in flatland they are lengths (C4, C5, C9).
 struct CrossSections {
@@ -55,6 +65,14 @@ struct CrossSections {
   double g = 0;  ///< mean cosine
 };
 CrossSections cross_sections(const std::vector<ExtendedComplex>& t_matrix, double k);
+/// Returns the cross-sections of a sphere or point in space, which are areas (C57).
+CrossSections cross_sections_in_space(const std::vector<ExtendedComplex>& t_matrix, double k);
+/// Returns the far-field amplitude f of a sphere or point in space (C57). cosine: that of the
+/// scattering angle.
+Complex amplitude_in_space(const std::vector<ExtendedComplex>& t_matrix, double k, double cosine);
+/// Returns these amplitudes at equal steps of the angle from 0 to pi, fine enough for linear
+/// interpolation to 1e-6.
+std::vector<Complex> amplitudes_in_space(const std::vector<ExtendedComplex>& t_matrix, double k);
 
 /// Returns the far-field amplitude of one scatterer at the origin for light along +z (C6), at
 /// scattering angle theta.

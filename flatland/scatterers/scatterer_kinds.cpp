@@ -10,8 +10,8 @@ namespace flatspeckle {
 
 namespace {
 
-const ScattererKind* const kinds[] = {&point_kind, &soft_kind, &hard_kind, &tm_kind,
-                                      &te_kind,    &hg_kind,   &mie_kind};
+const ScattererKind* const kinds[] = {&point_kind,      &soft_kind, &hard_kind, &tm_kind,
+                                      &penetrable_kind, &te_kind,   &hg_kind,   &mie_kind};
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/numbers/bessel.h"
 #include "flatland/scatterers/bulk_phases.h"
 #include "flatland/scatterers/scatterer.h"
 
@@ -29,9 +30,11 @@ struct ScattererKind {
   void (*read)(const Keys& keys, const ScattererValues& values, Scatterer& made);
   /// Returns T_n for n = 0 .. order, with x = k radius. Null for kinds without a T-matrix
   /// (Scatterer::is_bulk()).
-  std::vector<ScaledComplex> (*t_matrix)(const Scatterer& scatterer, double x, int order);
+  std::vector<ScaledComplex> (*t_matrix)(const Scatterer& scatterer, double x, int order,
+                                         Radial kind);
 };
-extern const ScattererKind point_kind, soft_kind, hard_kind, tm_kind, te_kind, hg_kind, mie_kind;
+extern const ScattererKind point_kind, soft_kind, hard_kind, tm_kind, penetrable_kind, te_kind,
+    hg_kind, mie_kind;
 
 // These functions read keys that several kinds of scatterers share.
 /// Throws InputError unless the radius or the diameter is given.

@@ -1,4 +1,3 @@
-#include "core/numbers/bessel.h"
 #include "flatland/scatterers/scatterer_kinds.h"
 
 namespace flatspeckle {
@@ -11,7 +10,7 @@ namespace {
 // In the numerator the leading terms of J_{n+1}/J_n and r_n/m are both x/(2(n+1)) and cancel. They
 // are removed by the recurrence J_{n+1} = x/(2(n+1)) (J_n + J_{n+2}), which is applied outside and
 // inside the cylinder.
-std::vector<ScaledComplex> te_t_matrix(const Scatterer& cylinder, double x, int order) {
+std::vector<ScaledComplex> te_t_matrix(const Scatterer& cylinder, double x, int order, Radial) {
   std::vector<ScaledComplex> t(order + 1);
   if (cylinder.index == 1.0) return t;
   const ExtendedComplex m(cylinder.index);

@@ -47,7 +47,7 @@ struct Steps {
 /// A Gaussian contribution to the relative density: amplitude exp(-r^2 / (2 radius^2)) at distance
 /// r from the centre. It is a hole if the amplitude is negative.
 struct Blob {
-  Vec2 centre;
+  Vec centre;
   double radius = 1, amplitude = 0;
 };
 
@@ -67,10 +67,10 @@ class Blobs : public DensityMap {
   Blobs(Domain box, Material material, std::vector<Blob> blobs)
       : DensityMap(box, std::move(material)), blobs_(std::move(blobs)) {}
 
-  double relative_density(Vec2 x) const override {
+  double relative_density(Vec x) const override {
     double density = 1;
     for (const auto& [centre, radius, amplitude] : blobs_) {
-      const Vec2 from = x - centre;
+      const Vec from = x - centre;
       density += amplitude * std::exp(-dot(from, from) / (2 * radius * radius));
     }
     return std::max(0.0, density);  // rounding may make it negative in a hole
@@ -81,10 +81,10 @@ class Blobs : public DensityMap {
   }
 
  private:
-  double met(Vec2 x, Vec2 w, double length) const override {
+  double met(Vec x, Vec w, double length) const override {
     double sum = length;
     for (const auto& [centre, radius, amplitude] : blobs_) {
-      const Vec2 to_centre = centre - x;
+      const Vec to_centre = centre - x;
       const double along = dot(to_centre, w), across = to_centre.x * w.z - to_centre.z * w.x;
       sum += amplitude * std::exp(-across * across / (2 * radius * radius)) *
              gaussian_between(0, length, along, radius);
@@ -103,7 +103,7 @@ class Blobs : public DensityMap {
     for (const auto& [centre, radius, amplitude] : blobs_)
       sum += amplitude * gaussian_between(-box().width / 2, box().width / 2, centre.x, radius) *
              gaussian_between(0, box().depth, centre.z, radius);
-    return 1 + sum / box().area();
+    return 1 + sum / box().content();
   }
 
   std::vector<Blob> blobs_;
@@ -167,14 +167,14 @@ CellDensity::CellDensity(Domain box, Material material, std::size_t rows,
       deep_(box.depth / static_cast<double>(rows)),
       density_(std::move(density)) {}
 
-double CellDensity::relative_density(Vec2 x) const {
+double CellDensity::relative_density(Vec x) const {
   const auto row = static_cast<std::size_t>(cell_of(x.z / deep_, rows_)),
              column =
                  static_cast<std::size_t>(cell_of((x.x + box().width / 2) / across_, columns_));
   return density_[row * columns_ + column];
 }
 
-double CellDensity::met(Vec2 x, Vec2 w, double length) const {
+double CellDensity::met(Vec x, Vec w, double length) const {
   Steps columns((x.x + box().width / 2) / across_, w.x / across_, columns_),
       rows(x.z / deep_, w.z / deep_, rows_);
   double sum = 0, gone = 0;
@@ -208,7 +208,7 @@ DensityMap::DensityMap(Domain box, Material material)
 
 /// Solves for the distance by Newton's method. Bisection replaces Newton steps that leave the
 /// interval between the lower and the upper bound found so far.
-double DensityMap::reach(Vec2 x, Vec2 w, double optical_depth, double longest) const {
+double DensityMap::reach(Vec x, Vec w, double optical_depth, double longest) const {
   const double mu = bulk().mu_t, wanted = optical_depth / mu;
   double low = 0, high = longest;
   if (!(met(x, w, longest) > wanted)) return longest;

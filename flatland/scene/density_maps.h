@@ -16,12 +16,12 @@ class DensityMap : public MediumProfile {
  public:
   DensityMap(Domain box, Material material);
 
-  std::size_t material_at(Vec2) const override { return 0; }
+  std::size_t material_at(Vec) const override { return 0; }
   double most_density() const override { return most_relative() * bulk().density; }
-  double optical_depth(Vec2 x, Vec2 w, double length) const override {
+  double optical_depth(Vec x, Vec w, double length) const override {
     return bulk().mu_t * met(x, w, length);
   }
-  double reach(Vec2 x, Vec2 w, double optical_depth, double longest) const override;
+  double reach(Vec x, Vec w, double optical_depth, double longest) const override;
   BulkMedium mean() const override;
   void write(ResultFile& file) const override;
 
@@ -31,7 +31,7 @@ class DensityMap : public MediumProfile {
 
  private:
   /// Returns the integral of relative_density() over a path of the given length from x along w.
-  virtual double met(Vec2 x, Vec2 w, double length) const = 0;
+  virtual double met(Vec x, Vec w, double length) const = 0;
   virtual double most_relative() const = 0;
   /// Returns the mean relative density of the box.
   virtual double mean_relative() const = 0;
@@ -48,11 +48,11 @@ class CellDensity : public DensityMap {
   /// -width/2. No value may be negative.
   CellDensity(Domain box, Material material, std::size_t rows, std::vector<double> density);
 
-  double relative_density(Vec2 x) const override;
+  double relative_density(Vec x) const override;
   std::string describe() const override;
 
  private:
-  double met(Vec2 x, Vec2 w, double length) const override;
+  double met(Vec x, Vec w, double length) const override;
   double most_relative() const override;
   double mean_relative() const override;
 

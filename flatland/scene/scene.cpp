@@ -33,15 +33,15 @@ std::vector<IndexBlob> read_index_blobs(const std::string& path) {
   return blobs;
 }
 
-std::string shown_place(Vec2 x) {
+std::string shown_place(Vec x) {
   return '(' + number_text(x.x) + ", " + number_text(x.z) + ')';
 }
 
 /// Returns points that the light of the scene must reach: the corners of the domain, near sources
 /// and near sensors.
-std::vector<Vec2> lit_places(const Scene& scene) {
+std::vector<Vec> lit_places(const Scene& scene) {
   const double half = scene.domain.width / 2, depth = scene.domain.depth;
-  std::vector<Vec2> places = {{-half, 0}, {half, 0}, {-half, depth}, {half, depth}};
+  std::vector<Vec> places = {{-half, 0}, {half, 0}, {-half, depth}, {half, depth}};
   for (const Light& light : scene.request.lights)
     if (light.kind == Light::Kind::point) places.push_back(light.point);
   for (const View& view : scene.request.views)
@@ -198,14 +198,20 @@ Domain make_domain(const Keys& keys, const SceneSpec& spec,
   if (domain.kind == Domain::Kind::slab) return domain;
   domain.width = keys.required(spec.width);
   const double most = 1e8 * spec.wavelength;  // rounding errors of phases k r grow with the extent
-  for (const auto& [key, extent] : {std::pair{"width", domain.width}, {"depth", domain.depth}})
+  if (spec.dimension == 3) {
+    if (!keys.read(spec.height))
+      throw InputError("height is not given: a box in space requires it");
+    domain.height = *spec.height;
+  }
+  for (const auto& [key, extent] :
+       {std::pair{"width", domain.width}, {"depth", domain.depth}, {"height", domain.height}})
     if (extent > most) throw InputError(key, extent, "must be at most 1e8 wavelengths");
   return domain;
 }
 
 BulkMedium medium_of_scatterers(const SceneSpec& spec, const Scatterer& scatterer,
                                 const Domain& domain, double k) {
-  BulkMedium medium = bulk_medium(scatterer, k, 1);
+  BulkMedium medium = bulk_medium(scatterer, k, 1, static_cast<int>(spec.dimension));
   set_density(medium, scatterer, k,
               number_density(spec, domain, scatterer, medium.cross_sections.extinction));
   return medium;
@@ -223,12 +229,13 @@ PlacementRule make_placement_rule(const Keys& keys, const SceneSpec& spec,
 }
 
 void check_packing(const Scene& scene) {
-  if (scene.scatterer.kind == Scatterer::Kind::mie) return check_spheres(scene.medium);
+  if (scene.scatterer.kind == Scatterer::Kind::mie || scene.medium.dimension == 3)
+    return check_spheres(scene.medium);
   if (!scene.scatterer.is_disk()) return;
   const double reach = scene.scatterer.radius + scene.placement.min_gap / 2;
   const bool box = scene.domain.kind == Domain::Kind::box;
   const double density =
-      box ? std::round(scene.placement.mean_count) / scene.domain.area() : scene.medium.density;
+      box ? std::round(scene.placement.mean_count) / scene.domain.content() : scene.medium.density;
   check_packing(scene.domain, scene.placement.kind, density * std::numbers::pi * reach * reach,
                 2 * reach);
 }
@@ -308,12 +315,27 @@ void make_phase_of_bulk(const Keys& keys, const SceneSpec& spec, Scene& scene) {
       bulk_medium(scene.scatterer, make_phase(keys, spec.bulk, spec.scatterer), mu_t.value_or(0));
   if (!density) return;
   scene.medium.density = *density;
-  scene.medium.packing_fraction = *density * scatterer_content(scene.scatterer, spec.dimension);
+  scene.medium.packing_fraction =
+      *density * scene.scatterer.content(static_cast<int>(spec.dimension));
 }
 
 /// Reads the keys of the phase function, which all layers share.
 void read_layer_keys(const Keys& keys, const SceneSpec& spec, const Scatterer& scatterer) {
   if (scatterer.is_bulk()) make_phase(keys, spec.bulk, spec.scatterer);
+}
+
+/// Throws InputError for cylinders in space and for spheres in the plane.
+void check_dimension(const SceneSpec& spec) {
+  const auto is_one_of = [&](std::initializer_list<const char*> words) {
+    return std::ranges::find(words, spec.scatterer) != words.end();
+  };
+  if (spec.dimension == 3 && is_one_of({"tm", "te"}))
+    throw InputError("scatterer", spec.scatterer,
+                     "are cylinders in the plane; dimension = 3 has point, soft, hard, penetrable, "
+                     "mie and phase functions");
+  if (spec.dimension != 3 && is_one_of({"penetrable", "mie"}))
+    throw InputError("scatterer", spec.scatterer,
+                     "spheres require dimension = 3; cylinders that light enters are tm or te");
 }
 
 /// Creates the scene without the bulk properties (BulkMedium) of its scatterers. Nearly all invalid
@@ -323,9 +345,7 @@ Scene without_bulk(const Keys& keys, const SceneSpec& spec,
   Scene scene;
   scene.scatterer = make_scatterer(keys, spec);
   if (scene.scatterer.is_disk() && !layers) require_radius(spec);
-  if (scene.scatterer.kind == Scatterer::Kind::mie && spec.dimension != 3)
-    throw InputError("scatterer", spec.scatterer,
-                     "spheres require domain = slab and dimension = 3");
+  check_dimension(spec);
   scene.faces = make_faces(keys, spec, layers ? layers->first_index() : std::nullopt);
   scene.wavelength = scene.faces ? spec.wavelength / scene.faces->inside : spec.wavelength;
   scene.k = 2 * std::numbers::pi / scene.wavelength;
@@ -353,7 +373,7 @@ void make_layered(Scene& scene, std::shared_ptr<const Layers> layers) {
 
 }  // namespace
 
-void require_phase(const std::string& key, Vec2 point, double k) {
+void require_phase(const std::string& key, Vec point, double k) {
   constexpr double accuracy = 1e-3;  // rad
   const double most = accuracy / (k * std::numeric_limits<double>::epsilon());
   if (!(length(point) <= most))
@@ -363,7 +383,7 @@ void require_phase(const std::string& key, Vec2 point, double k) {
             number_text(most) + "; use a direction instead");
 }
 
-void require_reach(const std::string& key, Vec2 point, const Scene& scene) {
+void require_reach(const std::string& key, Vec point, const Scene& scene) {
   require_phase(key, point, scene.k);
   if (length(point) > furthest(scene.domain))
     throw InputError(key, length(point), "lies too far from the medium; use a direction instead");
@@ -415,7 +435,7 @@ void check_index_field(const Scene& scene) {
   if (scene.domain.kind == Domain::Kind::slab && !stratified)
     refuse("an infinite slab requires a linear field with its gradient along z");
   if (!scene.index->is_quadratic()) return;
-  for (const Vec2 place : lit_places(scene))
+  for (const Vec place : lit_places(scene))
     if (!(scene.index->square(place) > 0))
       throw InputError("index_field",
                        index_field_words[static_cast<std::size_t>(scene.index->kind)],
@@ -440,6 +460,8 @@ Scene make_scene(const Keys& keys, const SceneSpec& spec) {
     make_layered(scene, layers->layers(spec));
   else if (!scene.scatterer.is_bulk())
     scene.medium = medium_of_scatterers(spec, scene.scatterer, scene.domain, scene.k);
+  if (map && spec.dimension == 3)
+    throw InputError("dimension", 3, "requires a medium without density maps");
   if (map) {
     scene.profile = map(scene.domain, {scene.scatterer, scene.medium});
     scene.medium = scene.profile->mean();
@@ -447,7 +469,7 @@ Scene make_scene(const Keys& keys, const SceneSpec& spec) {
   check_index_field(scene);
   check_faces(scene);
   check_extinction(scene.medium);
-  scene.placement.mean_count = scene.medium.density * scene.domain.area();
+  scene.placement.mean_count = scene.medium.density * scene.domain.content();
   check_packing(scene);
   if (spec.structure != "none") scene.medium = correlated(spec.structure, scene);
   FS_ENSURE(is_physical(scene.medium));
@@ -466,7 +488,7 @@ CovarianceRequest make_request(const SceneSpec& spec) {
 
 std::string inputs_text(const Scene& scene) {
   std::string text;
-  const auto add = [&](Vec2 point) {
+  const auto add = [&](Vec point) {
     text += number_text(point.x) + ',' + number_text(point.z) + '\n';
   };
   for (const View& view : scene.request.views)

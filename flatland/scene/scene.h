@@ -23,7 +23,7 @@ namespace flatspeckle {
 struct SceneSpec : ScattererValues {
   std::int64_t dimension = 2;
   std::string domain = "box";
-  std::optional<double> width, depth;
+  std::optional<double> width, depth, height;
   std::optional<std::int64_t> count;
   std::optional<double> density, mean_free_path, optical_depth, volume_fraction, mass_fraction;
   /// Mass per volume of the scatterers and of the medium around them, in any one unit.
@@ -45,6 +45,11 @@ struct SceneSpec : ScattererValues {
   std::vector<double> tilts{}, shifts{};
   std::string covariance = "intensity";
   std::vector<double> pairs{};
+  /// Azimuths in space: one for each of the angles, or one for all; those of pairs as `pairs`.
+  std::vector<double> light_azimuths{}, view_azimuths{}, pair_azimuths{};
+  std::optional<double> tilt_azimuth;  ///< measured from the azimuth of the light
+  std::optional<double> beam_y, camera_aperture;
+  std::optional<std::int64_t> camera_pixels;
   std::optional<double> outside_index;
   std::optional<std::string> polarisation;
 
@@ -76,13 +81,13 @@ struct Scene {
 };
 
 // These functions add the schema entries of the scene keys, by topic. add_keys() calls all of them
-// except add_dimension_key() and add_faces_keys().
+// except add_space_keys() and add_faces_keys().
 void add_scatterer_keys(Keys& keys, SceneSpec& spec);
 /// Adds the keys g, albedo and optical_depth, and the keys of other phase functions.
 void add_bulk_keys(Keys& keys, SceneSpec& spec);
 void add_medium_keys(Keys& keys, SceneSpec& spec);
-/// Adds the key dimension, for methods that also work in three dimensions.
-void add_dimension_key(Keys& keys, SceneSpec& spec);
+/// Adds the keys of scenes in space, for methods that also work in three dimensions.
+void add_space_keys(Keys& keys, SceneSpec& spec);
 /// Adds the keys of reflecting faces, for methods that include them.
 void add_faces_keys(Keys& keys, SceneSpec& spec);
 /// Adds the key structure, the structure factor of the scatterers' positions in Monte Carlo.
@@ -119,10 +124,10 @@ void check_slab_request(const CovarianceRequest& request, double depth);
 /// Throws InputError, which names the key, if a near source or sensor is too far from the origin.
 /// In double precision the phase k r, with r the distance, has the rounding error k r eps, which
 /// must be at most 0.001 rad.
-void require_phase(const std::string& key, Vec2 point, double k);
+void require_phase(const std::string& key, Vec point, double k);
 /// Throws InputError under the conditions of require_phase(), and if the distance r is so large
 /// that its rounding error exceeds the differences between points of the medium.
-void require_reach(const std::string& key, Vec2 point, const Scene& scene);
+void require_reach(const std::string& key, Vec point, const Scene& scene);
 
 /// Returns, in full precision, all numbers that a scene read from other files: near sensors and
 /// sources, structure factor and phase function.

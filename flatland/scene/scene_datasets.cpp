@@ -1,5 +1,6 @@
 #include "flatland/scene/scene_datasets.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -21,9 +22,12 @@ const DatasetTable scene_table{
         {"", "polarisation", "text", "reflection at the faces: tm, te or unpolarised"},
         {"", "depth", "float64", "depth L of the medium"},
         {"", "width", "float64", "width of a box"},
+        {"", "height", "float64", "height of a box in space"},
         {"", "optical_depth", "float64", "mu_t L"},
         {"", "dimension", "uint64",
-         "3 for scalar waves in space, with covariances per illuminated area; absent in 2D"},
+         "3 for scalar waves in space, where covariances of slabs are per illuminated area; absent "
+         "in "
+         "2D"},
         {"", "g", "float64", "mean cosine of scattering"},
         {"", "albedo", "float64", "mu_s/mu_t"},
         {"", "mu_t", "float64", "extinction coefficient"},
@@ -53,13 +57,22 @@ const DatasetTable scene_table{
 const DatasetTable axes_table{
     .name = "axes",
     .rows = {{"light_angle", Data::scale, "", "rad", "direction of the light, from +z towards +x"},
+             {"light_azimuth", Data::real, "light_angle", "rad",
+              "azimuth of the light, from x towards y, if it is not in the plane y = 0"},
              {"light", Data::numbers, "", "1", "number of the beam or point source"},
              {"light_x", Data::real, "light", "length",
               "transverse position of the focus or source"},
+             {"light_y", Data::real, "light", "length",
+              "second transverse position of the focus or source, in space"},
              {"light_z", Data::real, "light", "length", "depth of the focus or source"},
              {"view_angle", Data::scale, "", "rad", "direction of view, from +z towards +x"},
+             {"view_azimuth", Data::real, "view_angle", "rad",
+              "azimuth of the view, from x towards y, if it is not in the plane y = 0"},
+             {"camera_x", Data::scale, "", "1", "direction cosine along x of a column of pixels"},
+             {"camera_y", Data::scale, "", "1", "direction cosine along y of a row of pixels"},
              {"sensor", Data::numbers, "", "1", "number of the near-field sensor"},
              {"sensor_x", Data::real, "sensor", "length", "transverse position"},
+             {"sensor_y", Data::real, "sensor", "length", "second transverse position, in space"},
              {"sensor_z", Data::real, "sensor", "length", "depth"},
              {"light_angle_2", Data::scale, "", "rad", "direction of the second light"},
              {"light_2", Data::numbers, "", "1", "number of the second light"},
@@ -74,12 +87,12 @@ const DatasetTable axes_table{
              {"tilt_q", Data::real, "tilt", "1/length", "transverse wavenumber of the tilt"},
              {"shift", Data::scale, "", "SHIFT", "change of k sin(view), or translation along x"}},
     .roles = {{"LIGHT", {"light_angle", "light"}},
-              {"VIEW", {"view_angle", "sensor"}},
+              {"VIEW", {"view_angle", "sensor", "camera_y camera_x"}},
               {"LIGHT_2", {"light_angle_2", "light_2"}},
               {"VIEW_2", {"view_angle_2", "sensor_2"}},
               {"SHIFT", {"1/length", "length"}},
-              {"FIELD", {"length^(1/2)", "1"}},
-              {"COVARIANCE", {"length", "1"}}}};
+              {"FIELD", {"length^(1/2)", "length", "1"}},
+              {"COVARIANCE", {"length", "length^2", "1"}}}};
 
 const DatasetTable beams_table{
     .name = "beams",
@@ -130,6 +143,14 @@ void write_move_axes(ResultFile& file, const CovarianceRequest& request) {
   if (!request.shifts.empty()) root.put("shift", request.shifts);
 }
 
+/// Writes the azimuths of lights or views if any of them is not 0.
+template <typename Ends>
+void put_azimuths(const ResultGroup& root, const std::string& name, const Ends& ends) {
+  const auto azimuths = column(ends, [](const auto& end) { return end.azimuth; });
+  if (std::ranges::any_of(azimuths, [](double azimuth) { return azimuth != 0; }))
+    root.put(name, azimuths);
+}
+
 /// Writes the properties of the scatterers, if the medium is not only a phase function.
 void write_scatterers(const ResultGroup& root, const Scene& scene) {
   const BulkMedium& medium = scene.medium;
@@ -164,6 +185,7 @@ void write_domain(ResultFile& file, const Scene& scene) {
   }
   root.attribute("depth", scene.domain.depth);
   if (scene.domain.kind == Domain::Kind::box) root.attribute("width", scene.domain.width);
+  if (scene.domain.height > 0) root.attribute("height", scene.domain.height);
 }
 
 void write_medium(ResultFile& file, const Scene& scene) {
@@ -190,18 +212,24 @@ void write_medium(ResultFile& file, const Scene& scene) {
 }
 
 void bind_units(ResultFile& file, const Scene& scene) {
-  const bool lengths = !scene.request.views.front().near && scene.domain.kind == Domain::Kind::box;
-  file.bind("FIELD", {lengths ? "length^(1/2)" : "1"});
-  file.bind("COVARIANCE", {lengths ? "length" : "1"});
+  const bool lengths = !scene.request.views.front().near && scene.domain.kind == Domain::Kind::box,
+             space = scene.medium.dimension == 3;
+  file.bind("FIELD", {!lengths ? "1" : space ? "length" : "length^(1/2)"});
+  file.bind("COVARIANCE", {!lengths ? "1" : space ? "length^2" : "length"});
 }
 
 void write_light_axis(ResultFile& file, const Lights& lights) {
   const ResultGroup root(file, axes_table);
   const bool plane = lights.all(Light::Kind::plane);
   file.bind("LIGHT", {plane ? "light_angle" : "light"});
-  if (plane) return root.put("light_angle", lights.angles());
+  if (plane) {
+    root.put("light_angle", lights.angles());
+    return put_azimuths(root, "light_azimuth", lights);
+  }
   root.number("light", lights.size());
   root.put("light_x", column(lights, [](const Light& light) { return light.point.x; }));
+  if (std::ranges::any_of(lights, [](const Light& light) { return light.point.y != 0; }))
+    root.put("light_y", column(lights, [](const Light& light) { return light.point.y; }));
   root.put("light_z", column(lights, [](const Light& light) { return light.point.z; }));
   if (!lights.all(Light::Kind::beam)) return;
   const ResultGroup beams(file, beams_table);
@@ -209,13 +237,29 @@ void write_light_axis(ResultFile& file, const Lights& lights) {
   beams.attribute("beam_waist", lights.front().waist);
 }
 
-void write_view_axis(ResultFile& file, const std::vector<View>& views) {
+void write_view_axis(ResultFile& file, const std::vector<View>& views,
+                     const std::optional<FarCamera>& camera) {
   const ResultGroup root(file, axes_table);
+  if (camera) {
+    file.bind("VIEW", {"camera_y", "camera_x"});
+    std::vector<double> x, y;
+    for (std::size_t i = 0; i < camera->pixels; ++i) {
+      x.push_back(camera->cosine(camera->axis.x, i));
+      y.push_back(camera->cosine(camera->axis.y, i));
+    }
+    root.put("camera_x", x);
+    return root.put("camera_y", y);
+  }
   const bool near = views.front().near;
   file.bind("VIEW", {near ? "sensor" : "view_angle"});
-  if (!near) return root.put("view_angle", column(views, &View::angle));
+  if (!near) {
+    root.put("view_angle", column(views, &View::angle));
+    return put_azimuths(root, "view_azimuth", views);
+  }
   root.number("sensor", views.size());
   root.put("sensor_x", column(views, [](const View& view) { return view.point.x; }));
+  if (std::ranges::any_of(views, [](const View& view) { return view.point.y != 0; }))
+    root.put("sensor_y", column(views, [](const View& view) { return view.point.y; }));
   root.put("sensor_z", column(views, [](const View& view) { return view.point.z; }));
 }
 
@@ -230,7 +274,7 @@ void write_axes(ResultFile& file, const Scene& scene) {
     views.resize(request.reference_views);
   }
   write_light_axis(file, lights);
-  write_view_axis(file, views);
+  write_view_axis(file, views, request.camera);
   write_move_axes(file, request);
   if (request.kind == Kind::full) write_second_axes(file, request);
 }

@@ -66,11 +66,6 @@ void check_density_keys(const Keys& keys, const SceneSpec& spec, const Scatterer
   keys.required(spec.medium_density);
 }
 
-double scatterer_content(const Scatterer& scatterer, std::int64_t dimension) {
-  const double square = std::numbers::pi * scatterer.radius * scatterer.radius;
-  return dimension == 3 ? 4 * square * scatterer.radius / 3 : square;
-}
-
 std::optional<double> stated_extinction(const SceneSpec& spec, const Domain& domain) {
   if (spec.mean_free_path) return 1 / *spec.mean_free_path;
   if (spec.optical_depth) return *spec.optical_depth / domain.depth;
@@ -81,13 +76,13 @@ std::optional<double> stated_density(const SceneSpec& spec, const Domain& domain
                                      const Scatterer& scatterer) {
   if (spec.density) return spec.density;
   if (const auto fraction = stated_fraction(spec)) {
-    const double density = *fraction / scatterer_content(scatterer, spec.dimension);
+    const double density = *fraction / scatterer.content(static_cast<int>(spec.dimension));
     if (!std::isfinite(density))
       throw InputError("radius", scatterer.radius, "is so small that the density is not finite");
     return density;
   }
   if (spec.count && domain.kind == Domain::Kind::box)
-    return static_cast<double>(*spec.count) / domain.area();
+    return static_cast<double>(*spec.count) / domain.content();
   return std::nullopt;
 }
 

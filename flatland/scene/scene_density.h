@@ -18,9 +18,6 @@ void remove_densities(SceneSpec& spec);
 /// is a fraction of volume or mass.
 void check_density_keys(const Keys& keys, const SceneSpec& spec, const Scatterer& scatterer);
 
-/// Returns the area of a disk of the scatterer's radius or, if dimension is 3, the volume of a
-/// sphere of this radius.
-double scatterer_content(const Scatterer& scatterer, std::int64_t dimension);
 /// Returns mu_t if mean_free_path or optical_depth is given, otherwise nullopt.
 std::optional<double> stated_extinction(const SceneSpec& spec, const Domain& domain);
 /// Returns the number of scatterers per area (in space per volume) if keys determine it without the

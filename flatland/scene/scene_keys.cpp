@@ -55,7 +55,7 @@ void add_bulk_keys(Keys& keys, SceneSpec& spec) {
 
 void add_medium_keys(Keys& keys, SceneSpec& spec) {
   keys.group("Medium");
-  keys.add("domain", spec.domain, "Region of the scatterers; a slab is infinite in x")
+  keys.add("domain", spec.domain, "Region of the scatterers; a slab is infinite in x and y")
       .one_of({"box", "slab"});
   keys.add("width", spec.width, "Width of the box: |x| <= width/2")
       .positive()
@@ -98,13 +98,46 @@ void add_medium_keys(Keys& keys, SceneSpec& spec) {
       .only_of("disks");
 }
 
-void add_dimension_key(Keys& keys, SceneSpec& spec) {
-  keys.group("Methods");
-  keys.add("dimension", spec.dimension,
-           "Dimension of space: 2, or 3 for scalar waves with lights and views in the plane of "
-           "incidence")
+void add_space_keys(Keys& keys, SceneSpec& spec) {
+  keys.group("Space");
+  keys.add("dimension", spec.dimension, "2: the plane (x, z); 3: space, with scalar waves")
       .from(2, 3)
-      .only_of("slabs, by transport or Monte Carlo");
+      .only_of("programs and methods that work in space");
+  keys.add("height", spec.height, "Height of the box: |y| <= height/2")
+      .positive()
+      .unit("length")
+      .only_of("a box with dimension = 3");
+  keys.add("light_azimuths", spec.light_azimuths,
+           "Azimuths of the light_angles, from x towards y: one for each, or one for all (default "
+           "0)")
+      .angle()
+      .only_of("light_angles with dimension = 3");
+  keys.add(
+          "view_azimuths", spec.view_azimuths,
+          "Azimuths of the view_angles, from x towards y: one for each, or one for all (default 0)")
+      .angle()
+      .only_of("view_angles with dimension = 3");
+  keys.add("tilt_azimuth", spec.tilt_azimuth,
+           "Direction of tilts and shifts, as an azimuth from that of the light: 0 in the plane of "
+           "incidence (default), pi/2 out of it")
+      .angle()
+      .only_of("tilts and shifts with dimension = 3");
+  keys.add("beam_y", spec.beam_y, "y of the beams' foci (default 0)")
+      .unit("length")
+      .only_of("beams with dimension = 3");
+  keys.add("camera_pixels", spec.camera_pixels,
+           "Number of pixels along each side of a square camera of far views around the only "
+           "direction of view_angles")
+      .from(1, 4096)
+      .only_of("far views with dimension = 3");
+  keys.add("camera_aperture", spec.camera_aperture,
+           "Numerical aperture of the camera: half its width, as a difference of direction cosines")
+      .positive_to(1)
+      .only_of("a camera (camera_pixels)");
+  keys.add("pair_azimuths", spec.pair_azimuths,
+           "Azimuths of the angles of `pairs`, in the same order (default 0)")
+      .angle()
+      .only_of("covariance = pairs with dimension = 3");
 }
 
 void add_faces_keys(Keys& keys, SceneSpec& spec) {

@@ -11,7 +11,7 @@ namespace flatspeckle {
 
 namespace {
 
-Vec2 uniform_between(const Domain& box, double from, double to, RandomStream& random) {
+Vec uniform_between(const Domain& box, double from, double to, RandomStream& random) {
   const double x = (random.uniform() - 0.5) * box.width;
   return {x, from + random.uniform() * (to - from)};
 }
@@ -22,7 +22,7 @@ Vec2 uniform_between(const Domain& box, double from, double to, RandomStream& ra
 Placement thinned(const Scene& scene, RandomStream& random) {
   const MediumProfile& profile = *scene.profile;
   PlacementRule dense = scene.placement;
-  dense.mean_count = profile.most_density() * scene.domain.area();
+  dense.mean_count = profile.most_density() * scene.domain.content();
   Placement placement = draw_placement(scene.domain, scene.scatterer, dense, random);
   std::erase_if(placement, [&](PlacedScatterer& placed) {
     placed.scatterer = profile.materials()[profile.material_at(placed.position)].scatterer;
@@ -81,7 +81,7 @@ class AddedDisks {
       if (++tries == most_tries)
         throw InputError(
             "the disks cannot be packed by random sequential addition; lower the density");
-      const Vec2 x = uniform_between(scene_.domain, population.from, population.to, random_);
+      const Vec x = uniform_between(scene_.domain, population.from, population.to, random_);
       if (!wanted(x) || taken(x, population.scatterer.radius)) continue;
       grid_.insert(x, placement_.size());
       placement_.push_back({x, population.scatterer});
@@ -91,13 +91,13 @@ class AddedDisks {
   /// Draws whether to keep x as the centre of a disk. In a density map the probability is
   /// proportional to the density. In layers it is 1, because each layer has its own number of
   /// disks.
-  bool wanted(Vec2 x) {
+  bool wanted(Vec x) {
     const MediumProfile& profile = *scene_.profile;
     return profile.materials().size() > 1 ||
            random_.uniform() * profile.most_density() < profile.density(x);
   }
-  bool taken(Vec2 x, double radius) const {
-    return grid_.any_near(x, [&](Vec2 other, std::size_t number) {
+  bool taken(Vec x, double radius) const {
+    return grid_.any_near(x, [&](Vec other, std::size_t number) {
       return length(x - other) < radius + placement_[number].scatterer.radius + gap_;
     });
   }

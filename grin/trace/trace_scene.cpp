@@ -14,7 +14,7 @@ namespace flatspeckle::grin {
 
 namespace {
 
-using Vec2 = Eigen::Vector2d;
+using Vec = Eigen::Vector2d;
 
 /// Returns two perpendicular axes in the plane: x and y for a plane normal to z, otherwise axes
 /// close to these two.
@@ -52,8 +52,8 @@ double length_to(const Plane& plane, const TracedRay& ray, std::uint64_t number)
   return distance_to_plane;
 }
 
-Vec2 mean(const RayImage& image, Vec2 RayImage::Ray::*value) {
-  Vec2 sum = Vec2::Zero();
+Vec mean(const RayImage& image, Vec RayImage::Ray::*value) {
+  Vec sum = Vec::Zero();
   for (const auto& ray : image.rays) sum += ray.*value;
   return sum / static_cast<double>(image.rays.size());
 }
@@ -61,7 +61,7 @@ Vec2 mean(const RayImage& image, Vec2 RayImage::Ray::*value) {
 /// Returns the distance along the normal to the smallest spot, where the mean square distance from
 /// the centroid is least; nullopt for parallel rays.
 std::optional<double> focus_of(const RayImage& image) {
-  const Vec2 at = mean(image, &RayImage::Ray::at), slope = mean(image, &RayImage::Ray::slope);
+  const Vec at = mean(image, &RayImage::Ray::at), slope = mean(image, &RayImage::Ray::slope);
   double both = 0, square = 0;
   for (const auto& ray : image.rays) {
     both += (ray.at - at).dot(ray.slope - slope);
@@ -72,7 +72,7 @@ std::optional<double> focus_of(const RayImage& image) {
 }
 
 void measure_spot(RayImage& image) {
-  const Vec2 middle = mean(image, &RayImage::Ray::at);
+  const Vec middle = mean(image, &RayImage::Ray::at);
   double square = 0;
   for (const auto& ray : image.rays) {
     const double apart = (ray.at - middle).squaredNorm();

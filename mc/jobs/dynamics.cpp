@@ -24,7 +24,7 @@ void add_keys(Keys& keys, DynamicsValues& values) {
   keys.add("temperature", values.temperature,
            "Temperature of the liquid, which gives the diffusion constant D = k_B temperature / (6 "
            "pi viscosity particle_radius)")
-      .positive()
+      .from(200, 1000)
       .unit("K")
       .only_of("delays");
   keys.add("viscosity", values.viscosity, "Viscosity of the liquid")

@@ -57,17 +57,21 @@ std::vector<Invariant> power_balance(const FluxJob& job, const GroupedSums& sums
 
 namespace {
 
-/// Returns the mean transmittance of a varying medium over all rays of an illumination that enter
-/// the medium.
-double mean_transmittance(const Scene& scene, double light) {
-  const Vec2 w = direction(light);
+/// Returns the mean transmittance over all rays of an illumination that enter the medium, of a
+/// medium that varies or of a box in space. In space the rays are a low-discrepancy sequence.
+double mean_transmittance(const Scene& scene, Vec w) {
   const LightAperture aperture(scene.domain, w);
-  const int rays = scene.domain.kind == Domain::Kind::slab ? 1 : 4096;
+  const bool space = scene.domain.height > 0;
+  const int rays = scene.domain.kind == Domain::Kind::slab ? 1 : space ? 65536 : 4096;
+  constexpr double first_step = 0.7548776662466927, second_step = 0.5698402909980532;
   double sum = 0;
   for (int ray = 0; ray < rays; ++ray) {
-    const Vec2 start = aperture.at((ray + 0.5) / rays);
-    sum +=
-        std::exp(-scene.profile->optical_depth(start, w, scene.domain.distance_to_edge(start, w)));
+    const auto fraction = [&](double step) { return std::fmod((ray + 0.5) * step, 1.0); };
+    const Vec start = aperture.at((ray + 0.5) / rays, space ? fraction(first_step) : 0,
+                                  space ? fraction(second_step) : 0);
+    const double length = scene.domain.distance_to_edge(start, w);
+    sum += std::exp(-(scene.profile ? scene.profile->optical_depth(start, w, length)
+                                    : scene.medium.mu_t * length));
   }
   return sum / rays;
 }
@@ -100,17 +104,17 @@ StackAmplitudes<double> unscattered(const Scene& slab, double light) {
 
 }  // namespace
 
-double direct_transmittance(const Scene& scene, double light) {
+double direct_transmittance(const Scene& scene, const Light& light) {
   const Domain& domain = scene.domain;
-  const double sine = std::abs(std::sin(light)), cosine = std::abs(std::cos(light));
-  if (scene.faces) return unscattered(scene, light).transmitted;
-  if (scene.profile) return mean_transmittance(scene, light);
+  const double sine = std::abs(std::sin(light.angle)), cosine = std::abs(std::cos(light.angle));
+  if (scene.faces) return unscattered(scene, light.angle).transmitted;
+  if (scene.profile || domain.height > 0) return mean_transmittance(scene, light.direction());
   if (domain.kind == Domain::Kind::slab)
     return std::exp(-scene.medium.mu_t * domain.depth / cosine);
   // Across the beam, the length of the chords rises linearly from 0 to its maximum, stays constant,
   // and falls to 0 again.
   const double face = domain.width * cosine, side = domain.depth * sine;
-  const double longest = scene.medium.mu_t * domain.area() / std::max(face, side);
+  const double longest = scene.medium.mu_t * domain.content() / std::max(face, side);
   const double rising = longest > 0 ? -std::expm1(-longest) / longest : 1;
   return (std::abs(face - side) * std::exp(-longest) + 2 * std::min(face, side) * rising) /
          (face + side);
@@ -122,7 +126,7 @@ double specular_reflectance(const Scene& scene, double light) {
 
 std::vector<double> unscattered_shares(const Scene& scene) {
   return column(scene.request.lights, [&](const Light& light) {
-    return direct_transmittance(scene, light.angle) + specular_reflectance(scene, light.angle);
+    return direct_transmittance(scene, light) + specular_reflectance(scene, light.angle);
   });
 }
 
@@ -171,14 +175,14 @@ void write_flux(ResultFile& file, const Scene& scene, const FluxEstimates& flux)
   root.put("transmittance", flux.transmittance);
   root.put("absorptance", flux.absorptance);
   if (scene.domain.kind == Domain::Kind::box) root.put("side_loss", flux.side_loss);
-  const auto unscattered = [&](const char* name, const auto& share) {
-    root.put(
-        name,
-        column(scene.request.lights, [&](const Light& light) { return share(scene, light.angle); }),
-        std::vector<double>(lights));
+  const auto put_exact = [&](const char* name, const auto& share) {
+    root.put(name, column(scene.request.lights, share), std::vector<double>(lights));
   };
-  unscattered("direct_transmittance", direct_transmittance);
-  if (scene.faces) unscattered("specular_reflectance", specular_reflectance);
+  put_exact("direct_transmittance",
+            [&](const Light& light) { return direct_transmittance(scene, light); });
+  if (scene.faces)
+    put_exact("specular_reflectance",
+              [&](const Light& light) { return specular_reflectance(scene, light.angle); });
   root.put("exit_radiance", flux.exit_radiance);
 }
 

@@ -9,12 +9,12 @@ namespace flatspeckle::mc {
 /// own factors (MaterialMotion).
 struct Motion {
   double diffusion = 1;  ///< k^2 D per unit of delay
-  Vec2 velocity{};       ///< length per unit of delay
+  Vec velocity{};        ///< length per unit of delay
   double shear = 0;      ///< shear rate: growth of velocity_x per unit of depth
 
   /// Whether the scatterers do not flow and diffuse alike everywhere.
   bool only_diffuses(const Scene& scene) const {
-    return velocity == Vec2{} && shear == 0 && !scene.profile;
+    return velocity == Vec{} && shear == 0 && !scene.profile;
   }
 };
 
@@ -24,14 +24,14 @@ class LocalMotion {
   LocalMotion(const Scene& scene, const Motion& motion)
       : motion_(motion), profile_(scene.profile.get()) {}
 
-  double diffusion(Vec2 x) const { return motion_.diffusion * material(x).diffusion; }
-  Vec2 velocity(Vec2 x) const {
+  double diffusion(Vec x) const { return motion_.diffusion * material(x).diffusion; }
+  Vec velocity(Vec x) const {
     const double share = material(x).velocity;
     return {share * (motion_.velocity.x + motion_.shear * x.z), share * motion_.velocity.z};
   }
 
  private:
-  MaterialMotion material(Vec2 x) const {
+  MaterialMotion material(Vec x) const {
     return profile_ != nullptr ? profile_->materials()[profile_->material_at(x)].motion
                                : MaterialMotion{};
   }

@@ -58,7 +58,7 @@ class PlaneWaves {
   }
 
   double k_;
-  Vec2 point_;
+  Vec point_;
   double sign_;
   bool upward_ = false;
   Complex strength_;

@@ -44,8 +44,7 @@ inline double least_square(const Scene& scene) {
   if (!scene.index || !scene.index->is_quadratic()) return 1;
   const double half = scene.domain.width / 2;
   double least = scene.index->square({half, 0});
-  for (const Vec2 corner :
-       {Vec2{-half, 0}, {half, scene.domain.depth}, {-half, scene.domain.depth}})
+  for (const Vec corner : {Vec{-half, 0}, {half, scene.domain.depth}, {-half, scene.domain.depth}})
     least = std::min(least, scene.index->square(corner));
   return least;
 }

@@ -107,7 +107,7 @@ class BadFit(RefusingTest):
         (self.folder / "m.csv").write_text("tilt,field_correlation,error\n0.001,0.9,0.01\n")
         self.assert_refused(["measurement", "is not used here"], *words, **plan, measurement="m.csv")
         self.assert_refused(["patterns = 0"], *words, **plan, patterns=0)
-        self.assert_refused(["g = 0.8", "tilts must differ"], *words, **{**plan, "tilts": [0, 0.0001]})
+        self.assert_refused(["tilts = 0", "must not be 0 in a plan"], *words, **{**plan, "tilts": [0, 0.0001]})
         self.assert_refused(["g = 4.9", "must not be close"], "fit", "--plan", "--free", "g=-0.5:0.95", **{**plan, "g": 5e-324})
         self.refused(["tilts", "determined by the measurements"], tilts=0.1)
         self.refused(["view_angles", "determined by the measurements"], view_angles=0.1)

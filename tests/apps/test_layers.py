@@ -125,8 +125,6 @@ class Refused(RefusingTest):
         self.check(["no such file"], layers="none.csv")
 
     def test_what_layers_have_not(self):
-        self.check(["dimension = 3", "layers require method = transport"], dimension=3)
-        self.check(["dimension = 3", "requires method = transport"], command="flux", dimension=3)
         self.check(["delays", "one refractive index"], "thickness,optical_depth,medium_index\n1,1,1.5\n9,3,1.33\n",
                    method="transport", samples=None, delays=[0, 0.1], g=0, albedo=1)
         self.check(["layers", "gradient", "use method = mc"], method="transport", samples=None, gradient=True)

@@ -26,7 +26,7 @@ class BadInput(SweepTest):
     def test_method(self):
         self.check("method = exact", "mc wave transport both auto", method="exact")
         self.check("slab", "box", method="wave")
-        self.check("dimension = 3", "slab", domain="box", width=50, method="mc", dimension=3)
+        self.check("height is not given", domain="box", width=50, method="mc", dimension=3)
 
     def check_points(self, text, *words, **changes):
         self.write("points.csv", text)

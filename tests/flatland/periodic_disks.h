@@ -22,16 +22,16 @@ inline Domain unit_disk_box(std::size_t disks, double packing) {
 }
 
 /// Returns the distance to the nearest periodic image.
-inline double periodic_distance(const Domain& box, Vec2 a, Vec2 b) {
-  const Vec2 d = a - b;
+inline double periodic_distance(const Domain& box, Vec a, Vec b) {
+  const Vec d = a - b;
   const double x = d.x - box.width * std::floor(d.x / box.width + 0.5);
   const double z = d.z - box.depth * std::floor(d.z / box.depth + 0.5);
   return std::sqrt(x * x + z * z);
 }
 
 /// Adds to counts[b] the pairs (j < i) with distances in [start + b width, start + (b + 1) width).
-inline void count_pairs(const Domain& box, std::span<const Vec2> centres, double start,
-                        double width, std::span<double> counts) {
+inline void count_pairs(const Domain& box, std::span<const Vec> centres, double start, double width,
+                        std::span<double> counts) {
   for (std::size_t i = 0; i < centres.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const double bin = (periodic_distance(box, centres[i], centres[j]) - start) / width;

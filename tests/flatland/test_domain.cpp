@@ -17,8 +17,8 @@ TEST_CASE("angles: measured from +z towards +x") {
 TEST_CASE("distance to the edge: ends on the edge of a box") {
   const Domain box{Domain::Kind::box, 20, 10};
   for (double angle = -3.1; angle < 3.2; angle += 0.17) {
-    const Vec2 start{3, 7}, w = direction(angle);
-    const Vec2 end = start + box.distance_to_edge(start, w) * w;
+    const Vec start{3, 7}, w = direction(angle);
+    const Vec end = start + box.distance_to_edge(start, w) * w;
     const double to_edge =
         std::min({std::abs(std::abs(end.x) - 10), std::abs(end.z), std::abs(end.z - 10)});
     CHECK(to_edge < 1e-12);

@@ -14,9 +14,9 @@ namespace flatspeckle::tests::test_equilibrium_disks {
 
 namespace {
 
-std::vector<Vec2> draw(const Domain& box, const std::vector<double>& radii, std::uint64_t number,
-                       double min_gap = 0,
-                       PlacementRule::Kind kind = PlacementRule::Kind::equilibrium) {
+std::vector<Vec> draw(const Domain& box, const std::vector<double>& radii, std::uint64_t number,
+                      double min_gap = 0,
+                      PlacementRule::Kind kind = PlacementRule::Kind::equilibrium) {
   RandomStream random(21, 1, number);
   return draw_disks(box, radii, kind, min_gap, random);
 }
@@ -98,7 +98,7 @@ TEST_CASE("equilibrium disks: the density is uniform, also at the edges (chi-squ
   // Only one disk of each realization, because the others are correlated with it.
   for (std::uint64_t r = 0; r < 2000; ++r) {
     const auto centres = draw(box, std::vector<double>(12, 0.5), r);
-    const Vec2 at = centres[r % centres.size()];
+    const Vec at = centres[r % centres.size()];
     counts_x[static_cast<std::size_t>((at.x / box.width + 0.5) * 10)] += 1;
     counts_z[static_cast<std::size_t>(at.z / box.depth * 10)] += 1;
   }
@@ -159,7 +159,7 @@ TEST_CASE("equilibrium disks: S(q) agrees with a long run from a lattice") {
   move(10000);
   for (int r = 0; r < 300; ++r) {
     move(1000);  // 200 contacts per disk: several of the slowest relaxation times
-    std::vector<Vec2> centres;
+    std::vector<Vec> centres;
     for (std::size_t i = 0; i < disks; ++i) centres.push_back(chains.centre(i));
     long_run.add(centres);
   }

@@ -10,8 +10,8 @@ namespace flatspeckle::tests::test_event_chain {
 
 namespace {
 
-std::vector<Vec2> centres(const EventChains& chains) {
-  std::vector<Vec2> result;
+std::vector<Vec> centres(const EventChains& chains) {
+  std::vector<Vec> result;
   for (std::size_t disk = 0; disk < chains.size(); ++disk) result.push_back(chains.centre(disk));
   return result;
 }
@@ -91,8 +91,8 @@ TEST_CASE("event chains: no overlap after many chains, and the total displacemen
     radii.resize(70, small);
     EventChains chains(box, radii);
     place_at_random(chains, box, random);
-    Vec2 before, after;
-    for (const Vec2& centre : centres(chains)) before = before + centre;
+    Vec before, after;
+    for (const Vec& centre : centres(chains)) before = before + centre;
     constexpr double length = 3.7;
     for (int i = 0; i < 500; ++i) chains.move(0, static_cast<std::size_t>(i % 70), length);
     const auto at = centres(chains);
@@ -143,7 +143,7 @@ TEST_CASE("event chains: pressure and contact value agree with the equation of s
     for (std::size_t b = 0; b < 3; ++b) {
       const double inner = 1 + static_cast<double>(b) * width;
       const double area = std::numbers::pi * width * (2 * inner + width);
-      pairs[b] /= snapshots * 0.5 * disks * disks / box.area() * area;
+      pairs[b] /= snapshots * 0.5 * disks * disks / box.content() * area;
     }
     const double contact = (11 * pairs[0] - 7 * pairs[1] + 2 * pairs[2]) / 6;
     MESSAGE("packing " << packing << ": Z " << z << ", Luding " << luding << ", contact " << contact

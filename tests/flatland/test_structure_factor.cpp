@@ -15,8 +15,8 @@ namespace {
 
 constexpr double two_pi = 2 * std::numbers::pi;
 
-std::vector<Vec2> uniform_points(const Domain& box, std::size_t number, RandomStream& random) {
-  std::vector<Vec2> points;
+std::vector<Vec> uniform_points(const Domain& box, std::size_t number, RandomStream& random) {
+  std::vector<Vec> points;
   while (points.size() < number) {
     const double x = (random.uniform() - 0.5) * box.width;
     points.push_back({x, random.uniform() * box.depth});
@@ -25,9 +25,9 @@ std::vector<Vec2> uniform_points(const Domain& box, std::size_t number, RandomSt
 }
 
 /// Returns |sum exp(i q.r)|^2 / N of one wavevector.
-double single(const Domain& box, const std::vector<Vec2>& points, int n, int m) {
+double single(const Domain& box, const std::vector<Vec>& points, int n, int m) {
   std::complex<double> sum;
-  for (const Vec2& r : points)
+  for (const Vec& r : points)
     sum += std::polar(1.0, two_pi * (n * r.x / box.width + m * r.z / box.depth));
   return std::norm(sum) / static_cast<double>(points.size());
 }

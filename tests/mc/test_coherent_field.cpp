@@ -26,17 +26,17 @@ Scene box_of_points(double phase_shift, const CovarianceRequest& request) {
 Complex plane_quadrature(const Scene& scene, double light, double view) {
   constexpr int nx = 480, nz = 320;
   const Domain& box = scene.domain;
-  const Vec2 w = direction(light), v = direction(view);
+  const Vec w = direction(light), v = direction(view);
   const Complex k_eff_minus_k(scene.medium.k_shift, scene.medium.mu_t / 2);
   Complex sum = 0;
   for (int i = 0; i < nx; ++i) {
     for (int j = 0; j < nz; ++j) {
-      const Vec2 x{box.width * ((i + 0.5) / nx - 0.5), box.depth * (j + 0.5) / nz};
+      const Vec x{box.width * ((i + 0.5) / nx - 0.5), box.depth * (j + 0.5) / nz};
       const double inside = box.distance_to_edge(x, -w);
       sum += std::exp(Complex(0, scene.k * dot(w - v, x)) + Complex(0, 1) * k_eff_minus_k * inside);
     }
   }
-  const double cell = box.area() / (nx * nz);
+  const double cell = box.content() / (nx * nz);
   return scene.medium.density * cell * sum *
          amplitude(scene.medium.t_matrix, scene.k, view - light);
 }
@@ -50,7 +50,7 @@ TEST_CASE("coherent field: agrees with C15 for light and views from all sides") 
     const Scene scene =
         box_of_points(phase_shift, intensity_request(lights, tests::far_views(views)));
     const auto field = coherent_field(scene);
-    const double forward = scene.medium.density * scene.domain.area() *
+    const double forward = scene.medium.density * scene.domain.content() *
                            std::abs(amplitude(scene.medium.t_matrix, scene.k, 0));
     for (std::size_t c = 0; c < field.size(); ++c) {
       const double light = lights[scene.request.channels[c].light];
@@ -69,9 +69,9 @@ TEST_CASE("coherent field without extinction: equals the Fourier transform of th
   const auto field = coherent_field(scene);
   for (std::size_t c = 0; c < field.size(); ++c) {
     const double view = scene.request.views[c].angle;
-    const Vec2 q = scene.k * (direction(0.3) - direction(view));
+    const Vec q = scene.k * (direction(0.3) - direction(view));
     const auto sinc = [](double a) { return a == 0 ? 1 : std::sin(a) / a; };
-    const Complex expected = scene.medium.density * scene.domain.area() *
+    const Complex expected = scene.medium.density * scene.domain.content() *
                              amplitude(scene.medium.t_matrix, scene.k, view - 0.3) *
                              std::polar(1.0, q.z * scene.domain.depth / 2) *
                              sinc(q.x * scene.domain.width / 2) *
@@ -91,7 +91,7 @@ TEST_CASE("coherent field: accurate in a large box") {
   const auto field = coherent_field(scene);
   for (std::size_t c = 0; c < field.size(); ++c) {
     const double view = scene.request.views[c].angle;
-    const Vec2 q = scene.k * (direction(0) - direction(view));
+    const Vec q = scene.k * (direction(0) - direction(view));
     const double half = q.x * spec.width.value() / 2, depth = spec.depth.value();
     const Complex rate(-scene.medium.mu_t / 2, q.z + scene.medium.k_shift);
     const Complex expected =

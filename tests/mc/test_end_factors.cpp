@@ -12,7 +12,7 @@ namespace {
 using tests::pi;
 
 template <bool phases>
-Complex endpoint_factor(const Scene& scene, const Endpoint& end, Vec2 x) {
+Complex endpoint_factor(const Scene& scene, const Endpoint& end, Vec x) {
   StraightEndpoints factors(scene, {end}, phases);
   std::vector<Complex> out(1);
   factors.attenuate(x, out);
@@ -20,7 +20,7 @@ Complex endpoint_factor(const Scene& scene, const Endpoint& end, Vec2 x) {
 }
 
 const double mean_free_path = 3;
-const Vec2 x{0.7, 2.5};
+const Vec x{0.7, 2.5};
 
 Scene box(double light, View view) {
   return tests::hg_box(6, 4, {mean_free_path}, intensity_request({light}, {view}));
@@ -56,7 +56,7 @@ TEST_CASE("endpoint factor: attenuation ends at the boundary or at a nearer sens
     CHECK(std::abs(endpoint_factor<true>(scene, view_endpoints(scene)[0], x)) ==
           doctest::Approx(std::exp(-inside / (2 * mean_free_path))).epsilon(1e-14));
   }
-  for (const Vec2 sensor : {Vec2{0.2, 7}, Vec2{-1, 3.5}, Vec2{0.75, 2.4}}) {
+  for (const Vec sensor : {Vec{0.2, 7}, Vec{-1, 3.5}, Vec{0.75, 2.4}}) {
     const Scene scene = box(0, near_sensor(sensor));
     const double r = length(sensor - x);
     const double inside = std::min(r, scene.domain.distance_to_edge(x, 1 / r * (sensor - x)));

@@ -29,14 +29,14 @@ Estimate scattered_power(const std::function<Scene(const CovarianceRequest&)>& s
 /// Returns the power that a box removes from the beam: 1 - exp(-mu_t chord) over the illuminated
 /// outline, weighted with the flux through it.
 double extinguished_by_box(const Domain& box, double mu_t, double light) {
-  const Vec2 w = direction(light);
+  const Vec w = direction(light);
   constexpr int points = 4000;
   double power = 0;
   for (int i = 0; i < points; ++i) {
     const double t = (i + 0.5) / points;
-    const Vec2 on_face{(t - 0.5) * box.width, w.z > 0 ? 0 : box.depth};
-    const Vec2 on_side{std::copysign(box.width / 2, -w.x), t * box.depth};
-    const auto lost = [&](Vec2 entry) {
+    const Vec on_face{(t - 0.5) * box.width, w.z > 0 ? 0 : box.depth};
+    const Vec on_side{std::copysign(box.width / 2, -w.x), t * box.depth};
+    const auto lost = [&](Vec entry) {
       return -std::expm1(-mu_t * box.distance_to_edge(entry, w));
     };
     power += std::abs(w.z) * box.width / points * lost(on_face);
@@ -59,7 +59,7 @@ PhotonCount count_photons(const Scene& scene, double light, int photons, std::ui
   const double flux_side = domain.depth * std::abs(std::sin(light));
   PhotonCount count;
   for (int i = 0; i < photons; ++i) {
-    Vec2 x{0, 0}, w{std::sin(light), std::cos(light)};
+    Vec x{0, 0}, w{std::sin(light), std::cos(light)};
     if (box && random.uniform() * (flux_face + flux_side) > flux_face)
       x = {std::copysign(domain.width / 2, -w.x), random.uniform() * domain.depth};
     else if (box)

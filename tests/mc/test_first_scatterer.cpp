@@ -27,7 +27,7 @@ double cell_probability(const FirstScatterer& first, int column, int row) {
   double sum = 0;
   for (int a = 0; a < grid; ++a) {
     for (int b = 0; b < grid; ++b) {
-      const Vec2 x{-width / 2 + (column * grid + a + 0.5) * dx, (row * grid + b + 0.5) * dz};
+      const Vec x{-width / 2 + (column * grid + a + 0.5) * dx, (row * grid + b + 0.5) * dz};
       sum += first.density(x);
     }
   }
@@ -40,7 +40,7 @@ std::vector<double> counts_per_cell(const Scene& scene, const FirstScatterer& fi
   std::vector<double> counts(columns * rows);
   int outside = 0;
   for (int i = 0; i < 20000; ++i) {
-    const Vec2 x = first.sample(random).x;
+    const Vec x = first.sample(random).x;
     if (scene.domain.distance_to_edge(x, {0, 1}) > depth * (1 + 1e-12)) ++outside;
     const int column = static_cast<int>((x.x / width + 0.5) * columns);
     const int row = static_cast<int>(x.z / depth * rows);
@@ -138,7 +138,7 @@ TEST_CASE(
 
   // The density of position and direction, integrated over directions, is that of position.
   const HenyeyGreensteinScattering scattering{{0.6}};
-  const Vec2 x{0.3, 1.1};
+  const Vec x{0.3, 1.1};
   double sum = 0;
   constexpr int directions_round = 400;
   for (int i = 0; i < directions_round; ++i)

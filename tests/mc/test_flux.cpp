@@ -47,13 +47,13 @@ std::vector<double> count_photons(const Scene& scene, double light, int photons)
   std::vector<double> ended(4);
   for (int i = 0; i < photons; ++i) {
     double angle = light;
-    Vec2 x{(random.uniform() - 0.5) * box.width, 0};
+    Vec x{(random.uniform() - 0.5) * box.width, 0};
     if (random.uniform() * (face + side) > face) x = {-box.width / 2, random.uniform() * box.depth};
     for (bool scattered = false;; scattered = true) {
-      const Vec2 start = x, w = direction(angle);
+      const Vec start = x, w = direction(angle);
       x = x - std::log(random.uniform()) / scene.medium.mu_t * w;
       if (!box.contains(x)) {
-        const Vec2 end = start + box.distance_to_edge(start, w) * w;
+        const Vec end = start + box.distance_to_edge(start, w) * w;
         const bool sideways = std::abs(end.x) > box.width / 2 - 1e-9;
         if (scattered) ended[sideways ? 2 : w.z > 0 ? 1 : 0] += 1.0 / photons;
         break;
@@ -265,14 +265,14 @@ TEST_CASE("flux of a box: invariant under mirroring and quarter turns") {
 TEST_CASE("direct transmittance of a box: equals the mean over its chords") {
   for (const double light : {0.0, 0.3, 1.2, -pi / 2, 2.0, pi}) {
     const Scene scene = lit_box(7, 3, {2}, {light});
-    const Vec2 w = direction(light);
+    const Vec w = direction(light);
     const double face = 7 * std::abs(w.z), side = 3 * std::abs(w.x);
     constexpr int points = 20000;
     double sum = 0;
     for (int i = 0; i < points; ++i) {
       const double t = (i + 0.5) / points;
-      const Vec2 on_face{7 * (t - 0.5), w.z > 0 ? 0.0 : 3.0};
-      const Vec2 on_side{std::copysign(3.5, -w.x), 3 * t};
+      const Vec on_face{7 * (t - 0.5), w.z > 0 ? 0.0 : 3.0};
+      const Vec on_side{std::copysign(3.5, -w.x), 3 * t};
       sum += face * std::exp(-0.5 * scene.domain.distance_to_edge(on_face, w)) / points;
       sum += side * std::exp(-0.5 * scene.domain.distance_to_edge(on_side, w)) / points;
     }

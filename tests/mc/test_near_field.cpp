@@ -38,12 +38,12 @@ void check_4_sigma(const Estimate& found, double scale, const Estimate& expected
 
 TEST_CASE("reciprocity: near source and far view equal plane wave and near sensor") {
   // outside and inside, in close pairs, so that off-diagonal entries are not small
-  const std::vector<Vec2> points = {{1, -4}, {1.2, -4}, {0, 3}, {0.2, 3}};
+  const std::vector<Vec> points = {{1, -4}, {1.2, -4}, {0, 3}, {0.2, 3}};
   const std::vector<double> views = {0.3, pi - 0.4};
   const auto both = [&](bool forward) {
     CovarianceRequest request;
     request.kind = CovarianceRequest::Kind::pairs;
-    for (Vec2 point : points) {
+    for (Vec point : points) {
       if (forward)
         request.lights.push_back(point_source(point));
       else

@@ -35,7 +35,7 @@ void check_density(const Scene& scene, std::uint64_t seed) {
           dx * dz * first.density({-width / 2 + (i + 0.5) * dx, (j + 0.5) * dz});
   RandomStream random(seed, 79, 0);
   for (int i = 0; i < samples; ++i) {
-    const Vec2 x = first.sample(random).x;
+    const Vec x = first.sample(random).x;
     REQUIRE(scene.domain.contains(x));
     const int column = static_cast<int>((x.x / width + 0.5) * columns);
     const int row = static_cast<int>(x.z / depth * rows);
@@ -46,7 +46,7 @@ void check_density(const Scene& scene, std::uint64_t seed) {
 
 /// Returns the field of a beam as a sum of plane waves (spectrum at the focus), without evanescent
 /// ones.
-Complex superposition(const Light& beam, Vec2 x) {
+Complex superposition(const Light& beam, Vec x) {
   constexpr int waves = 4000;
   const double step = 2 * k / waves;
   Complex sum = 0;
@@ -63,15 +63,15 @@ Complex superposition(const Light& beam, Vec2 x) {
 
 TEST_CASE("paraxial beam: field agrees with a superposition of plane waves") {
   const Light light = gaussian_beam(0.4, {1, 2}, 3);
-  const GaussianBeam beam(light, k);
+  const GaussianBeam beam(light, k, 2);
   CHECK(std::abs(beam.field({1, 2}) - 1.0) < 1e-15);
-  const Vec2 rim = Vec2{1, 2} + 3.0 * beam.across_axis();
+  const Vec rim = Vec{1, 2} + 3.0 * beam.across_axis(0);
   CHECK(std::abs(beam.field(rim)) == doctest::Approx(std::exp(-1.0)).epsilon(1e-12));
   for (const double s : {-30.0, 0.0, 5.0, 30.0}) {
     for (const double t : {-4.0, 0.0, 3.0}) {
       CAPTURE(s);
       CAPTURE(t);
-      const Vec2 x = beam.focus() + s * beam.axis() + t * beam.across_axis();
+      const Vec x = beam.focus() + s * beam.axis() + t * beam.across_axis(0);
       // the next order of the phase is about k s / (8 (k waist / 2)^4)
       CHECK(std::abs(beam.field(x) - superposition(light, x)) < 0.01);
       CHECK(beam.width(s) ==
@@ -81,22 +81,22 @@ TEST_CASE("paraxial beam: field agrees with a superposition of plane waves") {
 }
 
 TEST_CASE("beam: ray direction agrees with the gradient of the phase") {
-  const GaussianBeam beam(gaussian_beam(-0.7, {1, 2}, 2), k);
+  const GaussianBeam beam(gaussian_beam(-0.7, {1, 2}, 2), k, 2);
   // within the beam, where it is paraxial
   for (const auto& [s, t] : {std::pair{7.0, 1.5}, {20.0, -2.0}, {-20.0, 1.0}}) {
-    const Vec2 x = beam.focus() + s * beam.axis() + t * beam.across_axis();
+    const Vec x = beam.focus() + s * beam.axis() + t * beam.across_axis(0);
     const double h = 1e-5;
-    const auto derivative = [&](Vec2 along) {
+    const auto derivative = [&](Vec along) {
       return std::arg(beam.field(x + h * along) / beam.field(x - h * along)) / (2 * h);
     };
-    const Vec2 gradient{derivative({1, 0}), derivative({0, 1})}, ray = beam.ray(x);
+    const Vec gradient{derivative({1, 0}), derivative({0, 1})}, ray = beam.ray(x);
     CHECK(gradient.x / length(gradient) == doctest::Approx(ray.x).epsilon(1e-3));
     CHECK(gradient.z / length(gradient) == doctest::Approx(ray.z).epsilon(1e-3));
   }
 }
 
 TEST_CASE("endpoint factors of beams and sources: attenuated inside the medium") {
-  const Vec2 x{0.5, 2.5};
+  const Vec x{0.5, 2.5};
   const auto factor = [&](const Light& light, bool with_phase) {
     const Scene scene = box({light});
     std::vector<Complex> out(1);
@@ -104,10 +104,10 @@ TEST_CASE("endpoint factors of beams and sources: attenuated inside the medium")
     return out[0];
   };
   const Light beam = gaussian_beam(0, {0.5, -3}, 2);
-  const Complex seen = std::exp(-2.5 / 3) * GaussianBeam(beam, k).field(x);
+  const Complex seen = std::exp(-2.5 / 3) * GaussianBeam(beam, k, 2).field(x);
   CHECK(std::abs(factor(beam, true) - seen) < 1e-13);
   CHECK(std::abs(factor(beam, false) - std::abs(seen)) < 1e-13);
-  for (const auto& [source, inside] : {std::pair{Vec2{0.5, -5}, 2.5}, {Vec2{0.5, 0.5}, 2.0}}) {
+  for (const auto& [source, inside] : {std::pair{Vec{0.5, -5}, 2.5}, {Vec{0.5, 0.5}, 2.0}}) {
     const double r = 2.5 - source.z;
     const Complex expected =
         std::exp(-inside / 3) * std::polar(1 / std::sqrt(8 * pi * k * r), k * r + pi / 4);
@@ -122,8 +122,8 @@ TEST_CASE("endpoint factors of beams and sources: attenuated inside the medium")
 TEST_CASE("first scatterers of point sources: samples follow the density of the weights") {
   std::uint64_t seed = 300;
   for (const double mean_free_path : {1000.0, 1.5})
-    for (const Vec2 source :
-         {Vec2{0.6, 1.5}, {0, -1}, {0, 9}, {5, 2}, {-7, -6}, {4, 40}, {0, 0}, {-3, 4}}) {
+    for (const Vec source :
+         {Vec{0.6, 1.5}, {0, -1}, {0, 9}, {5, 2}, {-7, -6}, {4, 40}, {0, 0}, {-3, 4}}) {
       CAPTURE(source.x);
       CAPTURE(source.z);
       check_density(box({point_source(source)}, mean_free_path), ++seed);
@@ -152,7 +152,7 @@ TEST_CASE("first scatterers of sources and beams: position and direction follow 
   check_density(scene, 500);
   const FirstScatterer first(scene);
   const HenyeyGreensteinScattering scattering{{0.6}};
-  const Vec2 x{0.3, 1.1};
+  const Vec x{0.3, 1.1};
   double sum = 0;
   constexpr int round = 400;
   for (int i = 0; i < round; ++i)

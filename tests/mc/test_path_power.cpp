@@ -26,11 +26,10 @@ class PlantedWalks : public PathWalks {
     Planted planted(scorer, factor_, inner_);
     walks_->batch(number, planted);
   }
-  Complex amplitude(Vec2 x, Vec2 from, Vec2 to) const override {
+  Complex amplitude(Vec x, Vec from, Vec to) const override {
     return walks_->amplitude(x, from, to);
   }
-  void towards(Vec2 x, const SpaceDirection& from, const Directions& to,
-               std::span<Complex> out) const override {
+  void towards(Vec x, Vec from, const Directions& to, std::span<Complex> out) const override {
     walks_->towards(x, from, to, out);
   }
   std::unique_ptr<EndpointFactors> factors(const Scene& scene,
@@ -45,7 +44,7 @@ class PlantedWalks : public PathWalks {
     Planted(PathScorer& scorer, double factor, double inner)
         : scorer_(scorer), factor_(factor), inner_(inner) {}
 
-    void single(Vec2 x, double weight, FaceWaves waves) override {
+    void single(Vec x, double weight, FaceWaves waves) override {
       scorer_.single(x, factor_ * weight, waves);
     }
     void multiple(const Path& path) override {
@@ -54,12 +53,11 @@ class PlantedWalks : public PathWalks {
       scorer_.multiple(changed);
     }
     bool has_tally() const override { return true; }
-    void begin(Vec2 x, const SpaceDirection& w, double length) override {
+    void begin(Vec x, Vec w, double length) override {
       steps_ = 0;
       scorer_.begin(x, w, length);
     }
-    void step(Vec2 x, const SpaceDirection& from, const SpaceDirection& to,
-              double length) override {
+    void step(Vec x, Vec from, Vec to, double length) override {
       ++steps_;
       scorer_.step(x, from, to, length);
     }

@@ -30,9 +30,9 @@ void check_towards(const Scattering& scattering) {
   Directions to(7);
   for (std::size_t j = 0; j < to.size(); ++j) {
     const double angle = 0.9 * static_cast<double>(j) - 3;
-    to.set(j, direction(angle), angle);
+    to.set(j, direction(angle));
   }
-  const Vec2 from = direction(2.4);
+  const Vec from = direction(2.4);
   std::vector<Complex> out(to.size(), Complex(0.5, 2));
   scattering.towards(from, to, out);
   for (std::size_t j = 0; j < to.size(); ++j) {
@@ -45,11 +45,11 @@ void check_towards(const Scattering& scattering) {
 template <typename Scattering>
 void check_sampling(const Scattering& scattering) {
   constexpr int bins = 24, fine = 2000;
-  const Vec2 from = direction(1.1);
+  const Vec from = direction(1.1);
   std::vector<double> counts(bins), probabilities(bins);
   RandomStream random(7, 78, 0);
   for (int i = 0; i < 20000; ++i) {
-    const Vec2 next = scattering.sample(from, random);
+    const Vec next = scattering.sample(from, random);
     REQUIRE(std::abs(length(next) - 1) < 1e-12);
     const double turn = std::remainder(angle_of(next) - 1.1, 2 * pi);
     ++counts[std::clamp(static_cast<int>((turn / (2 * pi) + 0.5) * bins), 0, bins - 1)];
@@ -69,7 +69,7 @@ void check_consistency(const Scattering& scattering, double tolerance) {
   double largest = 0;
   for (const double turn : {0.0, 1e-4, 0.3, -0.3, 1.7, 3.1, pi}) {
     for (const double from : {0.0, -2.9, 1.3}) {
-      const Vec2 in = direction(from), out = direction(from + turn);
+      const Vec in = direction(from), out = direction(from + turn);
       const double p = scattering.density(in, out);
       largest = std::max(largest, p);
       CAPTURE(turn);
@@ -113,13 +113,11 @@ TEST_CASE("thin TM cylinder: scatters isotropically") {
           doctest::Approx(1 / (2 * pi)).epsilon(2e-3));
 }
 
-TEST_CASE("scattering in the plane: phase functions of other scenes are rejected") {
-  Scene scene = tests::hg_box(6, 4, {3}, intensity_request({0.0}, {far_view(0)}));
+TEST_CASE("scattering in homogeneous media: forms of other media are rejected") {
+  const Scene scene = tests::hg_box(6, 4, {3}, intensity_request({0.0}, {far_view(0)}));
   const auto ignored = [](const auto&) {};
-  for (const auto phase : {Plan::Phase::space, Plan::Phase::varying, Plan::Phase::graded})
+  for (const auto phase : {Plan::Phase::varying, Plan::Phase::graded})
     CHECK_THROWS_AS(with_scattering(scene, phase, ignored), std::logic_error);
-  scene.medium.dimension = 3;
-  CHECK_THROWS_AS(with_scattering(scene, Plan::Phase::isotropic, ignored), std::logic_error);
 }
 
 }  // namespace flatspeckle::mc::test_scattering

@@ -16,7 +16,7 @@ using tests::pi;
 constexpr double dark = 1e-6;
 
 /// Returns the distance to the outline along w, for an independent evaluation of C14 with B = 1.
-double chord(const Scene& scene, Vec2 x, Vec2 w) {
+double chord(const Scene& scene, Vec x, Vec w) {
   const double z_end = w.z > 0 ? scene.domain.depth : 0;
   double longest = std::abs(w.z) > 1e-12 ? (z_end - x.z) / w.z : 1e300;
   if (scene.domain.kind == Domain::Kind::box && std::abs(w.x) > 1e-12) {
@@ -26,14 +26,14 @@ double chord(const Scene& scene, Vec2 x, Vec2 w) {
   return longest;
 }
 
-Complex light_factor(const Scene& scene, double light, Vec2 x) {
-  const Vec2 w{std::sin(light), std::cos(light)};
+Complex light_factor(const Scene& scene, double light, Vec x) {
+  const Vec w{std::sin(light), std::cos(light)};
   return std::exp(Complex(-scene.medium.mu_t * chord(scene, x, -w) / 2, scene.k * dot(w, x)));
 }
 
-Complex view_factor(const Scene& scene, const View& view, Vec2 x) {
+Complex view_factor(const Scene& scene, const View& view, Vec x) {
   if (view.near) {
-    const Vec2 to_sensor = view.point - x;
+    const Vec to_sensor = view.point - x;
     const double r = length(to_sensor);
     const double inside = std::min(r, chord(scene, x, 1 / r * to_sensor));
     // exp(ikr)/sqrt(r) is the far form of sqrt(pi k/2) e^{i pi/4} H0(kr)
@@ -41,11 +41,11 @@ Complex view_factor(const Scene& scene, const View& view, Vec2 x) {
     return std::sqrt(pi * scene.k / 2) * std::polar(1.0, pi / 4) * hankel *
            std::exp(-scene.medium.mu_t * inside / 2);
   }
-  const Vec2 w{std::sin(view.angle), std::cos(view.angle)};
+  const Vec w{std::sin(view.angle), std::cos(view.angle)};
   return std::exp(Complex(-scene.medium.mu_t * chord(scene, x, w) / 2, -scene.k * dot(w, x)));
 }
 
-double phase_amplitude(const Scene& scene, double light, const View& view, Vec2 x) {
+double phase_amplitude(const Scene& scene, double light, const View& view, Vec x) {
   const double out = view.near ? angle_of(view.point - x) : view.angle;
   const double g = scene.scatterer.g;
   return std::sqrt((1 - g * g) / (2 * pi * (1 + g * g - 2 * g * std::cos(out - light))));
@@ -57,7 +57,7 @@ Complex single_scattering(const Scene& scene, Channel a, Channel b, int nx, int 
   const auto& request = scene.request;
   const bool box = scene.domain.kind == Domain::Kind::box;
   const double width = box ? scene.domain.width : 1, depth = scene.domain.depth;
-  const auto field = [&](Channel c, Vec2 x) {
+  const auto field = [&](Channel c, Vec x) {
     const View& view = request.views[c.view];
     const double light = request.lights[c.light].angle;
     return light_factor(scene, light, x) * phase_amplitude(scene, light, view, x) *
@@ -66,7 +66,7 @@ Complex single_scattering(const Scene& scene, Channel a, Channel b, int nx, int 
   Complex sum = 0;
   for (int i = 0; i < (box ? nx : 1); ++i) {
     for (int j = 0; j < nz; ++j) {
-      const Vec2 x{box ? ((i + 0.5) / nx - 0.5) * width : 0, (j + 0.5) * depth / nz};
+      const Vec x{box ? ((i + 0.5) / nx - 0.5) * width : 0, (j + 0.5) * depth / nz};
       sum += field(a, x) * std::conj(field(b, x));
     }
   }

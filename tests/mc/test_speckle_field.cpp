@@ -186,7 +186,7 @@ TEST_CASE("fields by paths of a thin dark box: covariance agrees with the closed
   Triangle expected;
   for (std::size_t a = 0; a < request.channels.size(); ++a)
     for (std::size_t b = 0; b <= a; ++b) {
-      const Vec2 q = momentum(request.channels[a]) - momentum(request.channels[b]);
+      const Vec q = momentum(request.channels[a]) - momentum(request.channels[b]);
       const double size = albedo / mean_free_path / (2 * pi) * width * depth *
                           sinc(q.x * width / 2) * sinc(q.z * depth / 2);
       expected.push_back(std::polar(1.0, q.z * depth / 2) * size);

@@ -93,8 +93,8 @@ TEST_CASE("tilt-shift map: near sensors are shifted along x") {
   const auto request = tilt_shift_request(k, plane_wave(light), sensors, {0, 0.004}, {0, 0.4});
   CHECK(request.moves == 4);
   const auto [a, b] = request.entries[request.tilted_entry(3, 1)];
-  CHECK(request.views[request.channels[a].view].point == Vec2{2, 4});
-  CHECK(request.views[request.channels[b].view].point == Vec2{2.4, 4});
+  CHECK(request.views[request.channels[a].view].point == Vec{2, 4});
+  CHECK(request.views[request.channels[b].view].point == Vec{2.4, 4});
   CHECK(request.lights[request.channels[b].light].angle == doctest::Approx(light + 0.004));
   // A shift of 0.4 wavelengths decorrelates light from all directions; a tilt that changes the
   // phase by 0.08 over a mean free path does not.

@@ -44,8 +44,8 @@ Placement moved(Placement placement, const Scene& scene, const mc::Motion& motio
   for (PlacedScatterer& placed : placement) {
     const double r = scale * std::sqrt(-2 * std::log(random.uniform()));
     const double angle = 2 * pi * random.uniform();
-    Vec2& x = placed.position;
-    const Vec2 to = x + delay * local.velocity(x) + r * direction(angle);
+    Vec& x = placed.position;
+    const Vec to = x + delay * local.velocity(x) + r * direction(angle);
     x = {std::remainder(to.x, width), reflected(to.z, 0, scene.domain.depth)};
   }
   return placement;

@@ -51,7 +51,7 @@ StructureFactor measured_structure(const Scene& scene) {
   MeasuredStructureFactor measured(scene.domain, 2.1 * scene.k, 0.3);
   for (std::uint64_t r = 0; r < 1000; ++r) {
     RandomStream random(1, 0, r);
-    std::vector<Vec2> centres;
+    std::vector<Vec> centres;
     for (const auto& disk : draw_placement(scene.domain, scene.scatterer, scene.placement, random))
       centres.push_back(disk.position);
     measured.add(centres);

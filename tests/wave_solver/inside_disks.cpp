@@ -48,7 +48,7 @@ Placement random_cluster(int number, int most_disks) {
                                                         static_cast<double>(placement.size()))];
     const double smaller = std::min(disk.radius, by.scatterer.radius);
     const double away = disk.radius + by.scatterer.radius + between(random, least_gap, 1) * smaller;
-    const Vec2 at = by.position + away * direction(two_pi * random.uniform());
+    const Vec at = by.position + away * direction(two_pi * random.uniform());
     const bool is_free = std::all_of(placement.begin(), placement.end(), [&](const auto& other) {
       const double gap = length(at - other.position) - disk.radius - other.scatterer.radius;
       return gap > 0.99 * least_gap * std::min(disk.radius, other.scatterer.radius);
@@ -59,7 +59,7 @@ Placement random_cluster(int number, int most_disks) {
 }
 
 /// Returns the sensors of a map that contains all disks.
-std::vector<Vec2> sensors(const Placement& placement) {
+std::vector<Vec> sensors(const Placement& placement) {
   return map_sensors({{-50, -50}, {50, 50}, 1, 1}, placement);
 }
 
@@ -85,7 +85,7 @@ MultipoleOracle oracle_of(const WaveSolution& solution) {
   return {solution.system().placement(), two_pi, solution.light_angles()[0], orders};
 }
 
-Complex inside(const WaveSolution& solution, std::size_t disk, Vec2 point) {
+Complex inside(const WaveSolution& solution, std::size_t disk, Vec point) {
   const ModeSet modes = solution.system().modes(disk);
   std::vector<Complex> waves(modes.modes.size());
   field_inside(solution.system(), disk, {&point, 1}, {waves.data(), 1});
@@ -95,14 +95,14 @@ Complex inside(const WaveSolution& solution, std::size_t disk, Vec2 point) {
   return sum;
 }
 
-Complex outside(const WaveSolution& solution, Vec2 point) {
+Complex outside(const WaveSolution& solution, Vec point) {
   return solution.near_field(point, 0) + std::polar(1.0, two_pi * dot(direction(light), point));
 }
 
 /// Two points at a rim, slightly inside and outside.
 struct RimPoint {
   std::size_t disk;
-  Vec2 within, beyond;
+  Vec within, beyond;
 };
 std::vector<RimPoint> rim_points(const Placement& placement) {
   constexpr int count = 24;
@@ -111,7 +111,7 @@ std::vector<RimPoint> rim_points(const Placement& placement) {
   for (std::size_t disk = 0; disk < placement.size(); ++disk)
     for (int i = 0; i < count; ++i) {
       const auto& [centre, scatterer] = placement[disk];
-      const Vec2 to = scatterer.radius * direction(two_pi * i / count);
+      const Vec to = scatterer.radius * direction(two_pi * i / count);
       points.push_back({disk, centre + (1 - little) * to, centre + (1 + little) * to});
     }
   return points;
@@ -123,11 +123,11 @@ std::vector<RimPoint> gap_points(const Placement& two) {
   std::vector<RimPoint> points;
   for (const std::size_t disk : {0, 1}) {
     const auto& [centre, scatterer] = two[disk];
-    const Vec2 across = two[1 - disk].position - centre;
+    const Vec across = two[1 - disk].position - centre;
     const double gap = length(across) - two[0].scatterer.radius - two[1].scatterer.radius;
     for (const double widths : {-1.0, 0.0, 0.5, 2.0}) {
       const double turn = widths * std::sqrt(2 * gap / scatterer.radius);
-      const Vec2 to = scatterer.radius * direction(angle_of(across) + turn);
+      const Vec to = scatterer.radius * direction(angle_of(across) + turn);
       points.push_back({disk, centre + (1 - little) * to, centre + (1 + little) * to});
     }
   }
@@ -178,7 +178,7 @@ void check_gap(const std::string& kind, double ratio, double gap,
   Scatterer other = disk;
   other.radius *= ratio;
   const double away = disk.radius + other.radius * (1 + gap);
-  const Placement two{{{0.1, -0.2}, disk}, {Vec2{0.1, -0.2} + away * direction(1.2), other}};
+  const Placement two{{{0.1, -0.2}, disk}, {Vec{0.1, -0.2} + away * direction(1.2), other}};
   std::vector<WorstError> worst(tolerances.size());
   add_errors(two, gap_points(two), tolerances, worst);
   CAPTURE(ratio);
@@ -199,7 +199,7 @@ double worst_on_map(const Placement& placement, double angle, const MapGrid& gri
   const auto field = FieldMap(solution, grid, tolerance).field(all);
   double worst = 0;
   for (std::size_t pixel = 0; pixel < all.pixels(); pixel += stride) {
-    const Vec2 point = grid.pixel(pixel % grid.nx, pixel / grid.nx);
+    const Vec point = grid.pixel(pixel % grid.nx, pixel / grid.nx);
     const auto around = std::find_if(placement.begin(), placement.end(), [&](const auto& placed) {
       return length(point - placed.position) < placed.scatterer.radius;
     });

@@ -33,7 +33,7 @@ Cylinder<ScaledComplex> hankel(int order, double x) {
 }
 
 /// Returns e^{i n phi} with the angle of d measured as in C2.
-Complex turn(int n, Vec2 d) {
+Complex turn(int n, Vec d) {
   return std::polar(1.0, n * std::atan2(d.x, d.z));
 }
 
@@ -115,7 +115,7 @@ void MultipoleOracle::own_block(std::size_t disk, std::vector<Complex>& matrix) 
 }
 
 void MultipoleOracle::block(std::size_t to, std::size_t from, std::vector<Complex>& matrix) const {
-  const Vec2 d = placement_[to].position - placement_[from].position;
+  const Vec d = placement_[to].position - placement_[from].position;
   const auto received = bessel(orders_[to], k_ * placement_[to].scatterer.radius);
   const auto sent = hankel(orders_[from], k_ * placement_[from].scatterer.radius);
   const auto between = hankel(orders_[to] + orders_[from], k_ * length(d));
@@ -127,10 +127,10 @@ void MultipoleOracle::block(std::size_t to, std::size_t from, std::vector<Comple
     }
 }
 
-Complex MultipoleOracle::inside(std::size_t disk, Vec2 point) const {
+Complex MultipoleOracle::inside(std::size_t disk, Vec point) const {
   const auto& [centre, scatterer] = placement_[disk];
   const double x = k_ * scatterer.radius, m = scatterer.index.real();
-  const Vec2 d = point - centre;
+  const Vec d = point - centre;
   const int order = orders_[disk];
   const InverseT inverse_t(scatterer, x, order);
   const auto here = bessel(order, m * k_ * length(d)), at_rim = bessel(order, m * x);
@@ -144,10 +144,10 @@ Complex MultipoleOracle::inside(std::size_t disk, Vec2 point) const {
   return sum;
 }
 
-Complex MultipoleOracle::outside(Vec2 point) const {
+Complex MultipoleOracle::outside(Vec point) const {
   Complex sum = std::polar(1.0, k_ * dot(direction(light_), point));
   for (std::size_t disk = 0; disk < placement_.size(); ++disk) {
-    const Vec2 d = point - placement_[disk].position;
+    const Vec d = point - placement_[disk].position;
     const auto here = hankel(orders_[disk], k_ * length(d));
     const auto at_rim = hankel(orders_[disk], k_ * placement_[disk].scatterer.radius);
     for (int n = -orders_[disk]; n <= orders_[disk]; ++n)

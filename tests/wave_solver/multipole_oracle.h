@@ -14,8 +14,8 @@ class MultipoleOracle {
   MultipoleOracle(const Placement& placement, double k, double light, std::vector<int> orders);
 
   /// Total field inside a penetrable disk, up to its rim.
-  Complex inside(std::size_t disk, Vec2 point) const;
-  Complex outside(Vec2 point) const;
+  Complex inside(std::size_t disk, Vec point) const;
+  Complex outside(Vec point) const;
 
  private:
   std::size_t place(std::size_t disk, int n) const {

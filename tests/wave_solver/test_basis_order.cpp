@@ -138,14 +138,14 @@ TEST_CASE(
     "tolerance") {
   for (const std::string kind : {"D", "N", "TM15", "TE15"}) {
     const Placement two = pair(kind, 1, 0.1);
-    const Vec2 middle = 0.5 * two[1].position;
+    const Vec middle = 0.5 * two[1].position;
     const double radius = two[0].scatterer.radius;
-    const std::vector<Vec2> sensors{middle, (1 + 1e-9) * radius * direction(2), {1, 1}};
+    const std::vector<Vec> sensors{middle, (1 + 1e-9) * radius * direction(2), {1, 1}};
     const auto near_fields = [&](double tolerance) {
       const auto solution = solve(two, two_pi, {0.2},
                                   {.tolerance = tolerance, .sensors = sensors, .diagnose = false});
       std::vector<Complex> fields;
-      for (const Vec2& sensor : sensors) fields.push_back(solution.near_field(sensor));
+      for (const Vec& sensor : sensors) fields.push_back(solution.near_field(sensor));
       return fields;
     };
     const auto exact = near_fields(1e-14);

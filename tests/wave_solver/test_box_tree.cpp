@@ -49,7 +49,7 @@ TEST_CASE("box tree: a hull encloses the rims of its disks and the hulls of its 
   for (const auto& box : tree.boxes()) {
     for (std::size_t place = box.first; place < box.last; ++place) {
       const auto& [centre, radius, unknowns] = disks[tree.order()[place]];
-      const Vec2 reach{radius, radius};
+      const Vec reach{radius, radius};
       CHECK(encloses(box.hull, {centre - reach, centre + reach}));
     }
     if (box.is_leaf()) continue;
@@ -93,7 +93,7 @@ TEST_CASE("rectangles: distances are measured from rim to rim") {
   CHECK(unit.distance({{4, 5}, {6, 6}}) == doctest::Approx(5));
   CHECK(unit.distance({{0.2, 3}, {0.3, 4}}) == doctest::Approx(2));
   CHECK(unit.distance({{0.5, 0.5}, {2, 2}}) == 0);
-  CHECK(unit.distance(Vec2{-3, 0.5}) == doctest::Approx(3));
+  CHECK(unit.distance(Vec{-3, 0.5}) == doctest::Approx(3));
 }
 
 }  // namespace flatspeckle::wave::test_box_tree

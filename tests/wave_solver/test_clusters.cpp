@@ -18,7 +18,7 @@ namespace {
 constexpr double k = two_pi, gap = 0.5;
 
 Placement five_disks() {
-  const std::vector<Vec2> centres{{0, 0.1}, {0.7, 0.2}, {-0.6, 0.4}, {0.1, -0.7}, {-0.5, -0.4}};
+  const std::vector<Vec> centres{{0, 0.1}, {0.7, 0.2}, {-0.6, 0.4}, {0.1, -0.7}, {-0.5, -0.4}};
   Placement placement;
   for (std::size_t j = 0; j < centres.size(); ++j) {
     Scatterer disk = reference_scatterer(j % 2 == 0 ? "TM15" : "D");

@@ -25,18 +25,18 @@ double turn(const Mode& mode, double phi) {
   return size * (mode.odd ? std::sin(angle) : std::cos(angle));
 }
 
-Complex outgoing(const Mode& mode, double k, Vec2 d) {
+Complex outgoing(const Mode& mode, double k, Vec d) {
   const auto h = hankel(mode.order, k * length(d));
   return Complex(h[mode.order]) * turn(mode, angle_of(d));
 }
 
-double regular(const Mode& mode, double k, Vec2 d) {
+double regular(const Mode& mode, double k, Vec d) {
   const auto j = bessel_j(mode.order, k * length(d));
   return static_cast<double>(j[mode.order]) * turn(mode, angle_of(d));
 }
 
 constexpr double k = 3;
-const Vec2 here{0.3, -0.2}, there{1.1, 1.4};
+const Vec here{0.3, -0.2}, there{1.1, 1.4};
 
 }  // namespace
 
@@ -45,7 +45,7 @@ TEST_CASE("translation: the expansion about the receiver agrees with the outgoin
   const ModeSet sender{here, sent, 4}, receiver{there, received, 30};
   std::vector<Complex> block(sent.size() * received.size());
   translate(k, {&receiver, 1}, sender, {block.data(), received.size()});
-  for (const Vec2 offset : {Vec2{0.2, 0.1}, Vec2{-0.3, 0.25}, Vec2{0.01, -0.4}})
+  for (const Vec offset : {Vec{0.2, 0.1}, Vec{-0.3, 0.25}, Vec{0.01, -0.4}})
     for (std::size_t n = 0; n < sent.size(); ++n) {
       Complex sum = 0;
       for (std::size_t p = 0; p < received.size(); ++p)
@@ -72,8 +72,8 @@ TEST_CASE("translation: the reverse translation is the transpose") {
 TEST_CASE("outgoing modes: values and derivatives agree with series and finite differences") {
   const auto modes = unit_modes(5);
   const ModeSet sender{here, modes, 5};
-  const std::vector<Vec2> points{there, {-1, 0.5}, {0.4, -0.1}};
-  const std::vector<Vec2> along{direction(0.3), direction(2), direction(-1)};
+  const std::vector<Vec> points{there, {-1, 0.5}, {0.4, -0.1}};
+  const std::vector<Vec> along{direction(0.3), direction(2), direction(-1)};
   std::vector<Complex> value(points.size() * modes.size()), derivative(value.size());
   field_at(k, points, sender, {value.data(), points.size()});
   directional_derivatives(k, points, along, sender, {derivative.data(), points.size()});

@@ -68,7 +68,7 @@ TEST_CASE("ensemble: sensors and sources that a cylinder may cover are rejected"
   spec.scatterer = "soft";
   spec.radius = 0.5;
   Scene scene = make_scene(spec);
-  const auto make = [&](Vec2 sensor, Vec2 source) {
+  const auto make = [&](Vec sensor, Vec source) {
     scene.request = intensity_request(Lights{point_source(source)}, {near_sensor(sensor)});
     return wave_job(scene, 1, 1e-6);
   };

@@ -17,11 +17,11 @@ namespace flatspeckle::wave::test_fast_direct {
 namespace {
 
 // Adds scatterers at random positions, separated by at least a gap.
-void scatter(Placement& placement, std::size_t count, Vec2 size, const Scatterer& scatterer,
+void scatter(Placement& placement, std::size_t count, Vec size, const Scatterer& scatterer,
              double gap) {
   RandomStream random(12, 1, count);
   while (count > 0) {
-    const Vec2 centre{size.x * random.uniform(), size.z * random.uniform()};
+    const Vec centre{size.x * random.uniform(), size.z * random.uniform()};
     bool fits = true;
     for (const auto& other : placement)
       fits =
@@ -32,7 +32,7 @@ void scatter(Placement& placement, std::size_t count, Vec2 size, const Scatterer
   }
 }
 
-Placement scattered(std::size_t count, Vec2 size, const Scatterer& scatterer, double gap = 0) {
+Placement scattered(std::size_t count, Vec size, const Scatterer& scatterer, double gap = 0) {
   Placement placement;
   scatter(placement, count, size, scatterer, gap);
   return placement;
@@ -105,10 +105,10 @@ TEST_CASE("fast direct: clusters, dense boxes and strips agree with the dense so
   Placement clusters;
   RandomStream random(13, 1, 0);
   for (int cluster = 0; cluster < 10; ++cluster) {
-    const Vec2 place{40 * random.uniform(), 40 * random.uniform()};
+    const Vec place{40 * random.uniform(), 40 * random.uniform()};
     const double size = std::pow(10.0, -cluster / 3.0);
     for (int i = 0; i < 120; ++i)
-      clusters.push_back({place + size * Vec2{random.uniform(), random.uniform()}, Scatterer{}});
+      clusters.push_back({place + size * Vec{random.uniform(), random.uniform()}, Scatterer{}});
   }
   check_accuracy(clusters, 100);
   check_accuracy(scattered(1200, {1, 1}, Scatterer{}), 300);

@@ -14,7 +14,7 @@ namespace flatspeckle::wave::test_field_map {
 
 namespace {
 
-Complex plane_wave(double light, Vec2 point) {
+Complex plane_wave(double light, Vec point) {
   return std::polar(1.0, two_pi * dot(direction(light), point));
 }
 
@@ -34,11 +34,11 @@ WaveSolution solve_to_the_rims(const Placement& placement, const std::vector<dou
   return solve(placement, two_pi, lights, options);
 }
 
-Complex outside(const WaveSolution& solution, Vec2 point, std::size_t light = 0) {
+Complex outside(const WaveSolution& solution, Vec point, std::size_t light = 0) {
   return solution.near_field(point, light) + plane_wave(solution.light_angles()[light], point);
 }
 
-Complex inside(const WaveSolution& solution, std::size_t disk, Vec2 point, std::size_t light = 0) {
+Complex inside(const WaveSolution& solution, std::size_t disk, Vec point, std::size_t light = 0) {
   const ModeSet modes = solution.system().modes(disk);
   std::vector<Complex> waves(modes.modes.size());
   field_inside(solution.system(), disk, {&point, 1}, {waves.data(), 1});
@@ -50,7 +50,7 @@ Complex inside(const WaveSolution& solution, std::size_t disk, Vec2 point, std::
 
 Complex at_distance(const WaveSolution& solution, std::size_t disk, double angle, double r) {
   const auto& [centre, scatterer] = solution.system().placement()[disk];
-  const Vec2 point = centre + r * direction(angle);
+  const Vec point = centre + r * direction(angle);
   return r < scatterer.radius ? inside(solution, disk, point) : outside(solution, point);
 }
 
@@ -70,7 +70,7 @@ Complex h_derivative(int n, double x) {
 
 // Evaluates the textbook series of one disk at the origin, from the jump conditions at its rim:
 // J + b H = d J(m), J' + b H' = q d J'(m).
-Complex mie(const Scatterer& disk, double light, Vec2 point) {
+Complex mie(const Scatterer& disk, double light, Vec point) {
   const double x = two_pi * disk.radius, m = disk.index.real(), r = length(point);
   const double q = disk.kind == Scatterer::Kind::tm ? m : 1 / m;
   Complex sum = 0, power = 1;
@@ -99,8 +99,7 @@ Placement crowd(std::size_t side) {
   Placement placement;
   for (std::size_t i = 0; i < side * side; ++i) {
     const double x = static_cast<double>(i % side), z = static_cast<double>(i / side);
-    const Vec2 position{x + 0.2 * std::sin(3.0 * static_cast<double>(i)),
-                        z + 0.2 * std::cos(5 * x)};
+    const Vec position{x + 0.2 * std::sin(3.0 * static_cast<double>(i)), z + 0.2 * std::cos(5 * x)};
     const Scatterer::Kind kinds[] = {Scatterer::Kind::tm, Scatterer::Kind::te,
                                      Scatterer::Kind::soft, Scatterer::Kind::point};
     placement.push_back(
@@ -172,7 +171,7 @@ TEST_CASE("field map: outside disks it equals the near field plus the incident w
   const auto field = map.field({0, 0, 31, 29});
   std::size_t compared = 0;
   for (std::size_t i = 0; i < 31 * 29; ++i) {
-    const Vec2 point = map.grid().pixel(i % 31, i / 31);
+    const Vec point = map.grid().pixel(i % 31, i / 31);
     const auto& placement = solution.system().placement();
     if (std::any_of(placement.begin(), placement.end(), [&](const PlacedScatterer& placed) {
           return length(point - placed.position) < placed.scatterer.radius;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double k = 2 * std::numbers::pi;
 
-IndexField linear(Vec2 gradient) {
+IndexField linear(Vec gradient) {
   IndexField field;
   field.kind = IndexField::Kind::linear;
   field.gradient = gradient;
@@ -35,12 +35,12 @@ Complex free_wave(double r) {
 }
 
 /// Returns (laplacian + k^2 n^2) G at q over |k^2 n^2 G|, by finite differences of sixth order.
-double residual(const IndexField& field, Vec2 p, Vec2 q, double step) {
+double residual(const IndexField& field, Vec p, Vec q, double step) {
   const GradedGreen green(field, k, 40);
   const double weight[] = {-49.0 / 18, 1.5, -0.15, 1.0 / 90};
   Complex sum = 2 * weight[0] * green(p, q);
   for (int j = 1; j <= 3; ++j)
-    for (const Vec2 axis : {Vec2{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+    for (const Vec axis : {Vec{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
       sum += weight[j] * green(p, q + j * step * axis);
   const Complex own = k * k * field.square(q) * green(p, q);
   return std::abs(sum / (step * step) + own) / std::abs(own);
@@ -55,7 +55,7 @@ TEST_CASE("graded Green function: agrees with H_0 without or with a negligible g
       const Complex expected = free_wave(r), found = green({0, 0}, {0.6 * r, 0.8 * r});
       CAPTURE(r);
       CHECK(std::abs(found - expected) < 5e-6 * std::abs(expected));
-      if (field.gradient == Vec2{} && field.alpha == 0)
+      if (field.gradient == Vec{} && field.alpha == 0)
         CHECK(std::abs(found - expected) < 3e-13 * std::abs(expected));
     }
   }
@@ -65,7 +65,7 @@ TEST_CASE(
     "graded Green function: satisfies the wave equation by finite differences of sixth order") {
   const struct {
     IndexField field;
-    Vec2 p, q;
+    Vec p, q;
   } cases[] = {{linear({0, 0.05}), {0, -4}, {3, 7}},      {linear({0, 0.05}), {9, 8}, {-9, 1}},
                {linear({0.03, -0.02}), {1, 2}, {4, 2.5}}, {linear({0, 0.05}), {0, 0}, {0.1, 0.2}},
                {parabolic(0.06), {0, -4}, {3, 7}},        {parabolic(0.06), {4, 1}, {-4, 3}},
@@ -81,7 +81,7 @@ TEST_CASE(
 }
 
 TEST_CASE("graded Green function: is reciprocal") {
-  const Vec2 p{1, -3}, q{-4, 9};
+  const Vec p{1, -3}, q{-4, 9};
   for (const IndexField& field : {linear({0.02, 0.04}), parabolic(0.07)}) {
     const GradedGreen green(field, k, 40);
     CHECK(std::abs(green(p, q) - green(q, p)) < 1e-13 * std::abs(green(p, q)));

@@ -15,11 +15,11 @@ namespace flatspeckle::wave::test_helmholtz_sum {
 
 namespace {
 
-std::vector<Vec2> points_in_box(std::size_t count, double width, double depth,
-                                std::uint64_t seed = 1) {
+std::vector<Vec> points_in_box(std::size_t count, double width, double depth,
+                               std::uint64_t seed = 1) {
   RandomStream random(seed, 1, count);
-  std::vector<Vec2> points(count);
-  for (Vec2& p : points) p = {width * (random.uniform() - 0.5), depth * random.uniform()};
+  std::vector<Vec> points(count);
+  for (Vec& p : points) p = {width * (random.uniform() - 0.5), depth * random.uniform()};
   return points;
 }
 
@@ -31,8 +31,8 @@ std::vector<Complex> random_charges(std::size_t count) {
 }
 
 // Reference: the sum over all pairs with accurate Hankel functions.
-std::vector<Complex> direct_sum(double k, const std::vector<Vec2>& sources,
-                                const std::vector<Vec2>& targets,
+std::vector<Complex> direct_sum(double k, const std::vector<Vec>& sources,
+                                const std::vector<Vec>& targets,
                                 const std::vector<Complex>& charges) {
   const std::size_t columns = charges.size() / sources.size();
   std::vector<Complex> sums(columns * targets.size());
@@ -50,7 +50,7 @@ std::vector<Complex> direct_sum(double k, const std::vector<Vec2>& sources,
 const std::size_t some = flatspeckle::tests::is_night ? 1500 : 900;
 constexpr double tolerances[] = {1e-3, 1e-6, 1e-9, 1e-12};
 
-void check_accuracy(double k, const std::vector<Vec2>& points) {
+void check_accuracy(double k, const std::vector<Vec>& points) {
   const auto charges = random_charges(points.size());
   const auto exact = direct_sum(k, points, points, charges);
   for (const double tolerance : tolerances) {
@@ -102,8 +102,8 @@ TEST_CASE(
 }
 
 TEST_CASE("Helmholtz sum: agrees with the direct sum within the tolerance in boxes of all shapes") {
-  for (const Vec2 box :
-       {Vec2{12, 12}, {40, 3}, {0.02, 60}, {70, 70}, {1, 1}, {1e-3, 1e-3}, {1e-5, 2e-7}}) {
+  for (const Vec box :
+       {Vec{12, 12}, {40, 3}, {0.02, 60}, {70, 70}, {1, 1}, {1e-3, 1e-3}, {1e-5, 2e-7}}) {
     CAPTURE(box.x);
     check_accuracy(two_pi, points_in_box(some, box.x, box.z));
   }
@@ -111,8 +111,8 @@ TEST_CASE("Helmholtz sum: agrees with the direct sum within the tolerance in box
 
 TEST_CASE("Helmholtz sum: is invariant under a change of the unit of length") {
   const auto points = points_in_box(1200, 10, 10);
-  std::vector<Vec2> larger;
-  for (const Vec2 p : points) larger.push_back(1e4 * p);
+  std::vector<Vec> larger;
+  for (const Vec p : points) larger.push_back(1e4 * p);
   const auto charges = random_charges(points.size());
   CHECK(relative_distance(HelmholtzSum(two_pi * 1e-4, larger, 1e-9)(charges),
                           HelmholtzSum(two_pi, points, 1e-9)(charges)) < 1e-9);
@@ -121,8 +121,8 @@ TEST_CASE("Helmholtz sum: is invariant under a change of the unit of length") {
 TEST_CASE("Helmholtz sum: close points are summed accurately, coincident ones omitted") {
   auto points = points_in_box(1500, 12, 12);
   for (std::size_t i = 0; i < 50; ++i) {
-    points[100 + i] = points[i] + Vec2{1e-6, 0};
-    points[200 + i] = points[i] + Vec2{0, -1e-10};
+    points[100 + i] = points[i] + Vec{1e-6, 0};
+    points[200 + i] = points[i] + Vec{0, -1e-10};
     points[300 + i] = points[i];
   }
   check_accuracy(two_pi, points);
@@ -133,19 +133,18 @@ TEST_CASE("Helmholtz sum: points on a line, clustered, and at the corners of the
   check_accuracy(two_pi, points_in_box(some, 50, 0));
   auto clustered = points_in_box(some, 20, 20);
   for (std::size_t i = 0; i < some / 3; ++i) clustered[i] = 1e-3 * clustered[i];
-  for (const Vec2 corner : {Vec2{-10, 0}, {10, 0}, {-10, 20}, {10, 20}})
-    clustered.push_back(corner);
+  for (const Vec corner : {Vec{-10, 0}, {10, 0}, {-10, 20}, {10, 20}}) clustered.push_back(corner);
   check_accuracy(two_pi, clustered);
 }
 
 TEST_CASE("Helmholtz sum: no, one, two and coincident points") {
   CHECK(HelmholtzSum(two_pi, {}, 1e-9)({}).empty());
-  const std::vector<Vec2> pair{{0, 0}, {0.3, 0.4}};
+  const std::vector<Vec> pair{{0, 0}, {0.3, 0.4}};
   CHECK(HelmholtzSum(two_pi, std::span(pair).first(1), 1e-9)(random_charges(1))[0] == Complex());
   const auto charges = random_charges(2);
   CHECK(relative_distance(HelmholtzSum(two_pi, pair, 1e-9)(charges),
                           direct_sum(two_pi, pair, pair, charges)) < 1e-14);
-  const std::vector<Vec2> same(3, Vec2{1, 1});
+  const std::vector<Vec> same(3, Vec{1, 1});
   for (const Complex u : HelmholtzSum(two_pi, same, 1e-9)(random_charges(3))) CHECK(u == Complex());
 }
 

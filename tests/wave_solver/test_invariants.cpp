@@ -136,12 +136,12 @@ TEST_CASE("far fields: rotate with the scene") {
 
 TEST_CASE(
     "far fields: a translation of the scene multiplies them by the phases of light and view") {
-  const Vec2 shift{3.1, -7.7};
+  const Vec shift{3.1, -7.7};
   for (Placement placement : lossless()) {
     auto expected = far_fields(placement);
     const auto views = views_around();
     for (std::size_t i = 0; i < expected.size(); ++i) {
-      const Vec2 change =
+      const Vec change =
           direction(lights[i / views.size()]) - direction(views[i % views.size()].angle);
       expected[i] *= std::polar(1.0, two_pi * dot(change, shift));
     }

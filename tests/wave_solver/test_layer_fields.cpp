@@ -76,7 +76,7 @@ TEST_CASE("layer fields: one and two points agree with closed forms") {
   const double light = 0.4, view = 2.7;
   const LayerFields fields(waves, width, {light}, {view});
   const Placement pair = points(2);
-  const Vec2 a = pair[0].position, b = pair[1].position;
+  const Vec a = pair[0].position, b = pair[1].position;
   const Complex inverse = 1.0 / static_cast<Complex>(t_matrix(pair[0].scatterer, k, 0).front());
   const Complex at_a = waves.illuminated(light, a), at_b = waves.illuminated(light, b),
                 from_a = waves.emitted(view, a), from_b = waves.emitted(view, b),

@@ -39,14 +39,14 @@ Complex along(double wavenumber, Complex p) {
   return root.imag() < 0 ? -root : root;
 }
 
-Complex free_wave(Vec2 a, Vec2 b) {
+Complex free_wave(Vec a, Vec b) {
   Complex h;
   const double x = k * length(a - b);
   hankel0({&x, 1}, {&h, 1});
   return h;
 }
 
-Complex reflected_part(const LayerGreen& green, Vec2 a, Vec2 b) {
+Complex reflected_part(const LayerGreen& green, Vec a, Vec b) {
   return a == b ? green(a, b) : green(a, b) - free_wave(a, b);
 }
 
@@ -72,7 +72,7 @@ Complex reflected_wave(const LayerWaves& waves, Complex p, double z, double sour
 }
 
 /// Returns the reflected part of -4 i G by adaptive quadrature along another contour.
-Complex by_quadrature(const LayerWaves& waves, Vec2 a, Vec2 b) {
+Complex by_quadrature(const LayerWaves& waves, Vec a, Vec b) {
   const double most = 1.5 * std::max(waves.k(), waves.outside_k()),
                nearest = std::min(a.z + b.z, 2 * waves.depth() - a.z - b.z);
   const auto line = [&](Complex from, Complex to) {
@@ -96,7 +96,7 @@ Complex by_quadrature(const LayerWaves& waves, Vec2 a, Vec2 b) {
 
 /// Returns the contribution of the guided modes to the real part of -4 i G: the sum of 2 u(a) u(b)
 /// cos(p (a.x - b.x)) / (p N) over the modes u with norm N.
-double guided(const LayerWaves& waves, Vec2 a, Vec2 b) {
+double guided(const LayerWaves& waves, Vec a, Vec b) {
   const double within = waves.k(), beyond = waves.outside_k(), depth = waves.depth(),
                s = waves.derivative_ratio();
   if (within <= beyond) return 0;
@@ -121,7 +121,7 @@ double guided(const LayerWaves& waves, Vec2 a, Vec2 b) {
 
 /// Returns the contribution of the radiated waves to the real part of -4 i G: the integral of the
 /// product of the far fields of both points.
-double radiated(const LayerWaves& waves, Vec2 a, Vec2 b) {
+double radiated(const LayerWaves& waves, Vec a, Vec b) {
   const QuadratureRule rule = gauss_legendre(300);
   double sum = 0;
   for (const double start : {-pi / 2, pi / 2})
@@ -141,21 +141,21 @@ TEST_CASE("layer Green function: agrees with quadrature of numerically matched w
     const double depth = layer.depth;
     const LayerWaves waves(faces, k, depth);
     const LayerGreen green(waves, width);
-    const std::vector<std::array<Vec2, 2>> pairs = {{Vec2{0, 0.5 * depth}, {0, 0.5 * depth}},
-                                                    {Vec2{0, 0.3 * depth}, {3.1, 0.4 * depth}},
-                                                    {Vec2{0, 0.9 * depth}, {width, 0.2 * depth}},
-                                                    {Vec2{0, 0.05}, {-0.1, 0.07}},
-                                                    {Vec2{2, depth - 0.08}, {2.2, depth - 0.03}}};
+    const std::vector<std::array<Vec, 2>> pairs = {{Vec{0, 0.5 * depth}, {0, 0.5 * depth}},
+                                                   {Vec{0, 0.3 * depth}, {3.1, 0.4 * depth}},
+                                                   {Vec{0, 0.9 * depth}, {width, 0.2 * depth}},
+                                                   {Vec{0, 0.05}, {-0.1, 0.07}},
+                                                   {Vec{2, depth - 0.08}, {2.2, depth - 0.03}}};
     for (const auto& pair : pairs) {
-      const Vec2 a = pair[0], b = pair[1];
+      const Vec a = pair[0], b = pair[1];
       const Complex expected = by_quadrature(waves, a, b), found = reflected_part(green, a, b);
       CAPTURE(faces.inside);
       CAPTURE(a.z);
       CAPTURE(b.x);
       CHECK(std::abs(found - expected) < 1e-7);
     }
-    for (const Vec2 a : {Vec2{0, 0.01}, {0, depth - 0.003}}) {  // close to a face
-      const Vec2 b{0.01, a.z};
+    for (const Vec a : {Vec{0, 0.01}, {0, depth - 0.003}}) {  // close to a face
+      const Vec b{0.01, a.z};
       CHECK(std::abs(reflected_part(green, a, b) - by_quadrature(waves, a, b)) <
             LayerGreen::accuracy);
     }
@@ -168,8 +168,8 @@ TEST_CASE("layer Green function: power of a source equals that of radiation and 
     const double depth = layer.depth;
     const LayerWaves waves(faces, k, depth);
     const LayerGreen green(waves, width);
-    for (const Vec2 a : {Vec2{0, 0.13 * depth}, {1, 0.6 * depth}})
-      for (const Vec2 b : {a, Vec2{0.4, 0.9 * depth}, {-8.3, 0.2 * depth}}) {
+    for (const Vec a : {Vec{0, 0.13 * depth}, {1, 0.6 * depth}})
+      for (const Vec b : {a, Vec{0.4, 0.9 * depth}, {-8.3, 0.2 * depth}}) {
         const double power =
             reflected_part(green, a, b).real() + std::cyl_bessel_j(0, k * length(a - b));
         CAPTURE(faces.inside);
@@ -185,10 +185,10 @@ TEST_CASE("layer Green function: satisfies the wave equation by finite differenc
     const Faces faces = layer.faces;
     const double depth = layer.depth;
     const LayerGreen green(LayerWaves(faces, k, depth), width);
-    const Vec2 a{0.3, 0.25 * depth}, b{2.9, 0.4 * depth};
+    const Vec a{0.3, 0.25 * depth}, b{2.9, 0.4 * depth};
     Complex sum = 2 * weight[0] * green(a, b);
     for (int j = 1; j <= 3; ++j)
-      for (const Vec2 axis : {Vec2{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+      for (const Vec axis : {Vec{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
         sum += weight[j] * green(a, b + j * step * axis);
     CHECK(std::abs(sum / (step * step) + k * k * green(a, b)) < 2e-5 * k * k);
     CHECK(green(a, b) == green(b, a));
@@ -197,7 +197,7 @@ TEST_CASE("layer Green function: satisfies the wave equation by finite differenc
 
 TEST_CASE("layer Green function: without a contrast it is the Hankel function H_0") {
   const LayerGreen green(LayerWaves({1.4, 1.4, Polarisation::te}, k, 5), width);
-  const Vec2 a{0, 1}, b{4, 3.7};
+  const Vec a{0, 1}, b{4, 3.7};
   CHECK(green(a, b) == free_wave(a, b));
   CHECK(green(a, a) == Complex(0));
 }

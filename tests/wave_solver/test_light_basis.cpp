@@ -25,7 +25,7 @@ double worst_error(const std::vector<double>& angles, const LightBasis& basis) {
   const std::size_t rank = basis.angles.size();
   for (std::size_t light = 0; light < angles.size(); ++light)
     for (int i = 0; i < 40; ++i) {
-      const Vec2 point = circle.centre + circle.radius * (i % 10 / 9.0) * direction(i);
+      const Vec point = circle.centre + circle.radius * (i % 10 / 9.0) * direction(i);
       Complex sum = 0;
       for (std::size_t j = 0; j < rank; ++j)
         sum += basis.weights[light * rank + j] *
@@ -102,19 +102,19 @@ TEST_CASE(
   const auto basis = basis_of(lights, two_pi, box, 1e-8);
   REQUIRE(basis.count() == 3);
   CHECK(basis.sources.empty());
-  const auto field = [&](std::size_t light, Vec2 point) {
+  const auto field = [&](std::size_t light, Vec point) {
     Complex sum = 0;
     for (std::size_t j = 0; j < basis.size(); ++j)
       sum += basis.weights[light * basis.size() + j] *
              std::polar(1.0, two_pi * dot(direction(basis.angles[j]), point));
     return sum;
   };
-  const Vec2 across{std::cos(0.3), -std::sin(0.3)};
+  const Vec across{std::cos(0.3), -std::sin(0.3)};
   for (const double t : {-7.0, -2.0, 0.0, 1.0, 6.0}) {
     const double expected = std::exp(-t * t / (waist * waist));
     CHECK(std::abs(field(0, lights[0].point + t * across) - expected) < 1e-7);
     CHECK(std::abs(field(1, lights[1].point + t * across) - expected) < 1e-7);
-    const Vec2 point{t, 5};
+    const Vec point{t, 5};
     CHECK(std::abs(field(2, point) - std::polar(1.0, two_pi * dot(direction(1), point))) < 1e-6);
   }
 }
@@ -127,8 +127,8 @@ TEST_CASE("point sources: reciprocal to near sensors, and to plane waves in the 
     return scattered_fields(placement, two_pi,
                             make_field_plan(lights, views, two_pi, around, 1e-10), options);
   };
-  const Vec2 here = around.centre + (around.radius + 2) * direction(0.7),
-             there = around.centre + (around.radius + 1) * direction(-2.0);
+  const Vec here = around.centre + (around.radius + 2) * direction(0.7),
+            there = around.centre + (around.radius + 1) * direction(-2.0);
   const Complex forth = fields_of({point_source(here)}, {near_sensor(there)})[0],
                 back = fields_of({point_source(there)}, {near_sensor(here)})[0];
   CHECK(std::abs(forth) > 1e-4);

@@ -102,8 +102,7 @@ class Draw {
       const Scatterer next = disk();
       const auto& [centre, other] = placement[one_of(placement.size())];
       const double gap = logarithmic(least_gap, 1) * std::min(next.radius, other.radius);
-      const Vec2 place =
-          centre + (next.radius + other.radius + gap) * direction(uniform(0, two_pi));
+      const Vec place = centre + (next.radius + other.radius + gap) * direction(uniform(0, two_pi));
       const bool free =
           std::ranges::all_of(placement, [&, &centre = centre](const PlacedScatterer& placed) {
             const double reach = placed.scatterer.radius + next.radius;
@@ -147,7 +146,7 @@ Counts check_placements(std::uint64_t first, std::uint64_t count, double least_g
   return counts;
 }
 
-Placement pair_of(Scatterer::Kind kind, Complex index, Vec2 radii, double gap) {
+Placement pair_of(Scatterer::Kind kind, Complex index, Vec radii, double gap) {
   const Scatterer first{.kind = kind, .radius = radii.x, .index = index},
       second{.kind = kind, .radius = radii.z, .index = index};
   return {{{0, 0}, first}, {{0, radii.x + radii.z + gap * std::min(radii.x, radii.z)}, second}};

@@ -17,7 +17,7 @@ TEST_CASE("proxy contour: goes around once at its distance, evenly spaced") {
     const auto points = proxy_contour(hull, distance, spacing);
     double around = 0, area = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const Vec2 here = points[i], next = points[(i + 1) % points.size()];
+      const Vec here = points[i], next = points[(i + 1) % points.size()];
       CHECK(hull.distance(here) == doctest::Approx(distance).epsilon(1e-12));
       CHECK(length(next - here) <= spacing * (1 + 1e-12));
       around += length(next - here);

@@ -19,7 +19,7 @@ TEST_CASE("wave solution: an empty placement has zero fields") {
 }
 
 TEST_CASE("wave solution: one scatterer agrees with its T-matrix and the phase of its position") {
-  const Vec2 place{0.4, -1.3};
+  const Vec place{0.4, -1.3};
   for (const std::string kind : {"D", "N", "TM15", "TE15abs"}) {
     Scatterer disk = reference_scatterer(kind);
     disk.radius = 0.3;
@@ -116,7 +116,7 @@ TEST_CASE("wave solution: inner points, bulk phase functions and overlaps are re
   CHECK_THROWS_AS(solve({{{0, 0}, henyey_greenstein}}, two_pi, {0}), InputError);
 
   Placement overlapping = two;
-  overlapping[1].position = overlapping[0].position + Vec2{0.1, 0};
+  overlapping[1].position = overlapping[0].position + Vec{0.1, 0};
   CHECK_THROWS_AS(solve(overlapping, two_pi, {0}), InputError);
 }
 

@@ -39,7 +39,7 @@ ClusterTMatrix cluster_waves(double k, double radius, double gap, int order);
 
 /// Position of a copy of a cluster and the angle of its rotation (C2).
 struct ClusterPlace {
-  Vec2 centre;
+  Vec centre;
   double angle = 0;
 };
 

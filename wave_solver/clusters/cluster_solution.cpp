@@ -146,7 +146,7 @@ KeptCluster read_file(const std::string& path) {
 }  // namespace
 
 KeptCluster kept_cluster(const Placement& placement, double k, double gap, double tolerance) {
-  const Vec2 centre = enclosing_circle(placement).centre;
+  const Vec centre = enclosing_circle(placement).centre;
   Placement about = placement;
   for (auto& placed : about) placed.position = placed.position - centre;
   return {cluster_t_matrix(about, k, gap, tolerance), centre, tolerance};
@@ -208,9 +208,9 @@ Circle circle_of(const ClusterEquations& equations) {
 }
 
 void require_off(const ClusterTMatrix& cluster, const std::vector<ClusterPlace>& places,
-                 const std::vector<Vec2>& sensors) {
+                 const std::vector<Vec>& sensors) {
   const double least = cluster.radius + cluster.gap;
-  for (const Vec2& sensor : sensors)
+  for (const Vec& sensor : sensors)
     for (const auto& [centre, angle] : places)
       if (!(length(sensor - centre) >= least))
         throw InputError("near_sensors",
@@ -306,7 +306,7 @@ std::vector<Complex> ClusterSolution::fields(const std::vector<View>& views) con
 }
 
 void write_solution(ResultFile& file, const ClusterSolution& solution,
-                    const std::vector<double>& view_angles, const std::vector<Vec2>& sensors) {
+                    const std::vector<double>& view_angles, const std::vector<Vec>& sensors) {
   const ResultGroup root(file, cluster_solution_table);
   write_light_axis(file, solution.light_angles());
   const auto put = [&](const std::string& name, const std::vector<View>& views) {
@@ -314,7 +314,7 @@ void write_solution(ResultFile& file, const ClusterSolution& solution,
     write_view_axis(file, views);
     root.put(name, solution.fields(views));
   };
-  put("far_field", column(view_angles, far_view));
+  put("far_field", far_views(view_angles));
   put("near_field", column(sensors, near_sensor));
   const auto& places = solution.places();
   root.number("copy", places.size());

@@ -14,7 +14,7 @@ namespace flatspeckle::wave {
 /// accuracy.
 struct KeptCluster {
   ClusterTMatrix t_matrix;
-  Vec2 centre;  ///< centre of the enclosing circle, in the coordinates of the placement
+  Vec centre;  ///< centre of the enclosing circle, in the coordinates of the placement
   double tolerance = 0;
 };
 
@@ -62,6 +62,6 @@ extern const DatasetTable cluster_solution_table;
 /// Writes the same datasets as write_solution() of a WaveSolution, with the places of the copies
 /// instead of the scatterers.
 void write_solution(ResultFile& file, const ClusterSolution& solution,
-                    const std::vector<double>& view_angles, const std::vector<Vec2>& sensors);
+                    const std::vector<double>& view_angles, const std::vector<Vec>& sensors);
 
 }  // namespace flatspeckle::wave

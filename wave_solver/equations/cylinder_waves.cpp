@@ -66,12 +66,12 @@ Pair<ScaledComplex> scaled_pair(const std::vector<Radial>& radial, ExtendedCompl
 }
 
 // Makes the Pair of H_m in Scaled numbers, whose range is sufficient for orders of thousands.
-Pair<ScaledComplex> scaled_pair(double k, Vec2 d, int order) {
+Pair<ScaledComplex> scaled_pair(double k, Vec d, int order) {
   const long double x = d.x, z = d.z, r = std::sqrt(x * x + z * z);
   return scaled_pair(scaled_hankel(order, static_cast<double>(k * r)), {z / r, x / r});
 }
 
-Pair<ScaledComplex> regular_pair(double k, Vec2 d, int order) {
+Pair<ScaledComplex> regular_pair(double k, Vec d, int order) {
   const long double x = d.x, z = d.z, r = std::sqrt(x * x + z * z);
   if (r > 0) return scaled_pair(scaled_bessel_j(order, static_cast<double>(k * r)), {z / r, x / r});
   std::vector<ScaledComplex> at_centre(order + 1);
@@ -82,13 +82,13 @@ Pair<ScaledComplex> regular_pair(double k, Vec2 d, int order) {
 // Values of H_m, cos(m theta) and sin(m theta) for many displacements: [m][displacement].
 class PairTable {
  public:
-  PairTable(double k, std::span<const Vec2> displacements, int order)
+  PairTable(double k, std::span<const Vec> displacements, int order)
       : count_(displacements.size()) {
     const std::size_t size = (order + 1) * count_;
     for (auto* values : {&h_re_, &h_im_, &cosine_, &sine_}) values->resize(size);
     std::vector<double> r(count_), turn_re(count_), turn_im(count_);
     for (std::size_t i = 0; i < count_; ++i) {
-      const auto [x, z] = displacements[i];
+      const double x = displacements[i].x, z = displacements[i].z;
       const double length = std::sqrt(x * x + z * z);
       turn_re[i] = z / length;
       turn_im[i] = x / length;
@@ -127,11 +127,11 @@ class PairTable {
 
 // A displacement and the largest order required for it.
 struct Displacement {
-  Vec2 d;
+  Vec d;
   int order = 0;
 };
 
-bool is_zero(Vec2 d) {
+bool is_zero(Vec d) {
   return d.x == 0 && d.z == 0;
 }
 
@@ -146,12 +146,12 @@ void for_each_pair(double k, const std::vector<Displacement>& displacements,
   Pair<Complex> pair, nothing;
   pair.resize(order);
   nothing.resize(order);
-  std::vector<Vec2> part;
+  std::vector<Vec> part;
   for (std::size_t first = 0; first < displacements.size(); first += chunk) {
     const std::size_t last = std::min(first + chunk, displacements.size());
     part.clear();
     for (std::size_t i = first; i < last; ++i)
-      part.push_back(is_zero(displacements[i].d) ? Vec2{1 / k, 0} : displacements[i].d);
+      part.push_back(is_zero(displacements[i].d) ? Vec{1 / k, 0} : displacements[i].d);
     const PairTable table(k, part, order);
     for (std::size_t i = first; i < last; ++i) {
       if (is_zero(displacements[i].d)) {
@@ -184,7 +184,7 @@ void translate_points(double k, std::span<const ModeSet> receivers, const ModeSe
                       Target out) {
   std::vector<double> r(receivers.size());
   for (std::size_t i = 0; i < r.size(); ++i) {
-    const Vec2 d = receivers[i].centre - sender.centre;
+    const Vec d = receivers[i].centre - sender.centre;
     r[i] = is_zero(d) ? 1 : k * std::sqrt(dot(d, d));
   }
   hankel0(r, {out.data, r.size()});
@@ -237,7 +237,7 @@ void translate_regular(double k, std::span<const ModeSet> receivers, const ModeS
   }
 }
 
-void expand_plane_wave(double k, std::span<const ModeSet> receivers, Vec2 w, Complex factor,
+void expand_plane_wave(double k, std::span<const ModeSet> receivers, Vec w, Complex factor,
                        std::span<Complex> out) {
   int highest = 0;
   std::vector<double> phases;
@@ -268,17 +268,17 @@ void expand_plane_wave(double k, std::span<const ModeSet> receivers, Vec2 w, Com
 }
 
 // Treats the points as receivers: the field at a point is the coefficient of J_0 about that point.
-void field_at(double k, std::span<const Vec2> points, const ModeSet& sender, Target out) {
+void field_at(double k, std::span<const Vec> points, const ModeSet& sender, Target out) {
   const Mode value{0, false, root_half};
   std::vector<ModeSet> receivers;
-  for (const Vec2& point : points) receivers.push_back({point, {&value, 1}, 0});
+  for (const Vec& point : points) receivers.push_back({point, {&value, 1}, 0});
   translate(k, receivers, sender, out);
 }
 
-void directional_derivatives(double k, std::span<const Vec2> points, std::span<const Vec2> along,
+void directional_derivatives(double k, std::span<const Vec> points, std::span<const Vec> along,
                              const ModeSet& sender, Target out) {
   std::vector<Displacement> displacements;
-  for (const Vec2& point : points)
+  for (const Vec& point : points)
     displacements.push_back({point - sender.centre, sender.order + 1});
   for_each_pair(k, displacements, [&](const auto& pair, std::size_t i) {
     for (std::size_t column = 0; column < sender.modes.size(); ++column) {

@@ -23,7 +23,7 @@ struct Mode {
 
 /// Modes about a common centre.
 struct ModeSet {
-  Vec2 centre;
+  Vec centre;
   std::span<const Mode> modes;
   int order = 0;  ///< largest order of the modes
 };
@@ -58,15 +58,15 @@ void translate_regular(double k, std::span<const ModeSet> receivers, const ModeS
 /// receivers (C6). `out` receives sqrt(2) weight i^n {cos, sin}(n angle) e^{i k w.r} for the modes
 /// of one receiver (at r) after the other. The coefficients for -w map amplitudes of outgoing modes
 /// to the far field along w.
-void expand_plane_wave(double k, std::span<const ModeSet> receivers, Vec2 w, Complex factor,
+void expand_plane_wave(double k, std::span<const ModeSet> receivers, Vec w, Complex factor,
                        std::span<Complex> out);
 
 /// Evaluates the sender's outgoing modes at points. Rows are points, columns are modes.
-void field_at(double k, std::span<const Vec2> points, const ModeSet& sender, Target out);
+void field_at(double k, std::span<const Vec> points, const ModeSet& sender, Target out);
 
 /// Evaluates the directional derivatives of the sender's outgoing modes, divided by k: at
 /// points[i], along the unit vector along[i]. Rows are points, columns are modes.
-void directional_derivatives(double k, std::span<const Vec2> points, std::span<const Vec2> along,
+void directional_derivatives(double k, std::span<const Vec> points, std::span<const Vec> along,
                              const ModeSet& sender, Target out);
 
 }  // namespace flatspeckle::wave

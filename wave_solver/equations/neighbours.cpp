@@ -27,10 +27,10 @@ void enter(const Neighbour& candidate, const Placement& placement, std::size_t m
 
 std::vector<Neighbour> found_in(const CellGrid& grid, const Placement& placement, std::size_t j,
                                 std::size_t most) {
-  const Vec2 position = placement[j].position;
+  const Vec position = placement[j].position;
   const double radius = placement[j].scatterer.disk_radius();
   std::vector<Neighbour> found;
-  grid.any_near(position, [&](Vec2 other, std::size_t l) {
+  grid.any_near(position, [&](Vec other, std::size_t l) {
     if (l == j) return false;
     const double distance = length(other - position);
     const double image = nearest_image(radius, placement[l].scatterer.disk_radius(), distance);

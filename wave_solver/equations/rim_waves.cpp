@@ -38,7 +38,7 @@ std::vector<ExtendedComplex> scaled_bessel(int order, ExtendedComplex z) {
 
 // Returns cos(n phi) + i sin(n phi) for n = 0 .. order, with phi the angle of the vector d and r
 // its length. If r = 0, phi is taken as 0.
-std::vector<Complex> turns(int order, Vec2 d, double r) {
+std::vector<Complex> turns(int order, Vec d, double r) {
   const Complex turn = r > 0 ? Complex(d.z, d.x) / r : Complex(1);
   std::vector<Complex> phases(order + 1, 1);
   for (int n = 1; n <= order; ++n) phases[n] = product(phases[n - 1], turn);
@@ -52,7 +52,7 @@ bool is_transparent(const TMatrixSystem& system, std::size_t scatterer) {
   return std::all_of(t.begin(), t.end(), [](const ExtendedComplex& t_n) { return t_n == 0.0L; });
 }
 
-void field_inside(const TMatrixSystem& system, std::size_t disk, std::span<const Vec2> points,
+void field_inside(const TMatrixSystem& system, std::size_t disk, std::span<const Vec> points,
                   Target out) {
   const auto& [centre, cylinder] = system.placement()[disk];
   const ModeSet modes = system.modes(disk);
@@ -62,7 +62,7 @@ void field_inside(const TMatrixSystem& system, std::size_t disk, std::span<const
   auto waves = rim_waves(cylinder, system.k(), modes.order);
   for (int n = 0; n <= modes.order; ++n) waves[n].field /= at_rim[n];
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Vec2 d = points[i] - centre;
+    const Vec d = points[i] - centre;
     const double r = length(d);
     const ExtendedComplex z = mk * static_cast<long double>(r);
     const ExtendedComplex growth = std::exp(product(ExtendedComplex(0, 1), rim - z));

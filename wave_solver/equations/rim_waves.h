@@ -28,7 +28,7 @@ bool is_transparent(const TMatrixSystem& system, std::size_t scatterer);
 /// Evaluates the total field at points inside a disk of kind tm or te. Rows are points; a column is
 /// the field if the unknown of one mode of the disk is 1 and its other unknowns are 0.
 /// Precondition: the disk is not transparent.
-void field_inside(const TMatrixSystem& system, std::size_t disk, std::span<const Vec2> points,
+void field_inside(const TMatrixSystem& system, std::size_t disk, std::span<const Vec> points,
                   Target out);
 
 }  // namespace flatspeckle::wave

@@ -28,9 +28,9 @@ namespace {
 struct Side {
   std::vector<Mode> modes;
   std::vector<Complex> diagonal;
-  Vec2 centre;
+  Vec centre;
 
-  Side(const std::vector<ScaledComplex>& t, bool odd, Vec2 at) : centre(at) {
+  Side(const std::vector<ScaledComplex>& t, bool odd, Vec at) : centre(at) {
     for (int n = odd ? 1 : 0; n < static_cast<int>(t.size()); ++n) {
       const ScaledReal size = abs(t[n]), sigma = sqrt(size);
       modes.push_back({n, odd, n == 0 ? root_half * sigma : sigma});
@@ -40,7 +40,7 @@ struct Side {
   ModeSet set() const { return {centre, modes, modes.empty() ? 0 : modes.back().order}; }
   // Writes the right-hand side -sigma a of the plane wave with the given angle.
   void light(double angle, double k, Complex* column) const {
-    const Vec2 w = direction(angle);
+    const Vec w = direction(angle);
     const Complex there = std::numbers::sqrt2 * std::polar(1.0, k * dot(w, centre));
     for (std::size_t i = 0; i < modes.size(); ++i) {
       const int n = modes[i].order;
@@ -205,7 +205,7 @@ double xi(double radius, double other_radius, double distance) {
 
 class BasisOrders {
  public:
-  BasisOrders(const Placement& placement, double k, double tolerance, std::span<const Vec2> sensors)
+  BasisOrders(const Placement& placement, double k, double tolerance, std::span<const Vec> sensors)
       : placement_(placement), k_(k), tolerance_(tolerance), sensors_(sensors) {
     for (const auto& placed : placement) species_of_.push_back(species_of(placed.scatterer));
   }
@@ -234,7 +234,7 @@ class BasisOrders {
 
   double nearest_sensor(std::size_t j) const {
     double nearest = nowhere;
-    for (const Vec2& sensor : sensors_)
+    for (const Vec& sensor : sensors_)
       nearest = std::min(nearest, length(sensor - placement_[j].position));
     return nearest;
   }
@@ -416,7 +416,7 @@ class BasisOrders {
 
   const Placement& placement_;
   double k_, tolerance_;
-  std::span<const Vec2> sensors_;
+  std::span<const Vec> sensors_;
   std::vector<std::size_t> species_of_;
   std::vector<Species> species_;
   // Results of pair_strength() and bound(), by contact and highest order.
@@ -427,7 +427,7 @@ class BasisOrders {
 
 }  // namespace
 
-Basis basis(const Placement& placement, double k, double tolerance, std::span<const Vec2> sensors,
+Basis basis(const Placement& placement, double k, double tolerance, std::span<const Vec> sensors,
             double growth) {
   BasisOrders orders(placement, k, tolerance, sensors);
   const bool disks = std::any_of(placement.begin(), placement.end(),
@@ -442,7 +442,7 @@ Basis basis(const Placement& placement, double k, double tolerance, std::span<co
 }
 
 TMatrixSystem::TMatrixSystem(Placement placement, double k, double tolerance,
-                             std::span<const Vec2> sensors, double growth)
+                             std::span<const Vec> sensors, double growth)
     : WaveEquations(k), placement_(std::move(placement)) {
   const auto [t, gap_plasmons] = basis(placement_, k, tolerance, sensors, growth);
   has_gap_plasmons_ = gap_plasmons;
@@ -492,7 +492,7 @@ std::vector<Complex> TMatrixSystem::radius_derivatives() const {
   return derivatives;
 }
 
-std::vector<Complex> TMatrixSystem::source_right_hand_side(Vec2 source) const {
+std::vector<Complex> TMatrixSystem::source_right_hand_side(Vec source) const {
   require_outside(placement_, source);
   auto side = outside_row(source);
   for (Complex& value : side) value *= Complex(0, -0.25);

@@ -45,7 +45,7 @@ struct Basis {
 ///
 /// Throws InputError for scatterers without a T-matrix, and if an order above highest_order would
 /// be needed; the message contains that order.
-Basis basis(const Placement& placement, double k, double tolerance, std::span<const Vec2> sensors,
+Basis basis(const Placement& placement, double k, double tolerance, std::span<const Vec> sensors,
             double growth = 1);
 
 /// Largest basis order. Two disks of this order have 16,000 unknowns and a matrix of 4 GB.
@@ -59,7 +59,7 @@ class TMatrixSystem : public WaveEquations {
   /// Basis orders follow from the tolerance (basis()). sensors: points at which the near field will
   /// be evaluated. growth: factor by which the orders are increased. Throws InputError for
   /// scatterers without a T-matrix and for disks too close to be resolved.
-  TMatrixSystem(Placement placement, double k, double tolerance, std::span<const Vec2> sensors = {},
+  TMatrixSystem(Placement placement, double k, double tolerance, std::span<const Vec> sensors = {},
                 double growth = 1);
 
   const Placement& placement() const { return placement_; }
@@ -76,7 +76,7 @@ class TMatrixSystem : public WaveEquations {
   /// Returns the right-hand side -sigma a for a point source, whose field is the Green function
   /// (C3). By reciprocity it is -i/4 times outside_row(). Throws InputError for a source inside a
   /// disk or on a point scatterer.
-  std::vector<Complex> source_right_hand_side(Vec2 source) const;
+  std::vector<Complex> source_right_hand_side(Vec source) const;
 
  private:
   Placement placement_;

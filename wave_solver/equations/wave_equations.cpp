@@ -132,7 +132,7 @@ void WaveEquations::entries(std::span<const std::size_t> rows, std::span<const s
   }
 }
 
-void WaveEquations::outgoing(std::span<const Vec2> points, std::span<const std::size_t> columns,
+void WaveEquations::outgoing(std::span<const Vec> points, std::span<const std::size_t> columns,
                              Complex* out, std::size_t ld) const {
   const Listed senders(*this, columns);
   for (std::size_t s = 0; s < senders.runs.size(); ++s)
@@ -151,7 +151,7 @@ std::vector<ModeSet> WaveEquations::all_modes() const {
 void WaveEquations::point_columns(Complex* matrix) const {
   const std::size_t size = unknowns();
   std::vector<double> strength(size);
-  std::vector<Vec2> positions(size);
+  std::vector<Vec> positions(size);
   for (std::size_t j = 0; j < size; ++j) {
     strength[j] = std::numbers::sqrt2 * static_cast<double>(modes_[j].weight);
     positions[j] = bodies_[j].centre;
@@ -160,7 +160,7 @@ void WaveEquations::point_columns(Complex* matrix) const {
     Complex* const column = matrix + j * (size + 1);
     std::vector<double> distance(size - j);
     for (std::size_t i = 1; i < distance.size(); ++i) {
-      const Vec2 d = positions[j + i] - positions[j];
+      const Vec d = positions[j + i] - positions[j];
       distance[i] = k_ * std::sqrt(dot(d, d));
     }
     column[0] = diagonal_[j];
@@ -264,7 +264,7 @@ std::vector<Complex> WaveEquations::far_rows(std::span<const double> view_angles
   return plane_waves(view_angles, -1, std::polar(size, -std::numbers::pi / 4));
 }
 
-std::vector<Complex> WaveEquations::outside_row(Vec2 point) const {
+std::vector<Complex> WaveEquations::outside_row(Vec point) const {
   std::vector<Complex> row(unknowns());
   for (std::size_t j = 0; j < bodies_.size(); ++j)
     field_at(k_, {&point, 1}, modes(j), {&row[first_[j]], 1});

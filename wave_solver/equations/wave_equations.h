@@ -64,7 +64,7 @@ class WaveEquations {
   /// A scatterer. The scatterer and the sources of its waves lie within the radius, which is 0 for
   /// a point.
   struct Body {
-    Vec2 centre;
+    Vec centre;
     double radius = 0;
   };
 
@@ -87,7 +87,7 @@ class WaveEquations {
                Complex* out, std::size_t ld) const;
   /// Writes to out[i + ld * j] the field at points[i] if the unknown columns[j] is 1 and all others
   /// are 0. The points must lie outside the bodies of these unknowns.
-  void outgoing(std::span<const Vec2> points, std::span<const std::size_t> columns, Complex* out,
+  void outgoing(std::span<const Vec> points, std::span<const std::size_t> columns, Complex* out,
                 std::size_t ld) const;
 
   /// Returns M, column by column. Threaded unless called from a parallel region.
@@ -103,7 +103,7 @@ class WaveEquations {
   /// view.
   std::vector<Complex> far_rows(std::span<const double> view_angles) const;
   /// Contribution of each unknown to the scattered field at a point outside all bodies.
-  std::vector<Complex> outside_row(Vec2 point) const;
+  std::vector<Complex> outside_row(Vec point) const;
   /// Returns far_rows() or outside_row() for each view: [view][unknown].
   std::vector<Complex> view_rows(std::span<const View> views) const;
 

@@ -51,7 +51,7 @@ struct Sines {
 /// Returns the parameter sigma (C23) of the direct ray from p to q in a parabolic guide: the
 /// smallest sigma for which the ray has |v|^2 = n^2 at p (v = dx/dsigma). Newton's method, started
 /// below this sigma, converges monotonically.
-std::optional<double> sigma_in_guide(const IndexField& field, Vec2 p, Vec2 q) {
+std::optional<double> sigma_in_guide(const IndexField& field, Vec p, Vec q) {
   const double deep = q.z - p.z, square = field.square(p);
   const double most = std::sqrt(std::max({square, field.square(q), field.origin * field.origin}));
   double sigma = std::hypot(deep, q.x - p.x) / most;
@@ -72,16 +72,16 @@ std::optional<double> sigma_in_guide(const IndexField& field, Vec2 p, Vec2 q) {
   return std::nullopt;
 }
 
-std::vector<Vec2> sources_of(const CovarianceRequest& request) {
+std::vector<Vec> sources_of(const CovarianceRequest& request) {
   if (!request.lights.all(Light::Kind::point))
     throw InputError("index_field: the exact solver of graded media requires near_sources only");
-  std::vector<Vec2> sources;
+  std::vector<Vec> sources;
   for (const Light& light : request.lights) sources.push_back(light.point);
   return sources;
 }
 
-std::vector<Vec2> sensors_of(const CovarianceRequest& request) {
-  std::vector<Vec2> sensors;
+std::vector<Vec> sensors_of(const CovarianceRequest& request) {
+  std::vector<Vec> sensors;
   for (const View& view : request.views) {
     if (!view.near)
       throw InputError("index_field: the exact solver of graded media requires near_sensors only");
@@ -91,10 +91,10 @@ std::vector<Vec2> sensors_of(const CovarianceRequest& request) {
 }
 
 /// Returns the largest distance between two of the points.
-double longest_distance(const std::vector<Vec2>& places) {
+double longest_distance(const std::vector<Vec>& places) {
   double longest = 0;
-  for (const Vec2 a : places)
-    for (const Vec2 b : places) longest = std::max(longest, length(a - b));
+  for (const Vec a : places)
+    for (const Vec b : places) longest = std::max(longest, length(a - b));
   return longest;
 }
 
@@ -119,9 +119,9 @@ GradedGreen::GradedGreen(const IndexField& field, double k, double longest) : fi
   }
 }
 
-std::optional<double> GradedGreen::sigma(Vec2 p, Vec2 q) const {
+std::optional<double> GradedGreen::sigma(Vec p, Vec q) const {
   if (field_.kind == IndexField::Kind::parabolic) return sigma_in_guide(field_, p, q);
-  const Vec2 separation = q - p;
+  const Vec separation = q - p;
   const double square = dot(separation, separation),
                mean = (field_.square(p) + field_.square(q)) / 2,
                root = mean * mean - dot(field_.gradient, field_.gradient) * square / 4;
@@ -129,8 +129,8 @@ std::optional<double> GradedGreen::sigma(Vec2 p, Vec2 q) const {
   return std::sqrt(2 * square / (mean + std::sqrt(root)));
 }
 
-void GradedGreen::refuse(Vec2 p, Vec2 q) const {
-  const auto text = [](Vec2 x) { return '(' + number_text(x.x) + ", " + number_text(x.z) + ')'; };
+void GradedGreen::refuse(Vec p, Vec q) const {
+  const auto text = [](Vec x) { return '(' + number_text(x.x) + ", " + number_text(x.z) + ')'; };
   throw InputError(
       "index_field", field_.describe(),
       "bends rays so much that the direct wave between " + text(p) + " and " + text(q) +
@@ -138,12 +138,12 @@ void GradedGreen::refuse(Vec2 p, Vec2 q) const {
           "box with closer sources and sensors");
 }
 
-Complex GradedGreen::operator()(Vec2 p, Vec2 q) const {
+Complex GradedGreen::operator()(Vec p, Vec q) const {
   const auto along = sigma(p, q);
   if (!along) refuse(p, q);
   const double t0 = *along / (2 * k_);
   const bool guide = field_.kind == IndexField::Kind::parabolic;
-  const Vec2 separation = q - p;
+  const Vec separation = q - p;
   const double mean = (field_.square(p) + field_.square(q)) / 2,
                force = k_ * k_ * length(field_.gradient);
   const double across = guide ? separation.z * separation.z : dot(separation, separation),
@@ -182,15 +182,15 @@ const DatasetTable graded_table{
     {{"near_source_field", Data::complex, "light sensor", "1",
       "scattered field of a point source, the Green function, in a graded medium"}}};
 
-GradedFields::GradedFields(const IndexField& field, double k, std::vector<Vec2> sources,
-                           std::vector<Vec2> sensors, const std::vector<Vec2>& within)
+GradedFields::GradedFields(const IndexField& field, double k, std::vector<Vec> sources,
+                           std::vector<Vec> sensors, const std::vector<Vec>& within)
     : k_(k),
       sources_(std::move(sources)),
       sensors_(std::move(sensors)),
       green_(field, k, longest_distance(concatenated(concatenated(within, sources_), sensors_))) {
-  for (const Vec2 place : within)
+  for (const Vec place : within)
     for (const auto* others : {&within, &std::as_const(sources_), &std::as_const(sensors_)})
-      for (const Vec2 other : *others)
+      for (const Vec other : *others)
         if (other != place) green_(place, other);
 }
 
@@ -206,9 +206,9 @@ GradedFields graded_fields(const Scene& scene) {
 /// Returns -4 i G between each point and each scatterer, [point][scatterer]. In a uniform medium -4
 /// i G is H_0.
 std::vector<Complex> GradedFields::rows(const Placement& placement,
-                                        const std::vector<Vec2>& points) const {
+                                        const std::vector<Vec>& points) const {
   std::vector<Complex> rows;
-  for (const Vec2 point : points)
+  for (const Vec point : points)
     for (const PlacedScatterer& placed : placement)
       rows.push_back(Complex(0, -4) * green_(placed.position, point));
   return rows;
@@ -218,7 +218,7 @@ std::vector<Complex> GradedFields::of(const Placement& placement) const {
   if (placement.empty()) return std::vector<Complex>(sources_.size() * sensors_.size());
   auto lights = rows(placement, sources_);
   for (Complex& field : lights) field *= Complex(0, 0.25);  // G, the field of a source
-  const auto wave = [&](Vec2 p, Vec2 q) {
+  const auto wave = [&](Vec p, Vec q) {
     return p == q ? Complex(0) : Complex(0, -4) * green_(p, q);
   };
   return foldy_lax(placement, k_, wave, lights, rows(placement, sensors_));

@@ -22,11 +22,11 @@ class GradedGreen {
 
   /// Returns G for the points p and q. Throws InputError if the direct wave cannot be separated
   /// from returning waves, or if no ray connects the points.
-  Complex operator()(Vec2 p, Vec2 q) const;
+  Complex operator()(Vec p, Vec q) const;
 
  private:
-  std::optional<double> sigma(Vec2 p, Vec2 q) const;  ///< parameter of the direct ray (C32)
-  [[noreturn]] void refuse(Vec2 p, Vec2 q) const;
+  std::optional<double> sigma(Vec p, Vec q) const;  ///< parameter of the direct ray (C32)
+  [[noreturn]] void refuse(Vec p, Vec q) const;
 
   IndexField field_;
   double k_, step_;
@@ -43,18 +43,18 @@ class GradedFields {
   /// within: corners of the region that contains the scatterers. Throws InputError for index fields
   /// that GradedGreen does not support, and if GradedGreen cannot compute the direct wave between a
   /// corner and another corner, a source or a sensor.
-  GradedFields(const IndexField& field, double k, std::vector<Vec2> sources,
-               std::vector<Vec2> sensors, const std::vector<Vec2>& within);
+  GradedFields(const IndexField& field, double k, std::vector<Vec> sources,
+               std::vector<Vec> sensors, const std::vector<Vec>& within);
 
   /// Returns the scattered field of a placement, [light][view]. Throws under the conditions of
   /// GradedGreen.
   std::vector<Complex> of(const Placement& placement) const;
 
  private:
-  std::vector<Complex> rows(const Placement& placement, const std::vector<Vec2>& points) const;
+  std::vector<Complex> rows(const Placement& placement, const std::vector<Vec>& points) const;
 
   double k_;
-  std::vector<Vec2> sources_, sensors_;
+  std::vector<Vec> sources_, sensors_;
   GradedGreen green_;
 };
 

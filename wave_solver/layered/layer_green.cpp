@@ -208,7 +208,7 @@ Complex LayerGreen::image(double x, double z) const {
   return sum;
 }
 
-Complex LayerGreen::operator()(Vec2 p, Vec2 q) const {
+Complex LayerGreen::operator()(Vec p, Vec q) const {
   const double x = std::abs(p.x - q.x), depth = waves_.depth(),
                near = std::min(p.z + q.z, 2 * depth - p.z - q.z);
   FS_EXPECT(x <= width_ && near >= 0);

@@ -27,7 +27,7 @@ class LayerGreen {
 
   /// Returns -4 i G for two points between the faces. For equal points, returns the part that the
   /// faces reflect, without H_0.
-  Complex operator()(Vec2 p, Vec2 q) const;
+  Complex operator()(Vec p, Vec q) const;
 
  private:
   struct Node;

@@ -33,7 +33,7 @@ Complex LayerWaves::reflected(Complex p) const {
   return (within - beyond) / (within + beyond);
 }
 
-Complex LayerWaves::illuminated(double angle, Vec2 point) const {
+Complex LayerWaves::illuminated(double angle, Vec point) const {
   const double p = outside_k_ * std::sin(angle), normal = outside_k_ * std::abs(std::cos(angle));
   const bool downwards = std::cos(angle) > 0;
   // The field is an even function of the wavenumber along z, so that a small one replaces 0.
@@ -49,7 +49,7 @@ Complex LayerWaves::illuminated(double angle, Vec2 point) const {
   return beyond * (even + odd) * std::polar(1.0, face_phase);
 }
 
-Complex LayerWaves::emitted(double angle, Vec2 point) const {
+Complex LayerWaves::emitted(double angle, Vec point) const {
   const Complex reversed = illuminated(angle + std::numbers::pi, point) / derivative_ratio_;
   return std::sqrt(2 / (std::numbers::pi * outside_k_)) * std::polar(1.0, -std::numbers::pi / 4) *
          reversed;

@@ -36,10 +36,10 @@ class LayerWaves {
 
   /// Returns the field at a point of the layer under a unit plane wave exp(i k w.r) that arrives
   /// from outside in the direction `angle` (C2, C3).
-  Complex illuminated(double angle, Vec2 point) const;
+  Complex illuminated(double angle, Vec point) const;
   /// Returns the amplitude (C4) in the direction `angle` outside of the wave H_0(k |r - point|)
   /// that a point of the layer emits.
-  Complex emitted(double angle, Vec2 point) const;
+  Complex emitted(double angle, Vec point) const;
 
  private:
   double k_, outside_k_, depth_, derivative_ratio_;

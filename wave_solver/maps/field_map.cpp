@@ -60,7 +60,7 @@ std::vector<MapTile> tiles(const MapGrid& grid, std::size_t pixels) {
   return all;
 }
 
-std::vector<std::uint32_t> ring_of_pixels(const MapGrid& grid, const MapTile& tile, Vec2 centre,
+std::vector<std::uint32_t> ring_of_pixels(const MapGrid& grid, const MapTile& tile, Vec centre,
                                           double low, double high) {
   const PixelRange across(grid.low.x, grid.step().x, centre.x, high, tile.ix, tile.nx);
   const PixelRange along(grid.low.z, grid.step().z, centre.z, high, tile.iz, tile.nz);
@@ -143,8 +143,8 @@ double ring_cost(double ring_points, double modes, double near_points) {
 }
 
 /// Adds the scattered field of one scatterer at points outside it to field, [light][point].
-void add_scattered(const WaveSolution& solution, std::size_t scatterer,
-                   std::span<const Vec2> points, std::span<Complex> field) {
+void add_scattered(const WaveSolution& solution, std::size_t scatterer, std::span<const Vec> points,
+                   std::span<Complex> field) {
   const TMatrixSystem& system = solution.system();
   const ModeSet modes = system.modes(scatterer);
   std::vector<Complex> values(points.size() * modes.modes.size());
@@ -159,8 +159,8 @@ constexpr std::size_t points_at_a_time = 256;
 
 using Pixels = std::vector<std::uint32_t>;
 
-std::vector<Vec2> positions(const MapGrid& grid, const MapTile& tile, const Pixels& pixels) {
-  std::vector<Vec2> result;
+std::vector<Vec> positions(const MapGrid& grid, const MapTile& tile, const Pixels& pixels) {
+  std::vector<Vec> result;
   for (const std::uint32_t pixel : pixels)
     result.push_back(grid.pixel(tile.ix + pixel % tile.nx, tile.iz + pixel / tile.nx));
   return result;
@@ -201,7 +201,7 @@ class RingField {
 
   /// Returns the field of all rings, [light][point], or nullopt if there are so few points that a
   /// direct sum over all pairs is faster.
-  std::optional<std::vector<Complex>> sum(std::span<const Vec2> points) const {
+  std::optional<std::vector<Complex>> sum(std::span<const Vec> points) const {
     const double finer = std::max(tolerance_ / largest_charge_, smallest_tolerance);
     const HelmholtzSum sum(solution_.system().k(), positions_, points, finer);
     if (sum.range() == 0) return std::nullopt;
@@ -209,13 +209,13 @@ class RingField {
   }
 
   /// Returns the field of a scatterer's own waves minus that of its ring: [light][point].
-  std::vector<Complex> correction(std::size_t scatterer, std::span<const Vec2> points) const {
+  std::vector<Complex> correction(std::size_t scatterer, std::span<const Vec> points) const {
     std::vector<Complex> field(solution_.light_angles().size() * points.size());
     add_scattered(solution_, scatterer, points, field);
     std::vector<double> distances;
     const std::size_t first = first_[scatterer], count = ring(scatterer).ring.points;
     for (std::size_t s = first; s < first + count; ++s)
-      for (const Vec2 point : points)
+      for (const Vec point : points)
         distances.push_back(solution_.system().k() * length(point - positions_[s]));
     std::vector<Complex> waves(distances.size());
     std::vector<std::size_t> coincident;
@@ -294,7 +294,7 @@ class RingField {
   std::vector<std::uint32_t> kind_;
   std::vector<ClearedRing> rings_;
   std::vector<std::size_t> first_;  // index of the first source of each scatterer's ring
-  std::vector<Vec2> positions_;
+  std::vector<Vec> positions_;
   std::vector<Complex> charges_;  // [light][position]
 };
 
@@ -304,7 +304,7 @@ struct FieldMap::Points {
   std::vector<Pixels> inside;        // pixels inside each scatterer
   Pixels outside;                    // pixels outside all disks
   std::vector<std::uint32_t> place;  // index of each pixel in `outside`, or no_place
-  std::vector<Vec2> positions;       // positions of the pixels in `outside`
+  std::vector<Vec> positions;        // positions of the pixels in `outside`
 };
 
 FieldMap::FieldMap(const WaveSolution& solution, const MapGrid& grid, double tolerance, Route route)
@@ -393,7 +393,7 @@ std::vector<Complex> FieldMap::outside(const MapTile& tile, const Points& points
   return direct(points.positions);
 }
 
-std::vector<Complex> FieldMap::direct(const std::vector<Vec2>& points) const {
+std::vector<Complex> FieldMap::direct(const std::vector<Vec>& points) const {
   const std::size_t lights = solution_.light_angles().size();
   std::vector<Complex> field(lights * points.size());
   parallel_for((points.size() + points_at_a_time - 1) / points_at_a_time, [&](std::size_t part) {
@@ -432,7 +432,7 @@ void FieldMap::correct_near(const MapTile& tile, const Points& points,
 void FieldMap::add_incident(const Points& points, std::vector<Complex>& field) const {
   const std::size_t count = points.outside.size();
   parallel_for(solution_.light_angles().size(), [&](std::size_t light) {
-    const Vec2 wave = solution_.system().k() * direction(solution_.light_angles()[light]);
+    const Vec wave = solution_.system().k() * direction(solution_.light_angles()[light]);
     for (std::size_t i = 0; i < count; ++i)
       field[light * count + i] += std::polar(1.0, dot(wave, points.positions[i]));
   });
@@ -457,14 +457,14 @@ void FieldMap::fill_inside(const MapTile& tile, const Points& points,
   });
 }
 
-std::vector<Vec2> map_sensors(const MapGrid& grid, const Placement& placement) {
-  std::vector<Vec2> sensors;
+std::vector<Vec> map_sensors(const MapGrid& grid, const Placement& placement) {
+  std::vector<Vec> sensors;
   for (const auto& [centre, scatterer] : placement) {
     if (!scatterer.is_disk()) continue;
-    const Vec2 nearest{std::clamp(centre.x, grid.low.x, grid.high.x),
-                       std::clamp(centre.z, grid.low.z, grid.high.z)};
+    const Vec nearest{std::clamp(centre.x, grid.low.x, grid.high.x),
+                      std::clamp(centre.z, grid.low.z, grid.high.z)};
     const bool touched = length(nearest - centre) <= scatterer.radius;
-    sensors.push_back(touched ? centre + Vec2{scatterer.radius, 0} : nearest);
+    sensors.push_back(touched ? centre + Vec{scatterer.radius, 0} : nearest);
   }
   return sensors;
 }

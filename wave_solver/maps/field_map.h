@@ -16,13 +16,13 @@ namespace flatspeckle::wave {
 
 /// Grid of nx x nz equal pixels that cover a rectangle. Fields are evaluated at pixel centres.
 struct MapGrid {
-  Vec2 low, high;
+  Vec low, high;
   std::size_t nx = 0, nz = 0;
 
-  Vec2 step() const {
+  Vec step() const {
     return {(high.x - low.x) / static_cast<double>(nx), (high.z - low.z) / static_cast<double>(nz)};
   }
-  Vec2 pixel(std::size_t ix, std::size_t iz) const {
+  Vec pixel(std::size_t ix, std::size_t iz) const {
     return {low.x + (static_cast<double>(ix) + 0.5) * step().x,
             low.z + (static_cast<double>(iz) + 0.5) * step().z};
   }
@@ -43,7 +43,7 @@ std::vector<MapTile> tiles(const MapGrid& grid, std::size_t pixels);
 
 /// Returns the indices (z-major within the tile) of the pixels whose distance r from a point is low
 /// <= r < high.
-std::vector<std::uint32_t> ring_of_pixels(const MapGrid& grid, const MapTile& tile, Vec2 centre,
+std::vector<std::uint32_t> ring_of_pixels(const MapGrid& grid, const MapTile& tile, Vec centre,
                                           double low, double high);
 
 class RingField;
@@ -81,7 +81,7 @@ class FieldMap {
   struct Points;
   Points place(const MapTile& tile) const;
   std::vector<Complex> outside(const MapTile& tile, const Points& points);
-  std::vector<Complex> direct(const std::vector<Vec2>& points) const;
+  std::vector<Complex> direct(const std::vector<Vec>& points) const;
   void correct_near(const MapTile& tile, const Points& points, std::vector<Complex>& field) const;
   void add_incident(const Points& points, std::vector<Complex>& field) const;
   void fill_inside(const MapTile& tile, const Points& points, std::vector<Complex>& field) const;
@@ -96,7 +96,7 @@ class FieldMap {
 /// Returns, for each disk, the point of the map that is nearest to it, or a point on its rim if the
 /// map touches the disk. With these points as SolveOptions::sensors, the basis orders are high
 /// enough for the whole map, up to the rims.
-std::vector<Vec2> map_sensors(const MapGrid& grid, const Placement& placement);
+std::vector<Vec> map_sensors(const MapGrid& grid, const Placement& placement);
 
 extern const DatasetTable map_table;
 

@@ -10,7 +10,7 @@ namespace flatspeckle::wave {
 
 /// Wave that a point emits, -4 i G(p, q) with the Green function G of the medium (conventions, C34,
 /// C51). For p = q, the part of it that returns to the point.
-using EmittedWave = std::function<Complex(Vec2 p, Vec2 q)>;
+using EmittedWave = std::function<Complex(Vec p, Vec q)>;
 
 /// Returns the scattered fields of point scatterers, [light][view], by the Foldy-Lax equations
 /// (C10, C34). k: wavenumber of the T-matrix. lights: incident field at each scatterer,

@@ -24,7 +24,7 @@ void BoxTree::add(std::size_t first, std::size_t last, std::size_t level,
                   std::span<const SortedDisk> disks) {
   const auto rims = [&](std::size_t place) {
     const SortedDisk& disk = disks[order_[place]];
-    const Vec2 reach{disk.radius, disk.radius};
+    const Vec reach{disk.radius, disk.radius};
     return Rectangle{disk.centre - reach, disk.centre + reach};
   };
   Rectangle hull = rims(first);
@@ -34,7 +34,7 @@ void BoxTree::add(std::size_t first, std::size_t last, std::size_t level,
 
 void BoxTree::split(std::size_t box, std::span<const SortedDisk> disks, std::size_t leaf_unknowns) {
   const std::size_t first = boxes_[box].first, last = boxes_[box].last;
-  const Vec2 one = disks[order_[first]].centre;
+  const Vec one = disks[order_[first]].centre;
   Rectangle extent{one, one};
   std::size_t unknowns = 0;
   for (std::size_t place = first; place < last; ++place) {
@@ -45,10 +45,10 @@ void BoxTree::split(std::size_t box, std::span<const SortedDisk> disks, std::siz
   if (unknowns <= leaf_unknowns) return;
 
   const bool along_x = extent.width() > extent.depth();
-  const Vec2 middle = extent.low + 0.5 * (extent.high - extent.low);
+  const Vec middle = extent.low + 0.5 * (extent.high - extent.low);
   const auto cut =
       std::stable_partition(order_.begin() + first, order_.begin() + last, [&](std::size_t disk) {
-        const Vec2 centre = disks[disk].centre;
+        const Vec centre = disks[disk].centre;
         return along_x ? centre.x < middle.x : centre.z < middle.z;
       });
   const auto half = static_cast<std::size_t>(cut - order_.begin());
@@ -172,22 +172,22 @@ class PivotedLu {
 
 }  // namespace
 
-std::vector<Vec2> proxy_contour(const Rectangle& hull, double distance, double spacing) {
+std::vector<Vec> proxy_contour(const Rectangle& hull, double distance, double spacing) {
   const double quarter = distance * std::numbers::pi / 2;
   const double around = 2 * (hull.width() + hull.depth()) + 4 * quarter;
   const double step = around / std::ceil(around / spacing);
   struct Side {
-    Vec2 end, along;
+    Vec end, along;
     double length;
   };
   const Side sides[] = {{{hull.high.x, hull.low.z}, {1, 0}, hull.width()},
                         {hull.high, {0, 1}, hull.depth()},
                         {{hull.low.x, hull.high.z}, {-1, 0}, hull.width()},
                         {hull.low, {0, -1}, hull.depth()}};
-  std::vector<Vec2> points;
+  std::vector<Vec> points;
   double s = step / 2;  // arc length along a side, then along the quarter circle after it
   for (const auto& [end, along, length] : sides) {
-    const Vec2 outward{along.z, -along.x};
+    const Vec outward{along.z, -along.x};
     for (; s < length; s += step) points.push_back(end + (s - length) * along + distance * outward);
     for (s -= length; s < quarter; s += step)
       points.push_back(

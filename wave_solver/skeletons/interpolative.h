@@ -13,7 +13,7 @@ namespace flatspeckle::wave {
 
 /// A disk (or a point, with radius 0) and the number of its unknowns, to be sorted into a BoxTree.
 struct SortedDisk {
-  Vec2 centre;
+  Vec centre;
   double radius = 0;
   std::size_t unknowns = 1;
 };
@@ -98,7 +98,7 @@ struct ActiveBox {
 
 /// Returns points on the closed curve at a given distance outside a rectangle, which consists of
 /// four straight sides and four quarter circles. The points are evenly spaced by at most `spacing`.
-std::vector<Vec2> proxy_contour(const Rectangle& hull, double distance, double spacing);
+std::vector<Vec> proxy_contour(const Rectangle& hull, double distance, double spacing);
 
 /// Chooses the skeleton of a box: unknowns whose waves outside the box represent, to a tolerance,
 /// the waves of all unknowns of the box. The rows of the decomposed matrix are

@@ -59,7 +59,7 @@ struct Traces {
 
 // Adds the fields scattered by scatterers begin .. end - 1, with one matrix product for all lights.
 void add_traces(const WaveSolution& solution, std::size_t begin, std::size_t end,
-                std::span<const Vec2> points, std::span<const Vec2> normals, Traces& traces) {
+                std::span<const Vec> points, std::span<const Vec> normals, Traces& traces) {
   const TMatrixSystem& system = solution.system();
   const std::size_t count = points.size(), first = system.first(begin),
                     unknowns = system.first(end) - first;
@@ -79,8 +79,8 @@ void add_traces(const WaveSolution& solution, std::size_t begin, std::size_t end
   add(derivatives, traces.derivative);
 }
 
-Traces scattered_traces(const WaveSolution& solution, std::span<const Vec2> points,
-                        std::span<const Vec2> normals) {
+Traces scattered_traces(const WaveSolution& solution, std::span<const Vec> points,
+                        std::span<const Vec> normals) {
   constexpr std::size_t block = 2000;  // unknowns
   const TMatrixSystem& system = solution.system();
   const std::size_t disks = system.placement().size();
@@ -93,8 +93,8 @@ Traces scattered_traces(const WaveSolution& solution, std::span<const Vec2> poin
   return traces;
 }
 
-RimField incident(double k, double light_angle, Vec2 point, Vec2 normal) {
-  const Vec2 w = direction(light_angle);
+RimField incident(double k, double light_angle, Vec point, Vec normal) {
+  const Vec w = direction(light_angle);
   const Complex wave = std::polar(1.0, k * dot(w, point));
   return {wave, Complex(0, dot(w, normal)) * wave};
 }
@@ -128,7 +128,7 @@ double residual_on(const WaveSolution& solution, const Rim& rim) {
                                        : std::vector<RimWave>{};
   const int count = 2 * std::min(system.order(rim.disk), 24) + 8;
   std::vector<double> angles;
-  std::vector<Vec2> normals, points;
+  std::vector<Vec> normals, points;
   for (int i = 0; i < count; ++i) {
     angles.push_back(rim.angle + 2 * std::numbers::pi * i / count);
     normals.push_back(direction(angles.back()));

@@ -138,10 +138,10 @@ class Ensemble {
 
 // Throws InputError if a disk may cover the point. The centre of a disk may be anywhere in the box.
 // A point less than one radius outside the box can therefore still be covered.
-void require_uncovered(const Scene& scene, const std::string& key, Vec2 point) {
+void require_uncovered(const Scene& scene, const std::string& key, Vec point) {
   const Domain& box = scene.domain;
-  const Vec2 beyond{std::max(0.0, std::abs(point.x) - box.width / 2),
-                    std::max({0.0, -point.z, point.z - box.depth})};
+  const Vec beyond{std::max(0.0, std::abs(point.x) - box.width / 2),
+                   std::max({0.0, -point.z, point.z - box.depth})};
   const double radius = scene.scatterer.disk_radius();
   if (length(beyond) < radius)
     throw InputError(key, "(" + number_text(point.x) + ", " + number_text(point.z) + ")",

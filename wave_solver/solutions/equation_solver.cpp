@@ -82,7 +82,7 @@ struct Part {
 // periodic copies lie outside the circle.
 std::vector<Wave> waves_of(const Light& light, double k, const Circle& circle, double tolerance) {
   if (light.kind == Light::Kind::plane) return {{light.angle, 1}};
-  const Vec2 offset = circle.centre - light.point, axis = direction(light.angle);
+  const Vec offset = circle.centre - light.point, axis = direction(light.angle);
   const double waist = light.waist, reach = length(offset) + circle.radius;
   const double width = waist * std::hypot(1, 2 * reach / (k * waist * waist));
   constexpr double negligible = 6;  // the field is negligible this many widths from the axis

@@ -78,7 +78,7 @@ struct LightBasis {
   std::vector<double> angles;
   /// Coefficients of each light, [light][basis wave]; empty if every light is in the basis.
   std::vector<Complex> weights;
-  std::vector<Vec2> sources;  ///< point sources; if there are any, angles is empty
+  std::vector<Vec> sources;  ///< point sources; if there are any, angles is empty
 
   std::size_t size() const { return angles.size() + sources.size(); }
   /// Number of the lights that the basis represents.
@@ -86,7 +86,7 @@ struct LightBasis {
 };
 
 struct Circle {
-  Vec2 centre;
+  Vec centre;
   double radius = 0;
 };
 
@@ -106,7 +106,7 @@ LightBasis basis_of(const Lights& lights, double k, const Circle& circle, double
 struct SolveOptions {
   /// Relative accuracy of far fields, and of near fields at `sensors`; determines the basis orders.
   double tolerance = 1e-12;
-  std::vector<Vec2> sensors;
+  std::vector<Vec> sensors;
   /// Whether to compute the Diagnosis: residual, condition number, boundary residual and
   /// invariants.
   bool diagnose = true;

@@ -38,8 +38,8 @@ const DatasetTable spectrum_table{
      {"invariants/truncation", Data::invariant, "wavelength", "1",
       "relative change of the fields when orders are raised, if gap plasmons may resonate"}}};
 
-Spectrum::Spectrum(const std::vector<double>& view_angles, const std::vector<Vec2>& sensors)
-    : far_views_(column(view_angles, far_view)), near_sensors_(column(sensors, near_sensor)) {}
+Spectrum::Spectrum(const std::vector<double>& view_angles, const std::vector<Vec>& sensors)
+    : far_views_(far_views(view_angles)), near_sensors_(column(sensors, near_sensor)) {}
 
 void Spectrum::add(double wavelength, const WaveSolution& solution) {
   const auto append = [&](std::vector<Complex>& fields, const std::vector<View>& views) {
@@ -159,8 +159,8 @@ std::vector<View> confirming_far_views() {
   for (int i = 0; i < around; ++i) views.push_back(far_view(2 * std::numbers::pi * i / around));
   return views;
 }
-std::vector<View> confirming_near_views(const Placement& placement, std::vector<Vec2> sensors) {
-  std::erase_if(sensors, [&](Vec2 sensor) {
+std::vector<View> confirming_near_views(const Placement& placement, std::vector<Vec> sensors) {
+  std::erase_if(sensors, [&](Vec sensor) {
     return std::ranges::any_of(placement, [&](const PlacedScatterer& placed) {
       return length(sensor - placed.position) <= placed.scatterer.disk_radius();
     });
@@ -180,7 +180,7 @@ double relative_change(const WaveSolution& before, const WaveSolution& after,
 // Returns the right-hand sides of the waves and sources of a basis: [basis][unknown].
 std::vector<Complex> right_hand_sides(const TMatrixSystem& system, const LightBasis& basis) {
   auto rhs = system.right_hand_sides(basis.angles);
-  for (const Vec2& source : basis.sources) {
+  for (const Vec& source : basis.sources) {
     const auto side = system.source_right_hand_side(source);
     rhs.insert(rhs.end(), side.begin(), side.end());
   }
@@ -227,7 +227,7 @@ Complex WaveSolution::far_field(double view_angle, std::size_t light) const {
   return fields(std::vector{far_view(view_angle)})[light];
 }
 
-Complex WaveSolution::near_field(Vec2 point, std::size_t light) const {
+Complex WaveSolution::near_field(Vec point, std::size_t light) const {
   return fields(std::vector{near_sensor(point)})[light];
 }
 
@@ -340,9 +340,9 @@ std::vector<Complex> scattered_fields(const Placement& placement, double k, cons
 }
 
 void write_solution(ResultFile& file, const WaveSolution& solution,
-                    const std::vector<double>& view_angles, const std::vector<Vec2>& sensors) {
+                    const std::vector<double>& view_angles, const std::vector<Vec>& sensors) {
   write_light_axis(file, solution.light_angles());
-  write_views(file, "far_field", solution, column(view_angles, far_view));
+  write_views(file, "far_field", solution, far_views(view_angles));
   write_views(file, "near_field", solution, column(sensors, near_sensor));
   write_placement(file, solution.system().placement());
   const ResultGroup root(file, solution_table);

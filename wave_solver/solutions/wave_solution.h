@@ -32,7 +32,7 @@ class WaveSolution {
   /// Far-field amplitude A of the whole placement (C4), phase origin r = 0.
   Complex far_field(double view_angle, std::size_t light = 0) const;
   /// Scattered field, without the incident field. Throws InputError for a point inside a scatterer.
-  Complex near_field(Vec2 point, std::size_t light = 0) const;
+  Complex near_field(Vec point, std::size_t light = 0) const;
   /// Far or near fields for all lights: [light][view].
   std::vector<Complex> fields(std::span<const View> views) const;
   /// Far or near fields for one light: [view].
@@ -61,7 +61,7 @@ extern const DatasetTable solution_table;
 /// Writes the fields in the directions view_angles and at the points `sensors` (either list may be
 /// empty) with their axes, the placement, and the diagnosis.
 void write_solution(ResultFile& file, const WaveSolution& solution,
-                    const std::vector<double>& view_angles, const std::vector<Vec2>& sensors);
+                    const std::vector<double>& view_angles, const std::vector<Vec>& sensors);
 
 /// Writes the positions and radii of the scatterers.
 void write_placement(ResultFile& file, const Placement& placement);
@@ -84,7 +84,7 @@ std::vector<Complex> scattered_fields(const Placement& placement, double k, cons
 /// after the other, and the diagnosis of each solution.
 class Spectrum {
  public:
-  Spectrum(const std::vector<double>& view_angles, const std::vector<Vec2>& sensors);
+  Spectrum(const std::vector<double>& view_angles, const std::vector<Vec>& sensors);
 
   void add(double wavelength, const WaveSolution& solution);
 

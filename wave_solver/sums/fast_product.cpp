@@ -74,8 +74,8 @@ std::size_t enough_points(const ModeSet& modes, double k, double rho, double dis
 
 using Bodies = std::span<const WaveEquations::Body>;
 
-std::vector<Vec2> centres(Bodies bodies) {
-  std::vector<Vec2> positions;
+std::vector<Vec> centres(Bodies bodies) {
+  std::vector<Vec> positions;
   for (const auto& body : bodies) positions.push_back(body.centre);
   return positions;
 }
@@ -91,12 +91,12 @@ struct Outline {
       radius = std::max(radius, system.bodies()[j].radius);
     }
     modes = system.modes(highest);
-    box = {box.low - Vec2{radius, radius}, box.high + Vec2{radius, radius}};
+    box = {box.low - Vec{radius, radius}, box.high + Vec{radius, radius}};
     squares = static_cast<double>(system.unknowns()) * static_cast<double>(system.unknowns());
   }
 
   double k;
-  std::vector<Vec2> centres;
+  std::vector<Vec> centres;
   Rectangle box;
   double radius = 0;
   ModeSet modes;
@@ -186,7 +186,7 @@ void MultipoleRing::charge(const ModeSet& modes, double k) {
   }
 }
 
-Vec2 MultipoleRing::position(std::size_t point) const {
+Vec MultipoleRing::position(std::size_t point) const {
   return radius *
          direction(2 * std::numbers::pi * static_cast<double>(point) / static_cast<double>(points));
 }
@@ -235,11 +235,11 @@ void RingProduct::make_rings(const WaveEquations& system, double range, double t
 
 // Returns the positions of all ring points, in an order in which points close in space are close in
 // the list.
-std::vector<Vec2> RingProduct::place_rings(std::span<const WaveEquations::Body> bodies,
-                                           double range) {
+std::vector<Vec> RingProduct::place_rings(std::span<const WaveEquations::Body> bodies,
+                                          double range) {
   const auto positions = centres(bodies);
   ring_first_.resize(bodies.size());
-  std::vector<Vec2> points;
+  std::vector<Vec> points;
   const StripOrder strips(positions, range / 3);
   for (const std::uint32_t j : strips.order()) {
     ring_first_[j] = points.size();
@@ -288,7 +288,7 @@ void RingProduct::fill(const WaveEquations& system, std::size_t row, const Neigh
 void RingProduct::subtract_far(std::span<const WaveEquations::Body> bodies, std::size_t row,
                                const Neighbour& column, const KernelSplit& split) {
   const MultipoleRing &to = ring(row), &from = ring(column.body);
-  const Vec2 d = bodies[row].centre - bodies[column.body].centre;
+  const Vec d = bodies[row].centre - bodies[column.body].centre;
   std::vector<double> distance;
   for (std::size_t s = 0; s < from.points; ++s)
     for (std::size_t r = 0; r < to.points; ++r)

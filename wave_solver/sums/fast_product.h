@@ -33,7 +33,7 @@ struct MultipoleRing {
   std::vector<Complex> charges;  ///< [mode][point]; real; empty until charge() is called
   double largest_charge = 0;     ///< largest summed_charges() of a mode; infinite if points = 0
 
-  Vec2 position(std::size_t point) const;  ///< relative to the centre of the ring
+  Vec position(std::size_t point) const;  ///< relative to the centre of the ring
 };
 
 /// Product M x of WaveEquations, as the sum of two parts: a far sum between multipole rings on a
@@ -71,7 +71,7 @@ class RingProduct {
   std::size_t modes(std::size_t body) const { return first_[body + 1] - first_[body]; }
   void make_rings(const WaveEquations& system, double range, double tolerance);
   void find_neighbours(std::span<const WaveEquations::Body> bodies, double range);
-  std::vector<Vec2> place_rings(std::span<const WaveEquations::Body> bodies, double range);
+  std::vector<Vec> place_rings(std::span<const WaveEquations::Body> bodies, double range);
   void fill(const WaveEquations& system, std::size_t row, const Neighbour& column,
             const std::optional<KernelSplit>& split);
   void subtract_far(std::span<const WaveEquations::Body> bodies, std::size_t row,

@@ -83,7 +83,7 @@ GridShape::GridShape(double k, double range, double tolerance, const Rectangle& 
 }
 
 GridSum::GridSum(const KernelSplit& split, const GridShape& shape, double tolerance,
-                 std::span<const Vec2> sources, std::span<const Vec2> targets)
+                 std::span<const Vec> sources, std::span<const Vec> targets)
     : shape_(shape),
       sources_(footprints(sources)),
       targets_(footprints(targets)),
@@ -95,7 +95,7 @@ GridSum::GridSum(const KernelSplit& split, const GridShape& shape, double tolera
   make_multiplier(split, tolerance);
 }
 
-GridSum::Footprints GridSum::footprints(std::span<const Vec2> points) const {
+GridSum::Footprints GridSum::footprints(std::span<const Vec> points) const {
   Footprints made;
   const int width = shape_.width;
   made.row.resize(points.size());

@@ -35,7 +35,7 @@ struct GridShape {
 class GridSum {
  public:
   GridSum(const KernelSplit& split, const GridShape& shape, double tolerance,
-          std::span<const Vec2> sources, std::span<const Vec2> targets);
+          std::span<const Vec> sources, std::span<const Vec> targets);
 
   /// Computes the sums for several columns of charges, [column][source], and adds them to `sums`,
   /// [column][target]. Threaded unless called from a parallel region; the result does not depend on
@@ -51,7 +51,7 @@ class GridSum {
   };
   // Whether the sum takes long enough for threads to be worthwhile, about a millisecond.
   bool is_large() const { return shape_.x.used * shape_.z.size > 50000; }
-  Footprints footprints(std::span<const Vec2> points) const;
+  Footprints footprints(std::span<const Vec> points) const;
   void sort_into_slabs();
   void make_multiplier(const KernelSplit& split, double tolerance);
   template <int width>

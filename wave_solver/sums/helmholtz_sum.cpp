@@ -13,11 +13,10 @@
 
 namespace flatspeckle::wave {
 
-StripOrder::StripOrder(std::span<const Vec2> points, double height)
+StripOrder::StripOrder(std::span<const Vec> points, double height)
     : height_(height), order_(points.size()), first_{0}, z_(points.size()) {
   if (points.empty()) return;
-  low_ =
-      std::min_element(points.begin(), points.end(), [](Vec2 a, Vec2 b) { return a.x < b.x; })->x;
+  low_ = std::min_element(points.begin(), points.end(), [](Vec a, Vec b) { return a.x < b.x; })->x;
   std::vector<std::size_t> strip(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
     strip[i] = static_cast<std::size_t>((points[i].x - low_) / height_);
@@ -32,7 +31,7 @@ StripOrder::StripOrder(std::span<const Vec2> points, double height)
   for (std::size_t i = 0; i < order_.size(); ++i) z_[i] = points[order_[i]].z;
 }
 
-void StripOrder::around(Vec2 place, double distance, std::vector<Interval>& intervals) const {
+void StripOrder::around(Vec place, double distance, std::vector<Interval>& intervals) const {
   const double own = (place.x - low_) / height_, reach = distance / height_;
   const auto strips = static_cast<double>(first_.size() - 1);
   const auto from = static_cast<std::size_t>(std::clamp(std::floor(own - reach), 0.0, strips));
@@ -53,8 +52,8 @@ void StripOrder::around(Vec2 place, double distance, std::vector<Interval>& inte
   }
 }
 
-NearSum::NearSum(const KernelSplit& split, const StripOrder& strips, std::span<const Vec2> sources,
-                 std::span<const Vec2> targets)
+NearSum::NearSum(const KernelSplit& split, const StripOrder& strips, std::span<const Vec> sources,
+                 std::span<const Vec> targets)
     : sources_(sources.size()), targets_(targets.size()) {
   constexpr std::size_t block_size = 256;
   for (std::size_t first = 0; first < targets_; first += block_size)
@@ -64,7 +63,7 @@ NearSum::NearSum(const KernelSplit& split, const StripOrder& strips, std::span<c
 }
 
 void NearSum::fill(Block& block, const KernelSplit& split, const StripOrder& strips,
-                   std::span<const Vec2> sources, std::span<const Vec2> targets) const {
+                   std::span<const Vec> sources, std::span<const Vec> targets) const {
   std::vector<double> distance;
   for (std::size_t i = block.first; i < block.first + block.count; ++i) {
     const std::size_t before = block.sources.size();
@@ -117,10 +116,10 @@ void NearSum::add(std::span<const Complex> charges, std::span<Complex> sums) con
 namespace {
 
 // Returns, sorted, the cell of each point in a grid of square cells with the given side.
-std::vector<std::uint64_t> occupied(std::span<const Vec2> points, Vec2 low, double side) {
+std::vector<std::uint64_t> occupied(std::span<const Vec> points, Vec low, double side) {
   std::vector<std::uint64_t> cells;
   cells.reserve(points.size());
-  for (const Vec2 p : points)
+  for (const Vec p : points)
     cells.push_back((static_cast<std::uint64_t>((p.x - low.x) / side) << 32) +
                     static_cast<std::uint64_t>((p.z - low.z) / side));
   std::sort(cells.begin(), cells.end());
@@ -128,8 +127,8 @@ std::vector<std::uint64_t> occupied(std::span<const Vec2> points, Vec2 low, doub
 }
 
 // Returns the cheapest range of the KernelSplit, or 0 if it is cheaper to sum all pairs directly.
-double best_range(double k, double tolerance, std::span<const Vec2> sources,
-                  std::span<const Vec2> targets) {
+double best_range(double k, double tolerance, std::span<const Vec> sources,
+                  std::span<const Vec> targets) {
   const Rectangle box = bounds_of(sources).united(bounds_of(targets));
   const double extent = std::max(box.width(), box.depth());
   const auto from = static_cast<double>(sources.size()), to = static_cast<double>(targets.size());
@@ -147,8 +146,8 @@ double best_range(double k, double tolerance, std::span<const Vec2> sources,
   return range;
 }
 
-std::vector<Vec2> in_order(std::span<const Vec2> points, std::span<const std::uint32_t> order) {
-  std::vector<Vec2> result;
+std::vector<Vec> in_order(std::span<const Vec> points, std::span<const std::uint32_t> order) {
+  std::vector<Vec> result;
   result.reserve(points.size());
   for (const std::uint32_t i : order) result.push_back(points[i]);
   return result;
@@ -158,9 +157,9 @@ std::vector<Vec2> in_order(std::span<const Vec2> points, std::span<const std::ui
 
 // Counts the pairs whose two points are in the same cell of a grid. The square cells have the area
 // of a disk of radius `range`.
-double near_pairs(std::span<const Vec2> sources, std::span<const Vec2> targets, double range) {
+double near_pairs(std::span<const Vec> sources, std::span<const Vec> targets, double range) {
   const double side = range * std::sqrt(std::numbers::pi);
-  const Vec2 low = bounds_of(sources).united(bounds_of(targets)).low;
+  const Vec low = bounds_of(sources).united(bounds_of(targets)).low;
   const auto from = occupied(sources, low, side), to = occupied(targets, low, side);
   double pairs = 0;
   for (auto cell = to.begin(); cell != to.end();) {
@@ -198,7 +197,7 @@ double all_pairs(double pairs) {
 
 }  // namespace cost
 
-HelmholtzSum::HelmholtzSum(double k, std::span<const Vec2> sources, std::span<const Vec2> targets,
+HelmholtzSum::HelmholtzSum(double k, std::span<const Vec> sources, std::span<const Vec> targets,
                            double tolerance)
     : k_(k), sources_(sources.begin(), sources.end()), targets_(targets.begin(), targets.end()) {
   if (sources.empty() || targets.empty()) return;

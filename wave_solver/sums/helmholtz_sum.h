@@ -16,7 +16,7 @@ namespace flatspeckle::wave {
 /// given distance of a position are then contained in one interval of each strip.
 class StripOrder {
  public:
-  StripOrder(std::span<const Vec2> points, double height);
+  StripOrder(std::span<const Vec> points, double height);
 
   /// Indices of the points, in the sorted order.
   std::span<const std::uint32_t> order() const { return order_; }
@@ -24,7 +24,7 @@ class StripOrder {
     std::uint32_t first, count;  // order()[first .. first + count - 1]
   };
   /// Appends intervals that contain all points within `distance` of `place`, and few other points.
-  void around(Vec2 place, double distance, std::vector<Interval>& intervals) const;
+  void around(Vec place, double distance, std::vector<Interval>& intervals) const;
 
  private:
   double low_ = 0, height_;
@@ -40,8 +40,8 @@ class StripOrder {
 class NearSum {
  public:
   /// targets: in an order in which points close in space are close in the list.
-  NearSum(const KernelSplit& split, const StripOrder& strips, std::span<const Vec2> sources,
-          std::span<const Vec2> targets);
+  NearSum(const KernelSplit& split, const StripOrder& strips, std::span<const Vec> sources,
+          std::span<const Vec> targets);
 
   /// Computes the sums for several columns of charges, [column][source in the order of the strips],
   /// and adds them to `sums`, [column][target].
@@ -57,14 +57,14 @@ class NearSum {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> coincident;  // target, source in order
   };
   void fill(Block& block, const KernelSplit& split, const StripOrder& strips,
-            std::span<const Vec2> sources, std::span<const Vec2> targets) const;
+            std::span<const Vec> sources, std::span<const Vec> targets) const;
 
   std::size_t sources_, targets_;
   std::vector<Block> blocks_;
 };
 
 /// Estimates the number of pairs of a source and a target within `range` of each other.
-double near_pairs(std::span<const Vec2> sources, std::span<const Vec2> targets, double range);
+double near_pairs(std::span<const Vec> sources, std::span<const Vec> targets, double range);
 
 /// Cost model for the choice of an algorithm: seconds on one core of a 2.5 GHz machine for the
 /// setup and `uses` products with one column, by a GridSum (grid), with stored values (stored), or
@@ -85,9 +85,9 @@ double all_pairs(double pairs);
 class HelmholtzSum {
  public:
   /// Uses the same points as sources and as targets.
-  HelmholtzSum(double k, std::span<const Vec2> points, double tolerance)
+  HelmholtzSum(double k, std::span<const Vec> points, double tolerance)
       : HelmholtzSum(k, points, points, tolerance) {}
-  HelmholtzSum(double k, std::span<const Vec2> sources, std::span<const Vec2> targets,
+  HelmholtzSum(double k, std::span<const Vec> sources, std::span<const Vec> targets,
                double tolerance);
 
   /// charges: [column][source]; returns [column][target]. Threaded unless called from a parallel
@@ -101,7 +101,7 @@ class HelmholtzSum {
   std::vector<Complex> all_pairs(std::span<const Complex> charges) const;
 
   double k_, range_ = 0;
-  std::vector<Vec2> sources_, targets_;  // in the order in which they are summed
+  std::vector<Vec> sources_, targets_;  // in the order in which they are summed
   std::vector<std::uint32_t> source_order_, target_order_;
   std::optional<NearSum> near_;
   std::optional<GridSum> far_;

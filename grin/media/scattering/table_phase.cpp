@@ -65,6 +65,16 @@ double TablePhase::one_minus_cosine(RandomStream& random) const {
   return turn;
 }
 
+TablePhase phase_of_amplitudes(const std::vector<Complex>& amplitudes) {
+  const auto last = static_cast<double>(amplitudes.size() - 1);
+  std::vector<double> angles, values;
+  for (const Complex& amplitude : amplitudes) {
+    angles.push_back(std::numbers::pi * static_cast<double>(angles.size()) / last);
+    values.push_back(std::norm(amplitude));
+  }
+  return TablePhase(AngleTable(std::move(angles), std::move(values)));
+}
+
 TablePhase make_phase(const Keys& keys, const TablePhaseValues& values) {
   const std::string& path = keys.required(values.phase_table);
   return TablePhase(AngleTable(keys.name(values.phase_table), path));

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/keys/angle_table.h"
+#include "core/numbers/complex.h"
 #include "grin/media/scattering/space_phase.h"
 
 namespace flatspeckle::grin {
@@ -29,6 +30,10 @@ class TablePhase {
   };
   std::shared_ptr<const Shape> shape_;
 };
+
+/// Returns the phase function proportional to the squared modulus of amplitudes at equal steps of
+/// the scattering angle from 0 to pi.
+TablePhase phase_of_amplitudes(const std::vector<Complex>& amplitudes);
 
 struct TablePhaseValues {
   static constexpr const char* word = "phase_table";

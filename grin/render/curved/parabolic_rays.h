@@ -20,7 +20,7 @@ class ParabolicOrbit {
   /// n0: index on the axis.
   ParabolicOrbit(double n0, double alpha, const Vec3& x, const Vec3& v)
       : n0_(n0), alpha_(alpha), x_(x), v_(v) {
-    const Vec2 x0 = x.head<2>(), q = v.head<2>() / alpha;
+    const Vec x0 = x.head<2>(), q = v.head<2>() / alpha;
     squares_ = (x0.squaredNorm() + q.squaredNorm()) / 2;
     even_ = (x0.squaredNorm() - q.squaredNorm()) / 2;
     odd_ = x0.dot(q);
@@ -49,7 +49,7 @@ class ParabolicOrbit {
   }
 
  private:
-  using Vec2 = Eigen::Vector2d;
+  using Vec = Eigen::Vector2d;
 
   double optical_path(double t) const {
     const double swings = even_ * std::sin(2 * t) / 2 + odd_ * std::sin(t) * std::sin(t);

@@ -17,7 +17,7 @@ class BentChords {
     double enter, leave;
   };
 
-  BentChords(const Domain& domain, Vec2 x, Vec2 v, Vec2 f, double end) {
+  BentChords(const Domain& domain, Vec x, Vec v, Vec f, double end) {
     if (domain.kind == Domain::Kind::box) {
       add_roots(x.x - domain.width / 2, v.x, f.x, end);
       add_roots(x.x + domain.width / 2, v.x, f.x, end);

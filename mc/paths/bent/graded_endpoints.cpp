@@ -34,17 +34,17 @@ GradedEndpoints::GradedEndpoints(const Scene& scene, const std::vector<Endpoint>
     endpoints_.push_back({wave_from(end, medium), end.near, end.strength});
 }
 
-void GradedEndpoints::attenuate(Vec2 x, std::span<Complex> out) {
+void GradedEndpoints::attenuate(Vec x, std::span<Complex> out) {
   for (std::size_t j = 0; j < size(); ++j) {
     const auto arrival = endpoints_[j].wave->at(x);
     if (!arrival) {
-      directions_.set(j, {0, 1}, 0);
+      directions_.set(j, {0, 1});
       phase_[j] = 0;
       log_attenuation_[j] = log_magnitude_[j] = log_of_no_light;
       continue;
     }
-    const Vec2 w = -arrival->w;
-    directions_.set(j, w, angle_of(w));
+    const Vec w = -arrival->w;
+    directions_.set(j, w);
     phase_[j] = k_ * arrival->path;
     log_attenuation_[j] = -mu_t_ * arrival->inside / 2;
     log_magnitude_[j] =
@@ -67,7 +67,7 @@ void GradedEndpoints::attenuate(Vec2 x, std::span<Complex> out) {
 
 namespace {
 
-std::string text_of(Vec2 place) {
+std::string text_of(Vec place) {
   return '(' + number_text(place.x) + ", " + number_text(place.z) + ')';
 }
 
@@ -77,7 +77,7 @@ void require_one_ray(const Scene& scene, const Wavefront& wave, const std::strin
   Domain domain = scene.domain;
   if (domain.kind == Domain::Kind::slab) domain.width = 0;
   constexpr std::size_t per_side = 64;
-  for (const Vec2 place : edge_places(domain, per_side))
+  for (const Vec place : edge_places(domain, per_side))
     if (!wave.at(place))
       throw InputError("index_field: light of " + whose + " does not reach " + text_of(place) +
                        " in the medium by a ray without a caustic; take a weaker field, a smaller "

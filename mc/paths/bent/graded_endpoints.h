@@ -13,13 +13,13 @@ namespace flatspeckle::mc {
 
 /// Returns per_side points on each side of a box, in order around the box. The first point of each
 /// side is a corner.
-inline std::vector<Vec2> edge_places(const Domain& box, std::size_t per_side) {
+inline std::vector<Vec> edge_places(const Domain& box, std::size_t per_side) {
   const double half = box.width / 2;
-  const Vec2 corners[] = {{-half, 0}, {half, 0}, {half, box.depth}, {-half, box.depth}};
-  std::vector<Vec2> places;
+  const Vec corners[] = {{-half, 0}, {half, 0}, {half, box.depth}, {-half, box.depth}};
+  std::vector<Vec> places;
   for (std::size_t side = 0; side < 4; ++side)
     for (std::size_t i = 0; i < per_side; ++i) {
-      const Vec2 from = corners[side], to = corners[(side + 1) % 4];
+      const Vec from = corners[side], to = corners[(side + 1) % 4];
       places.push_back(from + static_cast<double>(i) / static_cast<double>(per_side) * (to - from));
     }
   return places;
@@ -31,7 +31,7 @@ class GradedEndpoints : public EndpointFactors {
   GradedEndpoints(const Scene& scene, const std::vector<Endpoint>& endpoints, bool phases,
                   const GradedMedium& medium);
 
-  void attenuate(Vec2 x, std::span<Complex> out) override;
+  void attenuate(Vec x, std::span<Complex> out) override;
 
  private:
   struct Towards {

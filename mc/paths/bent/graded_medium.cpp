@@ -99,12 +99,12 @@ class MeanFieldMedium : public GradedMedium {
         mu_t_(scene.medium.mu_t),
         index_(1 + scene.medium.k_shift / scene.k) {}
 
-  double square(Vec2) const override { return index_ * index_; }
-  double inside(Vec2 x, Vec2 w) const override { return domain_.distance_to_edge(x, w) / index_; }
-  std::optional<RayPlace> after_flight(Vec2 x, Vec2 w, double sigma) const override;
+  double square(Vec) const override { return index_ * index_; }
+  double inside(Vec x, Vec w) const override { return domain_.distance_to_edge(x, w) / index_; }
+  std::optional<RayPlace> after_flight(Vec x, Vec w, double sigma) const override;
 
  private:
-  std::shared_ptr<const Wavefront> wave_from_point(Vec2 source) const override;
+  std::shared_ptr<const Wavefront> wave_from_point(Vec source) const override;
   std::shared_ptr<const Wavefront> wave_from_afar(double angle) const override;
 
   Domain domain_;
@@ -124,10 +124,10 @@ class RefractedWave : public Wavefront {
                        "is totally reflected at the face, by the index of the mean field");
   }
 
-  std::optional<Arrival> at(Vec2 x) const override {
+  std::optional<Arrival> at(Vec x) const override {
     const double deep = std::sqrt(square_), distance = std::abs(x.z - face_),
                  n = std::hypot(deep, sine_);
-    return Arrival{1 / n * Vec2{sine_, std::copysign(deep, cosine_)},
+    return Arrival{1 / n * Vec{sine_, std::copysign(deep, cosine_)},
                    sine_ * x.x + cosine_ * face_ + deep * distance,
                    2 * std::abs(cosine_) / (std::abs(cosine_) + deep), distance / deep, 0};
   }
@@ -155,13 +155,13 @@ class BoxWave : public Wavefront {
             std::polar(1.0, -k * dot(w_, box.centre(column, row)));
   }
 
-  std::optional<Arrival> at(Vec2 x) const override {
+  std::optional<Arrival> at(Vec x) const override {
     const auto here = envelope_at((x.x + half_) / cell_.x - 0.5, x.z / cell_.z - 0.5);
     if (here.value == 0.0) return Arrival{w_, 0, 0, 0, 0};
     const auto along = [&](Complex derivative, double cell) {
       return std::imag(derivative / here.value) / (k_ * cell);
     };
-    const Vec2 v = w_ + Vec2{along(here.by_x, cell_.x), along(here.by_z, cell_.z)};
+    const Vec v = w_ + Vec{along(here.by_x, cell_.x), along(here.by_z, cell_.z)};
     return Arrival{1 / length(v) * v, dot(w_, x) + std::arg(here.value) / k_, std::abs(here.value),
                    0, 0};
   }
@@ -205,19 +205,19 @@ class BoxWave : public Wavefront {
         std::clamp<std::ptrdiff_t>(i, 0, static_cast<std::ptrdiff_t>(size) - 1));
   }
 
-  Vec2 w_;
+  Vec w_;
   double k_, half_;
-  Vec2 cell_;
+  Vec cell_;
   std::size_t columns_, rows_;
   std::vector<Complex> envelope_;
 };
 
-std::optional<RayPlace> MeanFieldMedium::after_flight(Vec2 x, Vec2 w, double sigma) const {
+std::optional<RayPlace> MeanFieldMedium::after_flight(Vec x, Vec w, double sigma) const {
   if (!(sigma < inside(x, w))) return std::nullopt;
   return RayPlace{x + index_ * sigma * w, w};
 }
 
-std::shared_ptr<const Wavefront> MeanFieldMedium::wave_from_point(Vec2) const {
+std::shared_ptr<const Wavefront> MeanFieldMedium::wave_from_point(Vec) const {
   throw InputError("index_field", "mean_field", "requires plane waves and far views");
 }
 
@@ -234,7 +234,7 @@ HomogenisedBox::HomogenisedBox(const Domain& box, double k, Complex inside)
     : box_(box), k_(k), contrast_(inside * inside - k * k) {
   constexpr double most_cells = 4e6;
   const double wavelength = 2 * std::numbers::pi / k, per = cells_per_wavelength / wavelength;
-  if (box.area() * per * per > most_cells)
+  if (box.content() * per * per > most_cells)
     throw InputError("index_field", "mean_field",
                      "requires a box of at most 40000 square wavelengths; take a slab instead");
   columns_ = cells_along(box.width, wavelength);
@@ -246,7 +246,7 @@ HomogenisedBox::HomogenisedBox(const Domain& box, double k, Complex inside)
   find_spectrum();
 }
 
-Vec2 HomogenisedBox::centre(std::size_t column, std::size_t row) const {
+Vec HomogenisedBox::centre(std::size_t column, std::size_t row) const {
   return {-box_.width / 2 + (static_cast<double>(column) + 0.5) * dx_,
           (static_cast<double>(row) + 0.5) * dz_};
 }
@@ -289,7 +289,7 @@ std::vector<Complex> HomogenisedBox::applied(const std::vector<Complex>& field) 
 }
 
 std::vector<Complex> HomogenisedBox::field(double angle) const {
-  const Vec2 w = direction(angle);
+  const Vec w = direction(angle);
   std::vector<Complex> incident;
   for (std::size_t row = 0; row < rows_; ++row)
     for (std::size_t column = 0; column < columns_; ++column)
@@ -298,7 +298,7 @@ std::vector<Complex> HomogenisedBox::field(double angle) const {
                              incident);
 }
 
-std::shared_ptr<const Wavefront> GradedMedium::from_point(Vec2 source) const {
+std::shared_ptr<const Wavefront> GradedMedium::from_point(Vec source) const {
   const std::scoped_lock lock(making_);
   auto& wave = from_points_[source];
   if (!wave) wave = wave_from_point(source);

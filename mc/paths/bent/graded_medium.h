@@ -23,8 +23,8 @@ class HomogenisedBox {
 
   std::size_t columns() const { return columns_; }
   std::size_t rows() const { return rows_; }
-  Vec2 cell() const { return {dx_, dz_}; }
-  Vec2 centre(std::size_t column, std::size_t row) const;
+  Vec cell() const { return {dx_, dz_}; }
+  Vec centre(std::size_t column, std::size_t row) const;
 
   /// Returns the field [row][column] at the centres of the cells.
   std::vector<Complex> field(double angle) const;
@@ -44,20 +44,20 @@ class HomogenisedBox {
 
 /// A place on a ray and its unit direction there.
 struct RayPlace {
-  Vec2 x, w;
+  Vec x, w;
 };
 
 /// The only ray that connects two points without touching a caustic (conventions, C32).
 struct RayCurve {
-  Vec2 leave, arrive;  ///< unit directions of the ray at both ends
-  double path;         ///< optical path S = int n ds
-  double spread;       ///< geometric spreading J (C32)
-  double inside;       ///< growth of sigma (C30) along the part of the ray in the domain
+  Vec leave, arrive;  ///< unit directions of the ray at both ends
+  double path;        ///< optical path S = int n ds
+  double spread;      ///< geometric spreading J (C32)
+  double inside;      ///< growth of sigma (C30) along the part of the ray in the domain
 };
 
 /// The ray by which a wave arrives at a place.
 struct Arrival {
-  Vec2 w;            ///< unit direction of the ray at this place
+  Vec w;             ///< unit direction of the ray at this place
   double path;       ///< optical path; the phase of the wave is k times this
   double amplitude;  ///< amplitude of a unit plane wave, or J^(-1/2) for a point source
   double inside;     ///< growth of sigma along the part of the ray in the domain
@@ -70,7 +70,7 @@ struct Arrival {
 class Wavefront {
  public:
   virtual ~Wavefront() = default;
-  virtual std::optional<Arrival> at(Vec2 x) const = 0;
+  virtual std::optional<Arrival> at(Vec x) const = 0;
 };
 
 /// Rays through the index field of a scene, in the parameter sigma in which attenuation is
@@ -80,26 +80,26 @@ class GradedMedium {
  public:
   virtual ~GradedMedium() = default;
 
-  virtual double square(Vec2 x) const = 0;  ///< n^2
+  virtual double square(Vec x) const = 0;  ///< n^2
   /// Returns the growth of sigma along all parts in the domain of the ray from x along w.
-  virtual double inside(Vec2 x, Vec2 w) const = 0;
+  virtual double inside(Vec x, Vec w) const = 0;
   /// Returns the place at which the ray from x along w has covered `sigma` in the domain; nullopt
   /// if the ray leaves the domain before.
-  virtual std::optional<RayPlace> after_flight(Vec2 x, Vec2 w, double sigma) const = 0;
+  virtual std::optional<RayPlace> after_flight(Vec x, Vec w, double sigma) const = 0;
 
   // Each wave is made when it is first requested, and kept as long as the medium.
-  std::shared_ptr<const Wavefront> from_point(Vec2 source) const;
+  std::shared_ptr<const Wavefront> from_point(Vec source) const;
   /// Returns the wave that is plane outside the face through which it enters, z = 0 or z = depth,
   /// where the index is 1. The index is assumed to change so gradually at the face that nothing is
   /// reflected.
   std::shared_ptr<const Wavefront> from_afar(double angle) const;
 
  private:
-  virtual std::shared_ptr<const Wavefront> wave_from_point(Vec2 source) const = 0;
+  virtual std::shared_ptr<const Wavefront> wave_from_point(Vec source) const = 0;
   virtual std::shared_ptr<const Wavefront> wave_from_afar(double angle) const = 0;
 
   mutable std::mutex making_;
-  mutable std::map<Vec2, std::shared_ptr<const Wavefront>> from_points_;
+  mutable std::map<Vec, std::shared_ptr<const Wavefront>> from_points_;
   mutable std::map<double, std::shared_ptr<const Wavefront>> from_afar_;
 };
 

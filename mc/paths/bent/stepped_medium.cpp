@@ -43,7 +43,7 @@ std::size_t cells(double extent, double spacing) {
 
 constexpr int most_steps = 100000;
 
-grin::Vec3 in_space(Vec2 x) {
+grin::Vec3 in_space(Vec x) {
   return {x.x, 0, x.z};
 }
 
@@ -58,7 +58,7 @@ class WaveTable : public Wavefront {
   };
   /// Computes the node at x; nullopt if no ray reaches it. guess: the node of a neighbouring place,
   /// or null.
-  using At = std::function<std::optional<Node>(Vec2 x, const Node* guess)>;
+  using At = std::function<std::optional<Node>(Vec x, const Node* guess)>;
   /// spreads: whether the wave comes from a point, so that its amplitude falls approximately as
   /// path^(-1/2). whose: the light or view, for messages. Throws InputError for a node that no ray
   /// reaches.
@@ -73,7 +73,7 @@ class WaveTable : public Wavefront {
     std::vector<Node> row(columns_);
     for (std::size_t j = 0; j < rows_; ++j)
       for (std::size_t i = 0; i < columns_; ++i) {
-        const Vec2 x = origin_ + Vec2{static_cast<double>(i) * dx_, static_cast<double>(j) * dz_};
+        const Vec x = origin_ + Vec{static_cast<double>(i) * dx_, static_cast<double>(j) * dz_};
         const Node* guess = j > 0 ? &row[i] : i > 0 ? &row[i - 1] : nullptr;
         const auto node = at(x, guess);
         if (!node)
@@ -91,7 +91,7 @@ class WaveTable : public Wavefront {
     find_mixed_derivatives();
   }
 
-  std::optional<Arrival> at(Vec2 x) const override {
+  std::optional<Arrival> at(Vec x) const override {
     const double along = (x.x - origin_.x) / dx_, deep = (x.z - origin_.z) / dz_;
     const auto cell = [](double position, std::size_t size) {
       return static_cast<std::size_t>(std::clamp(position, 1.0, static_cast<double>(size - 3)));
@@ -101,7 +101,7 @@ class WaveTable : public Wavefront {
     const Four a = hermite(s), b = hermite(t), da = hermite_derivative(s),
                db = hermite_derivative(t), p = convolution(s), q = convolution(t);
     Arrival found{{}, 0, 0, 0, 0};
-    Vec2 v{0, 0};
+    Vec v{0, 0};
     for (std::size_t m = 0; m < 2; ++m)
       for (std::size_t n = 0; n < 2; ++n) {
         const Entry& e = entry(i + m, j + n);
@@ -147,7 +147,7 @@ class WaveTable : public Wavefront {
 
   Domain box_;
   bool spreads_;
-  Vec2 origin_;
+  Vec origin_;
   double dx_, dz_;
   /// Number of nodes along x and z; one node on each side lies outside the box
   std::size_t columns_, rows_;
@@ -158,7 +158,7 @@ class WaveTable : public Wavefront {
 /// (C30).
 struct Bend {
   double square;
-  Vec2 force;
+  Vec force;
 };
 /// A Bend with the derivatives of its force: xx and xz of force.x with respect to x and z, zz of
 /// force.z with respect to z.
@@ -168,16 +168,16 @@ struct BendDerivatives : Bend {
 
 /// A ray in the parameter sigma (conventions, C30): x' = v, v' = n grad n, |v| = n.
 struct BentRay {
-  Vec2 x, v;
+  Vec x, v;
 };
 
 /// A ray, its optical path, and the derivatives of its place and velocity with respect to the
 /// initial angle.
 struct RayTube : BentRay {
-  Vec2 y, w;  ///< derivatives of x and v with respect to the initial angle
+  Vec y, w;  ///< derivatives of x and v with respect to the initial angle
   double path = 0;
 
-  static RayTube from(Vec2 x, Vec2 v) { return {{x, v}, {}, {v.z, -v.x}, 0}; }
+  static RayTube from(Vec x, Vec v) { return {{x, v}, {}, {v.z, -v.x}, 0}; }
   /// Returns the geometric spreading J (C32), whose sign changes at caustics.
   double spread() const { return y.x * v.z - y.z * v.x; }
 };
@@ -186,8 +186,8 @@ struct RayTube : BentRay {
 template <typename BendAt>
 BentRay stepped(const BentRay& ray, double h, const BendAt& bend) {
   const auto [x, v] = ray;
-  const Vec2 a = bend(x).force, b = bend(x + h / 2 * v + h * h / 8 * a).force,
-             c = bend(x + h * v + h * h / 2 * b).force;
+  const Vec a = bend(x).force, b = bend(x + h / 2 * v + h * h / 8 * a).force,
+            c = bend(x + h * v + h * h / 2 * b).force;
   return {x + h * v + h * h / 6 * (a + 2 * b), v + h / 6 * (a + 4 * b + c)};
 }
 
@@ -195,16 +195,16 @@ BentRay stepped(const BentRay& ray, double h, const BendAt& bend) {
 /// the ray, the optical path from Simpson's rule.
 template <typename BendDerivativesAt>
 RayTube stepped(const RayTube& tube, double h, const BendDerivativesAt& bend) {
-  const auto turned = [](const BendDerivatives& at, Vec2 y) {
-    return Vec2{at.xx * y.x + at.xz * y.z, at.xz * y.x + at.zz * y.z};
+  const auto turned = [](const BendDerivatives& at, Vec y) {
+    return Vec{at.xx * y.x + at.xz * y.z, at.xz * y.x + at.zz * y.z};
   };
-  const Vec2 x = tube.x, v = tube.v, y = tube.y, w = tube.w;
+  const Vec x = tube.x, v = tube.v, y = tube.y, w = tube.w;
   const BendDerivatives first = bend(x);
-  const Vec2 a = first.force, ya = turned(first, y);
+  const Vec a = first.force, ya = turned(first, y);
   const BendDerivatives second = bend(x + h / 2 * v + h * h / 8 * a);
-  const Vec2 b = second.force, yb = turned(second, y + h / 2 * w + h * h / 8 * ya);
+  const Vec b = second.force, yb = turned(second, y + h / 2 * w + h * h / 8 * ya);
   const BendDerivatives third = bend(x + h * v + h * h / 2 * b);
-  const Vec2 c = third.force, yc = turned(third, y + h * w + h * h / 2 * yb);
+  const Vec c = third.force, yc = turned(third, y + h * w + h * h / 2 * yb);
   RayTube next;
   next.x = x + h * v + h * h / 6 * (a + 2 * b);
   next.v = v + h / 6 * (a + 4 * b + c);
@@ -222,10 +222,9 @@ class SteppedMedium;
 template <class Field>
 class SearchedWave : public Wavefront {
  public:
-  SearchedWave(const SteppedMedium<Field>& medium, Vec2 source)
-      : medium_(medium), source_(source) {}
+  SearchedWave(const SteppedMedium<Field>& medium, Vec source) : medium_(medium), source_(source) {}
 
-  std::optional<Arrival> at(Vec2 x) const override {
+  std::optional<Arrival> at(Vec x) const override {
     const auto node = medium_.arrival(source_, x, std::nullopt);
     if (!node) return std::nullopt;
     return node->arrival;
@@ -233,10 +232,10 @@ class SearchedWave : public Wavefront {
 
  private:
   const SteppedMedium<Field>& medium_;
-  Vec2 source_;
+  Vec source_;
 };
 
-double distance_to(const Domain& box, Vec2 x) {
+double distance_to(const Domain& box, Vec x) {
   return std::hypot(std::max(0.0, std::abs(x.x) - box.width / 2),
                     std::max({0.0, -x.z, x.z - box.depth}));
 }
@@ -254,7 +253,7 @@ class SteppedMedium : public GradedMedium {
     spacing_ = std::min(spacing_per_scale * scale, least / 8);
     low_ = {-domain_.width / 2, 0};
     high_ = {domain_.width / 2, domain_.depth};
-    const auto take = [&](Vec2 x) {
+    const auto take = [&](Vec x) {
       low_ = {std::min(low_.x, x.x), std::min(low_.z, x.z)};
       high_ = {std::max(high_.x, x.x), std::max(high_.z, x.z)};
     };
@@ -262,25 +261,25 @@ class SteppedMedium : public GradedMedium {
       if (light.kind == Light::Kind::point) take(light.point);
     for (const View& view : scene.request.views)
       if (view.near) take(view.point);
-    low_ = low_ - Vec2{size, size};
-    high_ = high_ + Vec2{size, size};
+    low_ = low_ - Vec{size, size};
+    high_ = high_ + Vec{size, size};
   }
 
-  double square(Vec2 x) const override { return bend(x).square; }
+  double square(Vec x) const override { return bend(x).square; }
 
-  double inside(Vec2 x, Vec2 w) const override {
+  double inside(Vec x, Vec w) const override {
     BentRay ray = begun(x, w);
     double sum = 0;
     for (int step = 0; step < most_steps && in_window(ray.x); ++step) {
-      const BentRay next = stepped(ray, step_, [this](Vec2 place) { return bend(place); });
+      const BentRay next = stepped(ray, step_, [this](Vec place) { return bend(place); });
       sum += chords(ray, next, step_).length();
       ray = next;
     }
     return sum;
   }
 
-  std::optional<RayPlace> after_flight(Vec2 x, Vec2 w, double sigma) const override {
-    const auto bend_at = [this](Vec2 place) { return bend(place); };
+  std::optional<RayPlace> after_flight(Vec x, Vec w, double sigma) const override {
+    const auto bend_at = [this](Vec place) { return bend(place); };
     BentRay ray = begun(x, w);
     for (int step = 0; step < most_steps && in_window(ray.x); ++step) {
       const BentRay next = stepped(ray, step_, bend_at);
@@ -297,9 +296,9 @@ class SteppedMedium : public GradedMedium {
 
   /// Finds the ray from a source to a place. guess: an estimate of the angle of the ray at the
   /// source.
-  std::optional<WaveTable::Node> arrival(Vec2 source, Vec2 x, std::optional<double> guess) const {
-    const Vec2 chord = x - source;
-    const double middle = angle_of(Vec2{0, domain_.depth / 2} - source), r = length(chord);
+  std::optional<WaveTable::Node> arrival(Vec source, Vec x, std::optional<double> guess) const {
+    const Vec chord = x - source;
+    const double middle = angle_of(Vec{0, domain_.depth / 2} - source), r = length(chord);
     double launch = guess.value_or(angle_of(chord));
     constexpr int most_turns = 20;
     constexpr double largest_turn = 0.3;
@@ -309,7 +308,7 @@ class SteppedMedium : public GradedMedium {
       if (!end) return std::nullopt;
       const RayTube& tube = end->tube;
       const double n = length(tube.v);
-      const Vec2 across = 1 / n * Vec2{tube.v.z, -tube.v.x};
+      const Vec across = 1 / n * Vec{tube.v.z, -tube.v.x};
       const double miss = dot(x - tube.x, across);
       if (std::abs(miss) < 1e-10 * r)
         return WaveTable::Node{
@@ -322,14 +321,14 @@ class SteppedMedium : public GradedMedium {
   }
 
  private:
-  std::shared_ptr<const Wavefront> wave_from_point(Vec2 source) const override {
+  std::shared_ptr<const Wavefront> wave_from_point(Vec source) const override {
     const double away = distance_to(domain_, source);
     const double spacing = std::min(spacing_, away / 6);
     if (away < 2 * spacing_ || away < 0.5)
       return std::make_shared<SearchedWave<Field>>(*this, source);
     return std::make_shared<WaveTable>(
         domain_, spacing, true,
-        [&](Vec2 x, const WaveTable::Node* guess) {
+        [&](Vec x, const WaveTable::Node* guess) {
           return arrival(source, x, guess ? std::optional(guess->arrival.launch) : std::nullopt);
         },
         std::string("(").append(number_text(source.x)) + ", " + number_text(source.z) + ")");
@@ -338,17 +337,17 @@ class SteppedMedium : public GradedMedium {
   std::shared_ptr<const Wavefront> wave_from_afar(double angle) const override {
     return std::make_shared<WaveTable>(
         domain_, spacing_, false,
-        [&](Vec2 x, const WaveTable::Node* guess) { return plane_arrival(angle, x, guess); },
+        [&](Vec x, const WaveTable::Node* guess) { return plane_arrival(angle, x, guess); },
         "direction " + number_text(angle));
   }
 
-  Bend bend(Vec2 x) const {
+  Bend bend(Vec x) const {
     const auto [excess, gradient] = field_.gradient(in_space(x));
     const double n = 1 + excess;
     return {n * n, {n * gradient[0], n * gradient[2]}};
   }
 
-  BendDerivatives bend_derivatives(Vec2 x) const {
+  BendDerivatives bend_derivatives(Vec x) const {
     const auto [excess, g, h] = field_.hessian(in_space(x));
     const double n = 1 + excess;
     return {{n * n, {n * g[0], n * g[2]}},
@@ -357,8 +356,8 @@ class SteppedMedium : public GradedMedium {
             g[2] * g[2] + n * h(2, 2)};
   }
 
-  BentRay begun(Vec2 x, Vec2 w) const { return {x, std::sqrt(std::max(square(x), 0.0)) * w}; }
-  bool in_window(Vec2 x) const {
+  BentRay begun(Vec x, Vec w) const { return {x, std::sqrt(std::max(square(x), 0.0)) * w}; }
+  bool in_window(Vec x) const {
     return x.x >= low_.x && x.x <= high_.x && x.z >= low_.z && x.z <= high_.z;
   }
   /// Returns the parts in the domain of an integration step, in which the ray is approximated by a
@@ -375,8 +374,8 @@ class SteppedMedium : public GradedMedium {
   /// Returns nullopt if the ray leaves the window or, if to_caustic is true, reaches a caustic
   /// first.
   template <typename Left>
-  std::optional<TubeEnd> followed(Vec2 x, Vec2 w, bool to_caustic, const Left& left) const {
-    const auto bend_at = [this](Vec2 place) { return bend_derivatives(place); };
+  std::optional<TubeEnd> followed(Vec x, Vec w, bool to_caustic, const Left& left) const {
+    const auto bend_at = [this](Vec place) { return bend_derivatives(place); };
     TubeEnd end{RayTube::from(x, begun(x, w).v), 0};
     double before = left(end.tube);
     if (!(before > 0)) return end;
@@ -406,15 +405,15 @@ class SteppedMedium : public GradedMedium {
 
   /// Finds the arrival of a plane wave at x, by the ray from x back to the entry face. If x lies in
   /// front of the face, the ray is followed forward to the face.
-  std::optional<WaveTable::Node> plane_arrival(double angle, Vec2 x,
+  std::optional<WaveTable::Node> plane_arrival(double angle, Vec x,
                                                const WaveTable::Node* guess) const {
     const double sine = std::sin(angle), cosine = std::cos(angle),
                  face = cosine > 0 ? 0 : domain_.depth, deep = (x.z - face) * cosine;
     const double sign =
         deep >= 0 ? -1 : 1;  // 1: the ray is followed along the light; -1: against it
     const double n2 = square(x);
-    Vec2 w = guess ? guess->arrival.w
-                   : Vec2{sine, std::copysign(std::sqrt(std::max(n2 - sine * sine, 1e-4)), cosine)};
+    Vec w = guess ? guess->arrival.w
+                  : Vec{sine, std::copysign(std::sqrt(std::max(n2 - sine * sine, 1e-4)), cosine)};
     double turned = angle_of(sign * w);
     constexpr int most_turns = 20;
     constexpr double largest_turn = 0.3;
@@ -440,7 +439,7 @@ class SteppedMedium : public GradedMedium {
   Domain domain_;
   Field field_;
   double step_, spacing_;
-  Vec2 low_, high_;  ///< opposite corners of the window in which rays are followed
+  Vec low_, high_;  ///< opposite corners of the window in which rays are followed
 };
 
 template <class Field>

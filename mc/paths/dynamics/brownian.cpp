@@ -25,10 +25,8 @@ struct TurnTally {
   using Factor = double;  ///< factor by which motion reduces a covariance
   double turn = 0;
 
-  void flight(Vec2, const SpaceDirection&, double) {}
-  void scattering(Vec2, const SpaceDirection& from, const SpaceDirection& to) {
-    turn += one_minus_cosine(from, to);
-  }
+  void flight(Vec, Vec, double) {}
+  void scattering(Vec, Vec from, Vec to) { turn += one_minus_cosine(from, to); }
 };
 
 /// Two sums over the inner scatterers of a path. `turn` is the sum of (1 - cos(scattering angle))
@@ -39,10 +37,10 @@ struct FlowTally {
   const LocalMotion* motion = nullptr;
   double turn = 0, slip = 0;
 
-  void flight(Vec2, const SpaceDirection&, double) {}
-  void scattering(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) {
+  void flight(Vec, Vec, double) {}
+  void scattering(Vec x, Vec from, Vec to) {
     turn += motion->diffusion(x) * one_minus_cosine(from, to);
-    slip += dot(Vec2(from) - Vec2(to), motion->velocity(x));
+    slip += dot(Vec(from) - Vec(to), motion->velocity(x));
   }
 };
 
@@ -114,7 +112,7 @@ class DelayScorer : public TallyScorer<Tally> {
                std::max(endpoints_.lights().size(), endpoints_.views().size())) {}
 
   /// Scores the path of one scatterer at x.
-  void single(Vec2 x, double weight, FaceWaves waves) override {
+  void single(Vec x, double weight, FaceWaves waves) override {
     endpoints_.choose(waves);
     EndpointFactors &lights = endpoints_.lights(), &views = endpoints_.views();
     auto &light = endpoints_.light_last, &view = endpoints_.view_last;
@@ -122,7 +120,7 @@ class DelayScorer : public TallyScorer<Tally> {
     views.attenuate(x, view.value);
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const auto [i, v] = channels_[c];
-      const Vec2 from = -lights.direction(i), to = views.direction(v);
+      const Vec from = -lights.direction(i), to = views.direction(v);
       const double square =
           std::norm(light.value[i] * view.value[v] * walks_.amplitude(x, from, to));
       sums_[c] += weight * square;
@@ -133,21 +131,21 @@ class DelayScorer : public TallyScorer<Tally> {
   }
 
   void multiple(const Path& path) override {
-    endpoints_.find(path, [this](EndpointFactors& endpoints, Vec2 x, const SpaceDirection& arrival,
-                                 Decaying<Tally>& out) {
-      endpoints.attenuate(x, out.value);
-      walks_.towards(x, arrival, endpoints.directions(), out.value);
-      for (std::size_t j = 0; j < endpoints.size(); ++j)
-        out.tally[j] = turned(x, arrival, endpoints.direction(j));
-      decay_.find(out.tally, out.decay);
-    });
+    endpoints_.find(path,
+                    [this](EndpointFactors& endpoints, Vec x, Vec arrival, Decaying<Tally>& out) {
+                      endpoints.attenuate(x, out.value);
+                      walks_.towards(x, arrival, endpoints.directions(), out.value);
+                      for (std::size_t j = 0; j < endpoints.size(); ++j)
+                        out.tally[j] = turned(x, arrival, endpoints.direction(j));
+                      decay_.find(out.tally, out.decay);
+                    });
     find_inner(this->tally());
     for (std::size_t c = 0; c < channels_.size(); ++c) score(c, path.weight);
   }
 
  private:
   /// Returns the tally of a single scattering at x.
-  Tally turned(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) const {
+  Tally turned(Vec x, Vec from, Vec to) const {
     Tally tally = this->none();
     tally.scattering(x, from, to);
     return tally;
@@ -207,8 +205,8 @@ Values single_covariances(const PathWalks& walks, const std::vector<double>& del
   for (const double delay : delays) {
     for (std::size_t c = 0; c < channels; ++c) {
       const auto [light, view] = scene.request.channels[c];
-      const Vec2 from = direction(scene.request.lights[light].angle),
-                 to = direction(scene.request.views[view].angle), turn = from - to;
+      const Vec from = scene.request.lights[light].direction(),
+                to = scene.request.views[view].direction(), turn = from - to;
       const double phase_gradient = -scene.k * delay * turn.x * motion.shear;
       const Complex value =
           phase_gradient == 0

@@ -19,8 +19,8 @@ using Values = std::vector<Complex>;
 struct LengthTally {
   double length = 0;
 
-  void flight(Vec2 /*from*/, const SpaceDirection& /*w*/, double r) { length += r; }
-  void scattering(Vec2 /*x*/, const SpaceDirection& /*from*/, const SpaceDirection& /*to*/) {}
+  void flight(Vec /*from*/, Vec /*w*/, double r) { length += r; }
+  void scattering(Vec /*x*/, Vec /*from*/, Vec /*to*/) {}
 };
 
 std::vector<Scene> shifted_scenes(const Scene& scene, const std::vector<double>& shifts) {
@@ -45,7 +45,7 @@ class FrequencyScorer : public TallyScorer<LengthTally> {
   }
 
   /// Scores the path of one scatterer at x.
-  void single(Vec2 x, double weight, FaceWaves waves) override {
+  void single(Vec x, double weight, FaceWaves waves) override {
     score(weight, 0, [&](PathFields& fields) { return fields.single(x, waves); });
   }
   void multiple(const Path& path) override {

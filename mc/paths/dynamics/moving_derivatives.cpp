@@ -19,11 +19,11 @@ namespace {
 /// sum of the x component of from - to times the depth.
 struct Turned {
   double turn = 0;
-  Vec2 slip{};
+  Vec slip{};
   double sheared = 0;
 
-  void add(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) {
-    const Vec2 turned = Vec2(from) - Vec2(to);
+  void add(Vec x, Vec from, Vec to) {
+    const Vec turned = Vec(from) - Vec(to);
     turn += one_minus_cosine(from, to);
     slip = slip + turned;
     sheared += turned.x * x.z;
@@ -36,14 +36,14 @@ struct Turned {
 /// Returns the complex rate by which motion changes the second field: after a delay t the field is
 /// multiplied by exp(-t rate). The rate is linear in diffusion, velocity and shear, so that
 /// derivatives of these give the derivative of the rate.
-Complex rate(const Turned& turned, double k, double diffusion, Vec2 velocity, double shear) {
+Complex rate(const Turned& turned, double k, double diffusion, Vec velocity, double shear) {
   return {2 * diffusion * turned.turn, -k * (dot(velocity, turned.slip) + shear * turned.sheared)};
 }
 
 struct MovingTally : GradientTally {
   Turned turned;
 
-  void scattering(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) {
+  void scattering(Vec x, Vec from, Vec to) {
     GradientTally::scattering(x, from, to);
     turned.add(x, from, to);
   }
@@ -88,21 +88,20 @@ class MovingTerms : public MediumDerivatives, public DerivativeSums {
 
   MovingEndpoints endpoints(std::size_t count) const { return MovingEndpoints(count); }
 
-  void attenuate(EndpointFactors& endpoints, Vec2 x, MovingEndpoints& out) const {
+  void attenuate(EndpointFactors& endpoints, Vec x, MovingEndpoints& out) const {
     MediumDerivatives::attenuate(endpoints, x, out);
     std::fill(out.turned.begin(), out.turned.end(), Turned{});
   }
-  void turn(const EndpointFactors& endpoints, Vec2 x, const SpaceDirection& arrival,
-            MovingEndpoints& out) const {
+  void turn(const EndpointFactors& endpoints, Vec x, Vec arrival, MovingEndpoints& out) const {
     MediumDerivatives::turn(endpoints, x, arrival, out);
     for (std::size_t j = 0; j < endpoints.size(); ++j)
       out.turned[j].add(x, arrival, endpoints.direction(j));
   }
 
-  MovingInner inner(const MovingTally& tally, Vec2 first) const {
+  MovingInner inner(const MovingTally& tally, Vec first) const {
     return {MediumDerivatives::inner(tally, first), tally.turned};
   }
-  MovingInner one(Vec2 x, Vec2 from, Vec2 to) const {
+  MovingInner one(Vec x, Vec from, Vec to) const {
     MovingInner one{MediumDerivatives::one(x, from, to), {}};
     one.turned.add(x, from, to);
     return one;

@@ -14,7 +14,7 @@ namespace flatspeckle::mc {
 struct MovingDerivative {
   MediumDerivative medium;
   double diffusion = 0;
-  Vec2 velocity{};
+  Vec velocity{};
   double shear = 0;
 };
 

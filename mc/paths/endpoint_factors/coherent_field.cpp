@@ -41,10 +41,10 @@ constexpr double parallel = 1e-12;  ///< cosine below which a ray is parallel to
 /// Ray segment from a place (x, z) along the unit vector u to the edge of the domain. Its length is
 /// the smaller one of to_face(z), the distance to a face, and to_side(x), the distance to a side.
 struct Segment {
-  Vec2 u;
+  Vec u;
   double face, side;  ///< z of the face and x of the side
 
-  Segment(const Domain& domain, Vec2 w)
+  Segment(const Domain& domain, Vec w)
       : u(w), face(w.z > 0 ? domain.depth : 0), side(std::copysign(domain.width / 2, w.x)) {}
 
   double to_face(double z) const { return std::abs(u.z) < parallel ? no_side : (face - z) / u.z; }
@@ -110,7 +110,7 @@ std::vector<double> kinks(const Domain& domain, std::span<const Segment> segment
 
 /// Returns the argument `radians` of integrate(): a bound of the change of the exponent between two
 /// neighbouring kinks (`from` and `to`), divided by three.
-double radians(const Domain& domain, Complex mu_t, Vec2 kappa, std::span<const Segment> segments,
+double radians(const Domain& domain, Complex mu_t, Vec kappa, std::span<const Segment> segments,
                double from, double to) {
   double sum = std::abs(kappa.x) * (to - from);
   for (const Segment& segment : segments) {
@@ -127,12 +127,12 @@ double radians(const Domain& domain, Complex mu_t, Vec2 kappa, std::span<const S
 
 }  // namespace
 
-Complex attenuated_wave_integral(const Domain& domain, Complex mu_t, Vec2 kappa,
-                                 const std::vector<Vec2>& towards) {
+Complex attenuated_wave_integral(const Domain& domain, Complex mu_t, Vec kappa,
+                                 const std::vector<Vec>& towards) {
   Domain box = domain;
   if (domain.kind == Domain::Kind::slab) box.width = no_side;
   std::vector<Segment> segments;
-  for (const Vec2 w : towards) segments.emplace_back(box, w);
+  for (const Vec w : towards) segments.emplace_back(box, w);
   if (domain.kind == Domain::Kind::slab) return depth_column(box, mu_t, kappa.z, segments, 0);
   const auto cut = kinks(box, segments);
   Complex sum = 0;
@@ -148,7 +148,8 @@ Complex attenuated_wave_integral(const Domain& domain, Complex mu_t, Vec2 kappa,
 }
 
 bool has_coherent_field(const Scene& scene) {
-  return scene.domain.kind == Domain::Kind::box && scene.medium.has_scatterers && !scene.profile &&
+  return scene.domain.kind == Domain::Kind::box && scene.medium.dimension == 2 &&
+         scene.medium.has_scatterers && !scene.profile &&
          (!scene.index || !scene.index->is_around()) &&
          scene.request.lights.all(Light::Kind::plane) &&
          std::none_of(scene.request.views.begin(), scene.request.views.end(),
@@ -160,7 +161,7 @@ std::vector<Complex> coherent_field(const Scene& scene) {
   std::vector<Complex> field;
   for (const auto [light, view] : scene.request.channels) {
     const double from = scene.request.lights[light].angle, to = scene.request.views[view].angle;
-    const Vec2 w = direction(from);
+    const Vec w = direction(from);
     field.push_back(medium.density * amplitude(medium.t_matrix, scene.k, to - from) *
                     attenuated_wave_integral(scene.domain, {medium.mu_t, -2 * medium.k_shift},
                                              scene.k * (w - direction(to)), {-w}));

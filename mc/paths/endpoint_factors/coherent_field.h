@@ -23,7 +23,7 @@ std::vector<Complex> coherent_field(const Scene& scene);
 /// towards[j], of which there are at most four. The integral is exact in z; in x it is computed by
 /// Gauss-Legendre quadrature between the kinks of the integrand. The error is about 1e-9 times the
 /// area. If the wavenumber in the medium is k + k_shift, the caller adds -2 i k_shift to mu_t.
-Complex attenuated_wave_integral(const Domain& domain, Complex mu_t, Vec2 kappa,
-                                 const std::vector<Vec2>& towards);
+Complex attenuated_wave_integral(const Domain& domain, Complex mu_t, Vec kappa,
+                                 const std::vector<Vec>& towards);
 
 }  // namespace flatspeckle::mc

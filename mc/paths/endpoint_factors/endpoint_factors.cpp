@@ -15,19 +15,9 @@ namespace {
 constexpr double log_of_nothing = -1e4;
 constexpr double never = 1e300;  ///< a position further away than any edge
 
-/// Edge of the medium perpendicular to an axis. The distance along a ray from the coordinate x on
-/// this axis to the edge is (position - x) per_cosine.
-struct Edge {
-  double position, per_cosine;
-};
-Edge edge_along(double w, double low, double high) {
-  if (std::abs(w) < 1e-300) return {never, 1};
-  return {w > 0 ? high : low, 1 / w};
-}
-
-/// Makes the endpoint of a light. The field of a point source is the Green function, exp(i pi/4) /
-/// sqrt(8 pi k) outgoing_wave().
-Endpoint endpoint_of(const Light& light, double k) {
+/// Makes the endpoint of a light. The field of a point source is the Green function: exp(i pi/4) /
+/// sqrt(8 pi k) outgoing_wave() or, in space, exp(i k r) / (4 pi r).
+Endpoint endpoint_of(const Light& light, double k, int dimension) {
   switch (light.kind) {
     case Light::Kind::plane:
       break;
@@ -35,12 +25,14 @@ Endpoint endpoint_of(const Light& light, double k) {
       return {true,
               {0, 1},
               light.point,
-              std::polar(1 / std::sqrt(8 * std::numbers::pi * k), std::numbers::pi / 4),
+              dimension == 3
+                  ? 1 / (4 * std::numbers::pi)
+                  : std::polar(1 / std::sqrt(8 * std::numbers::pi * k), std::numbers::pi / 4),
               {}};
     case Light::Kind::beam:
-      return {true, -direction(light.angle), light.point, 1, GaussianBeam(light, k)};
+      return {true, -light.direction(), light.point, 1, GaussianBeam(light, k, dimension)};
   }
-  return {false, -direction(light.angle), {}, 1, {}};
+  return {false, -light.direction(), {}, 1, {}};
 }
 
 constexpr double far_enough = 10;  ///< k r above which the far-field form is used
@@ -55,14 +47,15 @@ Complex outgoing_wave(double k, double r) {
 
 std::vector<Endpoint> light_endpoints(const Scene& scene) {
   std::vector<Endpoint> endpoints;
-  for (const Light& light : scene.request.lights) endpoints.push_back(endpoint_of(light, scene.k));
+  for (const Light& light : scene.request.lights)
+    endpoints.push_back(endpoint_of(light, scene.k, scene.medium.dimension));
   return endpoints;
 }
 
 std::vector<Endpoint> view_endpoints(const Scene& scene) {
   std::vector<Endpoint> endpoints;
   for (const View& view : scene.request.views)
-    endpoints.push_back({view.near, direction(view.angle), view.point, 1, {}});
+    endpoints.push_back({view.near, view.direction(), view.point, 1, {}});
   return endpoints;
 }
 
@@ -72,22 +65,19 @@ StraightEndpoints::StraightEndpoints(const Scene& scene, const std::vector<Endpo
       domain_(scene.domain),
       k_(scene.k),
       phases_(phases),
+      in_space_(scene.medium.dimension == 3),
       extinction_(scene) {
   const bool box = domain_.kind == Domain::Kind::box;
   for (std::size_t j = 0; j < endpoints.size(); ++j) {
-    const Vec2 w = endpoints[j].towards;
+    const Vec w = endpoints[j].towards;
     if (endpoints[j].beam)
       beams_.push_back({j, *endpoints[j].beam});
     else if (endpoints[j].near)
       points_.push_back({j, endpoints[j].point, endpoints[j].strength});
-    directions_.set(j, w, angle_of(w));
-    const Edge across =
-                   box ? edge_along(w.x, -domain_.width / 2, domain_.width / 2) : Edge{never, 1},
-               deep = edge_along(w.z, 0, domain_.depth);
-    edge_x_.push_back(across.position);
-    per_cosine_x_.push_back(across.per_cosine);
-    edge_z_.push_back(deep.position);
-    per_cosine_z_.push_back(deep.per_cosine);
+    directions_.set(j, w);
+    edge_x_.add(box ? w.x : 0, -domain_.width / 2, domain_.width / 2);
+    edge_y_.add(box ? w.y : 0, -domain_.height / 2, domain_.height / 2);
+    edge_z_.add(w.z, 0, domain_.depth);
   }
   phase_.resize(size());
   magnitude_.resize(size());
@@ -97,22 +87,19 @@ StraightEndpoints::StraightEndpoints(const Scene& scene, const std::vector<Endpo
   point_wave_.resize(points_.size());
 }
 
-double StraightEndpoints::log_magnitude(Vec2 x, Vec2 w, double inside) const {
+void StraightEndpoints::Edges::add(double w, double low, double high) {
+  const bool crosses = std::abs(w) >= 1e-300;
+  position.push_back(!crosses ? never : w > 0 ? high : low);
+  per_cosine.push_back(crosses ? 1 / w : 1);
+}
+
+double StraightEndpoints::log_magnitude(Vec x, Vec w, double inside) const {
   return std::max(-extinction_.optical_depth(x, w, inside) / 2, log_of_nothing);
 }
 
-void StraightEndpoints::attenuate(Vec2 x, std::span<Complex> out) {
-  if (extinction_.profile == nullptr) {
-    for (std::size_t j = 0; j < size(); ++j)
-      log_attenuation_[j] =
-          std::max(-extinction_.mu_t * distance_to_edge(j, x) / 2, log_of_nothing);
-  } else {
-    for (std::size_t j = 0; j < size(); ++j)
-      log_attenuation_[j] = log_magnitude(x, directions_[j], distance_to_edge(j, x));
-  }
+void StraightEndpoints::attenuate(Vec x, std::span<Complex> out) {
+  in_space_ ? attenuate_far<true>(x) : attenuate_far<false>(x);
   if (phases_) {
-    for (std::size_t j = 0; j < size(); ++j)
-      phase_[j] = -k_ * (directions_.x[j] * x.x + directions_.z[j] * x.z);
     damped_phasors(phase_, log_attenuation_, out);
   } else {
     damping(log_attenuation_, magnitude_);
@@ -122,13 +109,32 @@ void StraightEndpoints::attenuate(Vec2 x, std::span<Complex> out) {
   if (!beams_.empty()) attenuate_beams(x, out);
 }
 
-void StraightEndpoints::attenuate_points(Vec2 x, std::span<Complex> out) {
+/// Computes the logarithms of the attenuations and the phases of all endpoints as if they were far.
+template <bool in_space>
+void StraightEndpoints::attenuate_far(Vec x) {
+  if (extinction_.profile == nullptr) {
+    for (std::size_t j = 0; j < size(); ++j)
+      log_attenuation_[j] =
+          std::max(-extinction_.mu_t * distance_to_edge<in_space>(j, x) / 2, log_of_nothing);
+  } else {
+    for (std::size_t j = 0; j < size(); ++j)
+      log_attenuation_[j] = log_magnitude(x, directions_[j], distance_to_edge<in_space>(j, x));
+  }
+  if (!phases_) return;
+  for (std::size_t j = 0; j < size(); ++j) {
+    double along = directions_.x[j] * x.x + directions_.z[j] * x.z;
+    if constexpr (in_space) along += directions_.y[j] * x.y;
+    phase_[j] = -k_ * along;
+  }
+}
+
+void StraightEndpoints::attenuate_points(Vec x, std::span<Complex> out) {
   constexpr double closest = 1e-200;
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Vec2 offset = points_[i].point - x;
+    const Vec offset = points_[i].point - x;
     const double r = std::max(length(offset), closest);
-    const Vec2 w = 1 / r * offset;
-    directions_.set(points_[i].number, w, angle_of(w));
+    const Vec w = 1 / r * offset;
+    directions_.set(points_[i].number, w);
     point_r_[i] = r;
     point_phase_[i] = k_ * r;
     const double inside = std::min(domain_.distance_to_edge(x, w), r);
@@ -137,7 +143,8 @@ void StraightEndpoints::attenuate_points(Vec2 x, std::span<Complex> out) {
   }
   damped_phasors(point_phase_, point_log_, point_wave_);
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Complex wave = point_phase_[i] > far_enough
+    const Complex wave = in_space_ ? point_wave_[i] / point_r_[i]
+                         : point_phase_[i] > far_enough
                              ? point_wave_[i] / std::sqrt(point_r_[i])
                              : std::exp(point_log_[i]) * outgoing_wave(k_, point_r_[i]);
     Complex& value = out[points_[i].number];
@@ -146,10 +153,10 @@ void StraightEndpoints::attenuate_points(Vec2 x, std::span<Complex> out) {
   }
 }
 
-void StraightEndpoints::attenuate_beams(Vec2 x, std::span<Complex> out) {
+void StraightEndpoints::attenuate_beams(Vec x, std::span<Complex> out) {
   for (const auto& [j, beam] : beams_) {
-    const Vec2 w = -beam.ray(x);
-    directions_.set(j, w, angle_of(w));
+    const Vec w = -beam.ray(x);
+    directions_.set(j, w);
     log_attenuation_[j] = log_magnitude(x, w, domain_.distance_to_edge(x, w));
     out[j] = std::exp(log_attenuation_[j]) * beam.field(x);
     if (!phases_) out[j] = std::abs(out[j]);

@@ -9,13 +9,6 @@ namespace flatspeckle::mc {
 
 namespace {
 
-/// Returns the direction inside of a ray with this direction outside.
-Vec2 refracted(const Faces& faces, Vec2 outside) {
-  const Face entering = faces.entering();
-  return {outside.x * (faces.outside / faces.inside),
-          std::copysign(entering.refracted(std::abs(outside.z)), outside.z)};
-}
-
 /// Largest power of waves that were reflected r times, relative to that of unreflected waves, over
 /// all places of the medium: reflectance^r exp(-(r - 1) depth) for the most reflected ray.
 class WavePower {
@@ -23,7 +16,7 @@ class WavePower {
   /// Adds a ray with this angle outside.
   void add(const Scene& scene, double angle) {
     const Faces& faces = *scene.faces;
-    const double cosine = std::abs(refracted(faces, direction(angle)).z);
+    const double cosine = std::abs(faces.entering().refracted(direction(angle)).z);
     rays_.push_back({faces.leaving().reflectance(cosine),
                      std::exp(-scene.medium.mu_t * scene.domain.depth / cosine)});
   }
@@ -64,7 +57,7 @@ std::vector<ScoredWaves> scored_waves(const Scene& scene) {
 Scene inside_faces(Scene scene) {
   if (!scene.faces) return scene;
   const auto turn = [&](double& angle) {
-    angle = angle_of(refracted(*scene.faces, direction(angle)));
+    angle = angle_of(scene.faces->entering().refracted(direction(angle)));
   };
   for (Light& light : scene.request.lights) turn(light.angle);
   for (View& view : scene.request.views) turn(view.angle);
@@ -92,7 +85,7 @@ FacedEndpoints::FacedEndpoints(const Scene& scene, const std::vector<Endpoint>& 
                                                                 : std::pow(index, 0.25);
   for (const Endpoint& endpoint : endpoints) {
     const double outside = endpoint.towards.z, reflected = entering.reflected(std::abs(outside));
-    far_.push_back({refracted(faces, endpoint.towards), scale * (1 + reflected), -reflected,
+    far_.push_back({entering.refracted(endpoint.towards), scale * (1 + reflected), -reflected,
                     outside > 0 ? -scene.outside_k() * outside * domain_.depth : 0});
   }
   choose(0);
@@ -101,24 +94,24 @@ FacedEndpoints::FacedEndpoints(const Scene& scene, const std::vector<Endpoint>& 
 void FacedEndpoints::choose(int wave) {
   wave_ = wave;
   for (std::size_t j = 0; j < size(); ++j) {
-    Vec2 w = far_[j].towards;
+    Vec w = far_[j].towards;
     if (wave % 2 == 1) w.z = -w.z;
-    directions_.set(j, w, angle_of(w));
+    directions_.set(j, w);
     factor_[j] = far_[j].amplitude * std::pow(far_[j].reflection, wave);
   }
 }
 
-void FacedEndpoints::attenuate(Vec2 x, std::span<Complex> out) {
+void FacedEndpoints::attenuate(Vec x, std::span<Complex> out) {
   for (std::size_t j = 0; j < size(); ++j) {
-    const Vec2 w = directions_[j];
+    const Vec w = directions_[j];
     // Depth to be crossed to the face of the endpoint, over all reflections
     const double crossed = wave_ * domain_.depth + (w.z > 0 ? domain_.depth - x.z : x.z);
     double inside = crossed / std::abs(w.z);
-    if (domain_.kind == Domain::Kind::box && w.x != 0)
-      inside = std::min(inside, (domain_.width / 2 - (w.x > 0 ? x.x : -x.x)) / std::abs(w.x));
+    if (domain_.kind == Domain::Kind::box)
+      inside = std::min(inside, domain_.distance_to_side(x, w));
     constexpr double log_of_nothing = -1e4;  // finite, for the vectorised exp
     log_attenuation_[j] = std::max(-mu_t_ * inside / 2, log_of_nothing);
-    phase_[j] = far_[j].phase + k_ * (std::abs(w.z) * crossed - w.x * x.x);
+    phase_[j] = far_[j].phase + k_ * (std::abs(w.z) * crossed - w.x * x.x - w.y * x.y);
   }
   if (phases_) {
     damped_phasors(phase_, log_attenuation_, out);

@@ -36,7 +36,7 @@ class FacedEndpoints : public EndpointFactors {
   FacedEndpoints(const Scene& scene, const std::vector<Endpoint>& endpoints, bool phases);
 
   void choose(int wave) override;
-  void attenuate(Vec2 x, std::span<Complex> out) override;
+  void attenuate(Vec x, std::span<Complex> out) override;
 
  private:
   Domain domain_;
@@ -44,7 +44,7 @@ class FacedEndpoints : public EndpointFactors {
   bool phases_;
   int wave_ = 0;
   struct Far {
-    Vec2 towards;       ///< direction inside, from the medium to the endpoint
+    Vec towards;        ///< direction inside, from the medium to the endpoint
     double amplitude;   ///< of the field inside, before reflections
     double reflection;  ///< amplitude of reflection at a face
     double phase;       ///< at the face where light enters or leaves

@@ -10,7 +10,7 @@ namespace flatspeckle::mc {
 /// longer than `longest`.
 class ProfileFlight {
  public:
-  ProfileFlight(const MediumProfile& profile, Vec2 x, Vec2 w, double longest)
+  ProfileFlight(const MediumProfile& profile, Vec x, Vec w, double longest)
       : profile_(profile),
         x_(x),
         w_(w),
@@ -32,7 +32,7 @@ class ProfileFlight {
 
  private:
   const MediumProfile& profile_;
-  Vec2 x_, w_;
+  Vec x_, w_;
   double longest_, probability_;
 };
 

@@ -16,41 +16,40 @@
 
 namespace flatspeckle::mc {
 
-/// A list of unit vectors and their angles (C2), stored by component for vectorised loops.
+/// A list of unit vectors and, in the plane, their angles (C2), stored by component for vectorised
+/// loops.
 struct Directions {
-  std::vector<double> x, z, angle;
+  std::vector<double> x, z, y, angle;
 
-  explicit Directions(std::size_t size = 0) : x(size), z(size), angle(size) {}
+  explicit Directions(std::size_t size = 0) : x(size), z(size), y(size), angle(size) {}
   std::size_t size() const { return x.size(); }
-  Vec2 operator[](std::size_t i) const { return {x[i], z[i]}; }
-  void set(std::size_t i, Vec2 w, double its_angle) {
-    x[i] = w.x, z[i] = w.z, angle[i] = its_angle;
-  }
+  Vec operator[](std::size_t i) const { return {x[i], z[i], y[i]}; }
+  void set(std::size_t i, Vec w) { x[i] = w.x, z[i] = w.z, y[i] = w.y, angle[i] = angle_of(w); }
 };
 
 /// Returns 1 - cos of the angle between unit vectors, without cancellation.
-inline double one_minus_cosine(Vec2 from, Vec2 to) {
-  const Vec2 step = to - from;
+inline double one_minus_cosine(Vec from, Vec to) {
+  const Vec step = to - from;
   return dot(step, step) / 2;
 }
 
 /// Rotates w from +z towards +x by the angle of the unit vector `turn`.
-inline Vec2 turned(Vec2 w, Vec2 turn) {
+inline Vec turned(Vec w, Vec turn) {
   return {w.x * turn.z + w.z * turn.x, w.z * turn.z - w.x * turn.x};
 }
 
 /// Returns the unit vector at twice the angle of the vector (a, b). Both angles are measured from
 /// the second axis.
-inline Vec2 doubled_angle(double a, double b) {
+inline Vec doubled_angle(double a, double b) {
   const double per_square = 1 / (a * a + b * b);
   return {2 * a * b * per_square, (b * b - a * a) * per_square};
 }
 
 /// Samples a point of the unit disk uniformly, except its centre. The angle of the point is then a
 /// uniform angle, found without trigonometric functions.
-inline Vec2 sample_disk(RandomStream& random) {
+inline Vec sample_disk(RandomStream& random) {
   while (true) {
-    const Vec2 point{2 * random.uniform() - 1, 2 * random.uniform() - 1};
+    const Vec point{2 * random.uniform() - 1, 2 * random.uniform() - 1};
     if (const double square = dot(point, point); square <= 1 && square > 0) return point;
   }
 }
@@ -62,30 +61,28 @@ inline Vec2 sample_disk(RandomStream& random) {
 /// of direction.
 
 struct IsotropicScattering {
-  using Direction = Vec2;
   static constexpr grin::Isotropic<2> phase{};
 
-  double density(Vec2, Vec2) const { return phase.value; }
-  double amplitude(Vec2, Vec2) const { return std::sqrt(phase.value); }
-  void towards(Vec2, const Directions&, std::span<Complex> out) const {
+  double density(Vec, Vec) const { return phase.value; }
+  double amplitude(Vec, Vec) const { return std::sqrt(phase.value); }
+  void towards(Vec, const Directions&, std::span<Complex> out) const {
     const double a = std::sqrt(phase.value);
     for (Complex& value : out) value *= a;
   }
-  Vec2 sample(Vec2 from, RandomStream& random) const {
-    const Vec2 uniform = sample_disk(random);
+  Vec sample(Vec from, RandomStream& random) const {
+    const Vec uniform = sample_disk(random);
     return turned(from, doubled_angle(uniform.x, uniform.z));
   }
 };
 
 struct HenyeyGreensteinScattering {
-  using Direction = Vec2;
   grin::HenyeyGreenstein<2> phase;
 
-  double density(Vec2 from, Vec2 to) const {
+  double density(Vec from, Vec to) const {
     return phase.density_beside(one_minus_cosine(from, to));
   }
-  double amplitude(Vec2 from, Vec2 to) const { return std::sqrt(density(from, to)); }
-  void towards(Vec2 from, const Directions& to, std::span<Complex> out) const {
+  double amplitude(Vec from, Vec to) const { return std::sqrt(density(from, to)); }
+  void towards(Vec from, const Directions& to, std::span<Complex> out) const {
     // Amplitudes are computed in a separate loop, which the compiler can vectorise
     constexpr std::size_t most = 128;
     std::array<double, most> amplitudes;
@@ -96,8 +93,8 @@ struct HenyeyGreensteinScattering {
     }
   }
   /// Samples theta by tan(theta/2) = (1-g)/(1+g) tan(a), with a uniform angle a (C22).
-  Vec2 sample(Vec2 from, RandomStream& random) const {
-    const Vec2 uniform = sample_disk(random);
+  Vec sample(Vec from, RandomStream& random) const {
+    const Vec uniform = sample_disk(random);
     return turned(from, doubled_angle((1 - phase.g) * uniform.x, (1 + phase.g) * uniform.z));
   }
 };
@@ -107,26 +104,24 @@ struct HenyeyGreensteinScattering {
 /// phase function.
 class TabulatedScattering {
  public:
-  using Direction = Vec2;
-
   TabulatedScattering(const BulkMedium& medium, double k)
       : intervals_(4096 *
                    (medium.phase.density ? 16 : std::max<std::size_t>(medium.t_matrix.size(), 2))),
         amplitude_(normalised_amplitudes(medium, k, intervals_)),
         phase_([this](double angle) { return std::norm(at(angle)); }, intervals_) {}
 
-  double density(Vec2 from, Vec2 to) const { return phase_.density(angle_between(from, to)); }
-  Complex amplitude(Vec2 from, Vec2 to) const { return at(angle_between(from, to)); }
-  void towards(Vec2 from, const Directions& to, std::span<Complex> out) const {
+  double density(Vec from, Vec to) const { return phase_.density(angle_between(from, to)); }
+  Complex amplitude(Vec from, Vec to) const { return at(angle_between(from, to)); }
+  void towards(Vec from, const Directions& to, std::span<Complex> out) const {
     const double angle = angle_of(from);
     for (std::size_t j = 0; j < out.size(); ++j) out[j] = product(out[j], at(to.angle[j] - angle));
   }
-  Vec2 sample(Vec2 from, RandomStream& random) const {
+  Vec sample(Vec from, RandomStream& random) const {
     return turned(from, direction(phase_.sample(random.uniform())));
   }
 
  private:
-  static double angle_between(Vec2 from, Vec2 to) {
+  static double angle_between(Vec from, Vec to) {
     return std::atan2(from.z * to.x - from.x * to.z, dot(from, to));
   }
 

@@ -58,7 +58,7 @@ class FieldScorer : public PathScorer {
       : fields_(walks, walks.scene(), walks.plan().phases || walks.plan().reversed),
         accumulator_(accumulator) {}
 
-  void single(Vec2 x, double weight, FaceWaves waves) override {
+  void single(Vec x, double weight, FaceWaves waves) override {
     accumulator_.add(weight, fields_.single(x, waves));
   }
   void multiple(const Path& path) override {

@@ -19,11 +19,11 @@ struct GradientTally {
   /// Derivative of log p with respect to each parameter, summed over the inner scatterers.
   std::array<double, most_derivatives> phase_derivative{};
 
-  void flight(Vec2, const SpaceDirection&, double r) {
+  void flight(Vec, Vec, double r) {
     length += r;
     ++scatterers;
   }
-  void scattering(Vec2, const SpaceDirection& from, const SpaceDirection& to) {
+  void scattering(Vec, Vec from, Vec to) {
     for (std::size_t p = 0; p < derivatives.size(); ++p)
       if (derivatives[p].amplitude.depends())
         phase_derivative[p] += 2 * derivatives[p].amplitude(from, to).real();
@@ -57,24 +57,23 @@ class MediumDerivatives {
 
   DerivativeEndpoints endpoints(std::size_t count) const { return DerivativeEndpoints(count); }
 
-  void attenuate(EndpointFactors& endpoints, Vec2 x, DerivativeEndpoints& out) const {
+  void attenuate(EndpointFactors& endpoints, Vec x, DerivativeEndpoints& out) const {
     endpoints.attenuate(x, out.value);
     for (std::size_t p = 0; p < derivatives_.size(); ++p)
       for (std::size_t j = 0; j < endpoints.size(); ++j)
         out.log_derivatives[j][p] = derivatives_[p].log_mu_t * endpoints.log_attenuation(j);
   }
 
-  void turn(const EndpointFactors& endpoints, Vec2, const SpaceDirection& arrival,
-            DerivativeEndpoints& out) const {
+  void turn(const EndpointFactors& endpoints, Vec, Vec arrival, DerivativeEndpoints& out) const {
     for (std::size_t p = 0; p < derivatives_.size(); ++p) {
       const AmplitudeDerivative& amplitude = derivatives_[p].amplitude;
       if (!amplitude.depends()) continue;
       for (std::size_t j = 0; j < endpoints.size(); ++j)
-        out.log_derivatives[j][p] += amplitude(arrival, SpaceDirection(endpoints.direction(j)));
+        out.log_derivatives[j][p] += amplitude(arrival, endpoints.direction(j));
     }
   }
 
-  LogDerivatives inner(const GradientTally& tally, Vec2) const {
+  LogDerivatives inner(const GradientTally& tally, Vec) const {
     const double by_mu_t = tally.scatterers - medium_.mu_t * tally.length;
     LogDerivatives half{};
     for (std::size_t p = 0; p < derivatives_.size(); ++p)
@@ -84,7 +83,7 @@ class MediumDerivatives {
     return half;
   }
 
-  LogDerivatives one(Vec2 x, Vec2 from, Vec2 to) const {
+  LogDerivatives one(Vec x, Vec from, Vec to) const {
     LogDerivatives one = inner({derivatives_}, x);
     for (std::size_t p = 0; p < derivatives_.size(); ++p)
       if (derivatives_[p].amplitude.depends()) one[p] += derivatives_[p].amplitude(from, to);

@@ -85,7 +85,7 @@ class DerivativeScorer : public TallyScorer<typename Terms::Tally> {
         endpoints_(walks, [this](std::size_t endpoints) { return terms_.endpoints(endpoints); }) {}
 
   /// Scores the path of one scatterer at x.
-  void single(Vec2 x, double weight, FaceWaves waves) override {
+  void single(Vec x, double weight, FaceWaves waves) override {
     endpoints_.choose(waves);
     EndpointFactors &lights = endpoints_.lights(), &views = endpoints_.views();
     Endpoints &light = endpoints_.light_last, &view = endpoints_.view_last;
@@ -94,7 +94,7 @@ class DerivativeScorer : public TallyScorer<typename Terms::Tally> {
     terms_.clear();
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const auto [i, v] = channels_[c];
-      const Vec2 from = -lights.direction(i), to = views.direction(v);
+      const Vec from = -lights.direction(i), to = views.direction(v);
       terms_.add_term(
           c, product(product(light.value[i], view.value[v]), walks_.amplitude(x, from, to)),
           terms_.one(x, from, to), light, i, view, v);
@@ -103,8 +103,7 @@ class DerivativeScorer : public TallyScorer<typename Terms::Tally> {
   }
 
   void multiple(const Path& path) override {
-    endpoints_.find(path, [this](EndpointFactors& endpoints, Vec2 x, const SpaceDirection& arrival,
-                                 Endpoints& out) {
+    endpoints_.find(path, [this](EndpointFactors& endpoints, Vec x, Vec arrival, Endpoints& out) {
       terms_.attenuate(endpoints, x, out);
       walks_.towards(x, arrival, endpoints.directions(), out.value);
       terms_.turn(endpoints, x, arrival, out);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <sstream>
 
 #include "grin/media/scattering/diffusion_rate.h"
@@ -32,17 +33,17 @@ class VaryingFluxWalk {
         scattering_(scattering),
         entry_(entry),
         random_(random),
-        tally_(scene.domain, sums) {}
+        tally_(scene, sums) {}
 
   /// Samples one walk. u: number in (0, 1), uniformly distributed, that selects the depth of the
   /// first collision.
   void walk(double u) {
-    const Vec2 start = entry_.sample(random_);
-    Vec2 w = entry_.light();
+    const Vec start = entry_.sample(random_);
+    Vec w = entry_.light();
     const ProfileFlight first(profile_, start, w, domain_.distance_to_edge(start, w));
     double power = first.probability();
     if (power == 0) return;
-    Vec2 x = start + first.sample(u) * w;
+    Vec x = start + first.sample(u) * w;
     while (collide(x, power)) {
       w = scattering_.at(x).sample(w, random_);
       const double edge = domain_.distance_to_edge(x, w),
@@ -54,7 +55,7 @@ class VaryingFluxWalk {
 
  private:
   /// Absorbs a fraction of the power; returns false if the walk is terminated.
-  bool collide(Vec2 x, double& power) {
+  bool collide(Vec x, double& power) {
     constexpr std::uint64_t between_checks = 4096;
     if (++collisions_ % between_checks == 0) stop_if_interrupted();
     const double albedo = profile_.albedo(x);
@@ -83,10 +84,10 @@ SummedBatches walks(const std::shared_ptr<const Scene>& scene, const Scattering&
   // function calls and walk data kept in memory instead of registers would cost 10 % of the time.
   return [=](std::uint64_t number, std::span<Complex> sums) __attribute__((flatten)) {
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), number);
-    const auto lights = scene->request.lights.angles();
+    const Lights& lights = scene->request.lights;
     const std::size_t size = sums.size() / lights.size();
     for (std::size_t light = 0; light < lights.size(); ++light) {
-      const LightEntry entry(scene->domain, lights[light], kappa);
+      const LightEntry entry(scene->domain, lights[light].direction(), kappa);
       Walk walk(*scene, scattering, entry, random, sums.subspan(light * size, size));
       // The depths of the first collision are stratified, which reduces errors by a tenth.
       for (std::uint64_t path = 0; path < walks_per_batch; ++path)
@@ -98,11 +99,11 @@ SummedBatches walks(const std::shared_ptr<const Scene>& scene, const Scattering&
 /// Makes the batches for a medium that does not scatter, where all light that collides is absorbed.
 SummedBatches absorption(const std::shared_ptr<const Scene>& scene) {
   return [scene](std::uint64_t, std::span<Complex> sums) {
-    const auto lights = scene->request.lights.angles();
+    const Lights& lights = scene->request.lights;
     for (std::size_t light = 0; light < lights.size(); ++light)
       sums[light * (sums.size() / lights.size()) + absorbed] =
           walks_per_batch * (1 - direct_transmittance(*scene, lights[light]) -
-                             specular_reflectance(*scene, lights[light]));
+                             specular_reflectance(*scene, lights[light].angle));
   };
 }
 
@@ -111,10 +112,9 @@ SummedBatches batches(const std::shared_ptr<const Scene>& scene, double kappa, s
   const auto inside = std::make_shared<const Scene>(inside_faces(*scene));
   SummedBatches chosen;
   if (scene->profile) return walks<VaryingFluxWalk>(scene, varying_scattering(*scene), kappa, seed);
-  with_scattering(*scene, phase_of(scene->scatterer),
-                  [&]<typename Scattering>(const Scattering& scattering) {
-                    chosen = walks<FluxWalk<Scattering>>(inside, scattering, kappa, seed);
-                  });
+  with_scattering(*scene, phase_of(*scene), [&]<typename Scattering>(const Scattering& scattering) {
+    chosen = walks<FluxWalk<Scattering>>(inside, scattering, kappa, seed);
+  });
   return chosen;
 }
 
@@ -163,10 +163,12 @@ FluxJob flux_job(const Scene& original, std::size_t angle_bins, std::uint64_t se
   require_walks(original, false);
   const auto scene = std::make_shared<const Scene>(original);
   const BulkMedium& medium = scene->medium;
-  const double kappa = medium.mu_s > 0 && !scene->profile
-                           ? medium.mu_t * grin::diffusion_rate(medium.albedo, medium.g, 2)
-                           : 0;
+  const double kappa =
+      medium.mu_s > 0 && !scene->profile
+          ? medium.mu_t * grin::diffusion_rate(medium.albedo, medium.g, medium.dimension)
+          : 0;
   FluxJob job{{}, scene->request.lights.size(), angle_bins, describe(*scene, kappa)};
+  if (medium.dimension == 3) job.angles = std::numbers::pi;
   job.batches.size = job.lights * (flux_shares + angle_bins);
   job.batches.samples_per_batch = static_cast<double>(walks_per_batch);
   job.batches.relative_error = [shape = job, scene, kappa](const GroupedSums& sums) {

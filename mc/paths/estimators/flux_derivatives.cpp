@@ -25,7 +25,7 @@ struct FluxDerivatives {
 template <typename Scattering>
 class FluxDerivativeWalk {
  public:
-  FluxDerivativeWalk(const FluxDerivatives& of, const Scattering& scattering, double light,
+  FluxDerivativeWalk(const FluxDerivatives& of, const Scattering& scattering, Vec light,
                      RandomStream& random)
       : of_(of),
         domain_(of.scene.domain),
@@ -39,7 +39,7 @@ class FluxDerivativeWalk {
   /// next.
   void walk(std::span<Complex> sums, std::size_t stride) {
     log_derivatives_ = {};
-    Vec2 x = entry_.sample(random_), w = entry_.light();
+    Vec x = entry_.sample(random_), w = entry_.light();
     const grin::BoundedFlight first{mu_t_, domain_.distance_to_edge(x, w)};
     double weight = first.probability(), flight = first.sample(random_.uniform());
     while (true) {
@@ -50,7 +50,7 @@ class FluxDerivativeWalk {
         if (random_.uniform() > weight) return;
         weight = 1;
       }
-      const Vec2 from = w;
+      const Vec from = w;
       w = scattering_.sample(from, random_);
       turn(from, w);
       const double edge = domain_.distance_to_edge(x, w);
@@ -66,7 +66,7 @@ class FluxDerivativeWalk {
       log_derivatives_[p] += of_.parameters[p].log_mu_t * (1 - mu_t_ * flight);
   }
 
-  void turn(Vec2 from, Vec2 to) {
+  void turn(Vec from, Vec to) {
     for (std::size_t p = 0; p < of_.parameters.size(); ++p) {
       const MediumDerivative& derivative = of_.parameters[p];
       log_derivatives_[p] += derivative.log_albedo;
@@ -75,10 +75,10 @@ class FluxDerivativeWalk {
     }
   }
 
-  void leave(Vec2 x, Vec2 w, double edge, double weight, std::span<Complex> sums,
+  void leave(Vec x, Vec w, double edge, double weight, std::span<Complex> sums,
              std::size_t stride) const {
     std::array<Complex, flux_shares + 1> shares{};
-    FluxTally(domain_, shares).leave(x, w, weight);
+    FluxTally(of_.scene, shares).leave(x, w, weight);
     const double power[exits] = {shares[reflected].real(), shares[transmitted].real()};
     for (std::size_t end = 0; end < exits; ++end) {
       sums[end] += power[end];
@@ -103,9 +103,9 @@ SummedBatches batches(const std::shared_ptr<const FluxDerivatives>& of,
                       const Scattering& scattering, std::uint64_t seed) {
   return [=](std::uint64_t number, std::span<Complex> sums) {
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::light_paths), number);
-    const auto lights = of->scene.request.lights.angles();
+    const Lights& lights = of->scene.request.lights;
     for (std::size_t light = 0; light < lights.size(); ++light) {
-      FluxDerivativeWalk<Scattering> walk(*of, scattering, lights[light], random);
+      FluxDerivativeWalk<Scattering> walk(*of, scattering, lights[light].direction(), random);
       for (std::uint64_t path = 0; path < derivative_walks_per_batch; ++path)
         walk.walk(sums.subspan(exits * light), exits * lights.size());
     }
@@ -127,7 +127,7 @@ PathJob flux_derivative_job(const Scene& scene, const std::vector<MediumDerivati
   job.field.batches.size = job.entries * (1 + derivatives.size());
   job.field.batches.samples_per_batch = static_cast<double>(derivative_walks_per_batch);
   job.field.batches.relative_error = relative_error_of(job.all);
-  with_scattering(scene, phase_of(scene.scatterer), [&](const auto& scattering) {
+  with_scattering(scene, phase_of(scene), [&](const auto& scattering) {
     job.field.batches.run = batches(of, scattering, seed);
   });
   return job;

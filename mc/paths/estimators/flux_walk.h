@@ -20,16 +20,22 @@ namespace flatspeckle::mc {
 /// angle.
 class FluxTally {
  public:
-  FluxTally(const Domain& domain, std::span<Complex> sums) : domain_(domain), sums_(sums) {}
+  FluxTally(const Scene& scene, std::span<Complex> sums)
+      : domain_(scene.domain), in_space_(scene.medium.dimension == 3), sums_(sums) {}
 
   void absorb(double power) const { sums_[absorbed] += power; }
   /// Adds the power of light that leaves the medium along w at the place x of its edge.
-  void leave(Vec2 x, Vec2 w, double power) const {
+  void leave(Vec x, Vec w, double power) const {
     constexpr double rounding = 1e-12;
-    const double to_side = domain_.width / 2 - std::abs(x.x);
-    const bool side = domain_.kind == Domain::Kind::box && to_side < rounding * domain_.width;
+    const auto touches = [](double place, double size) {
+      return size / 2 - std::abs(place) < rounding * size;
+    };
+    const bool side =
+        domain_.kind == Domain::Kind::box &&
+        (touches(x.x, domain_.width) || (domain_.height > 0 && touches(x.y, domain_.height)));
     const FluxShare through = side ? through_sides : w.z > 0 ? transmitted : reflected;
-    const double turn = angle_of(w) / (2 * std::numbers::pi) + 0.5;
+    const double turn = in_space_ ? std::acos(std::clamp(w.z, -1.0, 1.0)) / std::numbers::pi
+                                  : angle_of(w) / (2 * std::numbers::pi) + 0.5;
     const std::size_t bins = sums_.size() - flux_shares;
     const auto bin = std::min(static_cast<std::size_t>(turn * static_cast<double>(bins)), bins - 1);
     sums_[through] += power;
@@ -38,6 +44,7 @@ class FluxTally {
 
  private:
   Domain domain_;
+  bool in_space_;
   std::span<Complex> sums_;
 };
 
@@ -48,31 +55,31 @@ class FluxTally {
 /// side through which most light enters.
 class LightEntry {
  public:
-  LightEntry(const Domain& domain, double light, double kappa)
-      : is_slab_(domain.kind == Domain::Kind::slab),
-        light_(direction(light)),
-        aperture_(domain, light_) {
-    const bool through_face = aperture_.face() >= aperture_.side();
-    const double thickness = through_face ? domain.depth : domain.width;
-    inward_ = through_face ? Vec2{0, std::copysign(1.0, light_.z)}
-                           : Vec2{std::copysign(1.0, light_.x), 0};
-    start_ = inward_.z > 0 ? 0 : -(through_face ? domain.depth : domain.width / 2);
+  LightEntry(const Domain& domain, Vec light, double kappa)
+      : light_(light), aperture_(domain, light_) {
+    const double sides = std::max(aperture_.side(), aperture_.other_side());
+    const bool through_face = aperture_.face() >= sides, through_x = sides == aperture_.side();
+    const double thickness = through_face ? domain.depth : through_x ? domain.width : domain.height;
+    inward_ = through_face ? Vec{0, std::copysign(1.0, light_.z)}
+              : through_x  ? Vec{std::copysign(1.0, light_.x), 0}
+                           : Vec{0, 0, std::copysign(1.0, light_.y)};
+    start_ = inward_.z > 0 ? 0 : -(through_face ? domain.depth : thickness / 2);
     constexpr double least_decay_lengths = 2;  // measured value, as is the onset below
     if (kappa * thickness > least_decay_lengths) kappa_ = kappa;
     onset_ = std::log(std::max(4.0, kappa_ * thickness / 4));
   }
 
-  Vec2 light() const { return light_; }
+  Vec light() const { return light_; }
   bool has_importance() const { return kappa_ > 0; }
 
   /// Samples the point where light enters the medium, uniformly over its cross-section. In a slab
   /// one point represents all.
-  Vec2 sample(RandomStream& random) const { return aperture_.at(is_slab_ ? 0 : random.uniform()); }
+  Vec sample(RandomStream& random) const { return aperture_.sample(random); }
 
-  double depth(Vec2 x) const { return dot(inward_, x) - start_; }
-  double cosine(Vec2 w) const { return dot(inward_, w); }
+  double depth(Vec x) const { return dot(inward_, x) - start_; }
+  double cosine(Vec w) const { return dot(inward_, w); }
 
-  double importance(Vec2 x) const {
+  double importance(Vec x) const {
     if (!has_importance()) return 1;
     constexpr double largest = 600;  // logarithm whose exp is finite
     return std::exp(std::clamp(kappa_ * depth(x) - onset_, 0.0, largest));
@@ -81,13 +88,12 @@ class LightEntry {
   /// Returns the factor by which the exponential transform (Dwivedi [dwivedi1982]) multiplies mu_t.
   /// With this factor, the product of weight and importance after a flight depends only on the
   /// direction of the flight.
-  double mu_t_factor(Vec2 w, double mu_t) const {
+  double mu_t_factor(Vec w, double mu_t) const {
     return std::max(0.0, 1 - kappa_ / mu_t * cosine(w));
   }
 
  private:
-  bool is_slab_;
-  Vec2 light_, inward_;
+  Vec light_, inward_;
   LightAperture aperture_;
   double kappa_ = 0, onset_, start_;
 };
@@ -110,13 +116,13 @@ class FluxWalk {
         entry_(entry),
         faces_(scene.faces),
         random_(random),
-        tally_(scene.domain, sums),
+        tally_(scene, sums),
         sums_(sums) {}
 
   /// Samples one walk. u: number in (0, 1), uniformly distributed, that selects the depth of the
   /// first collision.
   void walk(double u) {
-    Vec2 start = entry_.sample(random_), w = entry_.light();
+    Vec start = entry_.sample(random_), w = entry_.light();
     const double chord = domain_.distance_to_edge(start, w);
     const double crossings = faces_ ? sample_crossings(w, chord) : 1;
     const grin::BoundedFlight plain{mu_t_, chord};
@@ -142,7 +148,7 @@ class FluxWalk {
 
  private:
   struct Particle {
-    Vec2 x, w;
+    Vec x, w;
     double weight;
   };
 
@@ -153,7 +159,7 @@ class FluxWalk {
   /// Samples how often light of the beam crosses the medium between faces before it collides, and
   /// sets odd_crossings_ to whether the number of reflections is odd. Returns the power of all
   /// crossings, at the beginning of each, as a fraction of the incident power.
-  double sample_crossings(Vec2 w, double chord) {
+  double sample_crossings(Vec w, double chord) {
     const double reflectance = reflectance_at(w), next = reflectance * std::exp(-mu_t_ * chord);
     odd_crossings_ = false;
     if (next > 0)
@@ -162,13 +168,12 @@ class FluxWalk {
   }
 
   /// Returns the reflectance of a face for light that arrives from the inside.
-  double reflectance_at(Vec2 w) const { return faces_->leaving().reflectance(std::abs(w.z)); }
+  double reflectance_at(Vec w) const { return faces_->leaving().reflectance(std::abs(w.z)); }
 
   /// Returns the direction in which light leaves.
-  Vec2 outside(Vec2 w) const {
+  Vec outside(Vec w) const {
     if (!faces_) return w;
-    return {w.x * (faces_->inside / faces_->outside),
-            std::copysign(faces_->leaving().refracted(std::abs(w.z)), w.z)};
+    return faces_->leaving().refracted(w);
   }
 
   /// Absorbs a fraction of the weight. Russian roulette and splitting keep the weight near 1 /
@@ -200,7 +205,7 @@ class FluxWalk {
         leave(particle);
         return false;
       }
-      const Vec2 before = particle.w;
+      const Vec before = particle.w;
       particle.w.z = -before.z;
       martingale_ += particle.weight * reach_ * (entry_.cosine(before) - entry_.cosine(particle.w));
     }

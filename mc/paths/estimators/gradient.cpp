@@ -49,12 +49,10 @@ class FixedCountTerms : public MediumDerivatives {
     Complex half;
     int scatterers;
   };
-  Inner inner(const GradientTally& tally, Vec2 first) const {
+  Inner inner(const GradientTally& tally, Vec first) const {
     return {MediumDerivatives::inner(tally, first)[0], tally.scatterers};
   }
-  Inner one(Vec2 x, Vec2 from, Vec2 to) const {
-    return {MediumDerivatives::one(x, from, to)[0], 1};
-  }
+  Inner one(Vec x, Vec from, Vec to) const { return {MediumDerivatives::one(x, from, to)[0], 1}; }
 
   void clear() { std::fill(fields_.begin(), fields_.end(), Field{}); }
 

@@ -9,7 +9,7 @@
 #include "core/numbers/complex.h"
 #include "flatland/scene/scene.h"
 #include "mc/jobs/bulk_parameter.h"
-#include "mc/paths/endpoint_factors/space_scattering.h"
+#include "mc/paths/endpoint_factors/scattering.h"
 
 namespace flatspeckle::mc {
 
@@ -27,8 +27,7 @@ class AmplitudeDerivative {
 
   bool depends() const { return factor_ != 0 || !table_.empty(); }
 
-  template <typename Direction>
-  Complex operator()(const Direction& from, const Direction& to) const {
+  Complex operator()(Vec from, Vec to) const {
     const double turn = one_minus_cosine(from, to);
     return table_.empty() ? factor_ / 2 * henyey_greenstein_derivative(g_, turn, dimension_)
                           : at(2 * std::asin(std::sqrt(std::min(1.0, turn / 2))));

@@ -28,7 +28,7 @@ class PathFields {
         field_(channels_.size()) {}
 
   /// Returns the fields of the path of one scatterer at x.
-  std::span<const Complex> single(Vec2 x, FaceWaves waves) {
+  std::span<const Complex> single(Vec x, FaceWaves waves) {
     endpoints_.choose(waves);
     endpoints_.lights().attenuate(x, endpoints_.light_last);
     endpoints_.views().attenuate(x, endpoints_.view_last);
@@ -37,11 +37,10 @@ class PathFields {
   }
 
   std::span<const Complex> multiple(const Path& path) {
-    endpoints_.find(
-        path, [this](EndpointFactors& endpoints, Vec2 x, const SpaceDirection& arrival, auto& out) {
-          endpoints.attenuate(x, out);
-          walks_.towards(x, arrival, endpoints.directions(), out);
-        });
+    endpoints_.find(path, [this](EndpointFactors& endpoints, Vec x, Vec arrival, auto& out) {
+      endpoints.attenuate(x, out);
+      walks_.towards(x, arrival, endpoints.directions(), out);
+    });
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const auto [i, v] = channels_[c];
       field_[c] = product(endpoints_.light_first[i], endpoints_.view_last[v]);
@@ -56,7 +55,7 @@ class PathFields {
 
  private:
   /// Computes single scattering of each light into all views, in a vectorised loop.
-  void find_rows(Vec2 x) {
+  void find_rows(Vec x) {
     const auto& view = endpoints_.view_last;
     for (std::size_t i = 0; i < endpoints_.lights().size(); ++i) {
       const std::span<Complex> row(&field_[i * view.size()], view.size());
@@ -65,7 +64,7 @@ class PathFields {
       walks_.towards(x, -endpoints_.lights().direction(i), endpoints_.views().directions(), row);
     }
   }
-  void find_listed(Vec2 x) {
+  void find_listed(Vec x) {
     for (std::size_t c = 0; c < channels_.size(); ++c) {
       const auto [i, v] = channels_[c];
       field_[c] = product(

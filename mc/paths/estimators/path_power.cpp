@@ -27,14 +27,14 @@ std::vector<View> views_around(double offset) {
 struct ScattererCount {
   int inner = 0;
 
-  void flight(Vec2, const SpaceDirection&, double) {}
-  void scattering(Vec2, const SpaceDirection&, const SpaceDirection&) { ++inner; }
+  void flight(Vec, Vec, double) {}
+  void scattering(Vec, Vec, Vec) { ++inner; }
 };
 
 /// Returns the width of the medium perpendicular to the light.
 double cross_section(const Scene& scene) {
-  const LightAperture aperture(scene.domain, direction(scene.request.lights.front().angle));
-  return aperture.face() + aperture.side();
+  const LightAperture aperture(scene.domain, scene.request.lights.front().direction());
+  return aperture.all();
 }
 
 enum PowerSum : std::size_t { by_first, by_second, by_later, power_sums };
@@ -53,22 +53,21 @@ class PowerScorer : public TallyScorer<ScattererCount> {
         extinction_(scene_),
         endpoints_(walks, turned, false,
                    [](std::size_t endpoints) { return std::vector<Complex>(endpoints); }),
-        light_(direction(scene_.request.lights.front().angle)),
+        light_(scene_.request.lights.front().direction()),
         cross_section_(cross_section(scene_)),
         sums_(sums) {}
 
-  void single(Vec2 x, double weight, FaceWaves waves) override {
+  void single(Vec x, double weight, FaceWaves waves) override {
     endpoints_.choose(waves);
     endpoints_.lights().attenuate(x, endpoints_.light_last);
     sums_[by_first] += weight * share_of(endpoints_.light_last.front(), x) / albedo(x);
   }
 
   void multiple(const Path& path) override {
-    endpoints_.find(
-        path, [this](EndpointFactors& endpoints, Vec2 x, const SpaceDirection& arrival, auto& out) {
-          endpoints.attenuate(x, out);
-          walks_.towards(x, arrival, endpoints.directions(), out);
-        });
+    endpoints_.find(path, [this](EndpointFactors& endpoints, Vec x, Vec arrival, auto& out) {
+      endpoints.attenuate(x, out);
+      walks_.towards(x, arrival, endpoints.directions(), out);
+    });
     const double scattered = path.weight * share_of(endpoints_.light_first.front(), path.first),
                  received = scattered / albedo(path.last),
                  leaves = escaping_fraction(endpoints_.view_last);
@@ -80,7 +79,7 @@ class PowerScorer : public TallyScorer<ScattererCount> {
   }
 
  private:
-  double share_of(Complex factor, Vec2 first) const {
+  double share_of(Complex factor, Vec first) const {
     const double back = scene_.domain.distance_to_edge(first, -light_);
     return std::norm(factor) / (cross_section_ * stays_inside(first - back * light_, light_));
   }
@@ -89,10 +88,10 @@ class PowerScorer : public TallyScorer<ScattererCount> {
     for (const Complex view : views) sum += std::norm(view);
     return view_step * sum;
   }
-  double albedo(Vec2 x) const {
+  double albedo(Vec x) const {
     return scene_.profile ? scene_.profile->albedo(x) : scene_.medium.albedo;
   }
-  double stays_inside(Vec2 x, Vec2 w) const {
+  double stays_inside(Vec x, Vec w) const {
     return -std::expm1(-extinction_.optical_depth(x, w, scene_.domain.distance_to_edge(x, w)));
   }
 
@@ -100,7 +99,7 @@ class PowerScorer : public TallyScorer<ScattererCount> {
   const Scene& scene_;
   const Extinction extinction_;
   PathEndpoints<std::vector<Complex>> endpoints_;
-  Vec2 light_;
+  Vec light_;
   double cross_section_;
   std::span<Complex> sums_;
 };

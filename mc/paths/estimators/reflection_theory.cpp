@@ -18,15 +18,15 @@ namespace {
 
 /// Unit directions of a light and of a reflected view.
 struct Reflection {
-  Vec2 light, view;
+  Vec light, view;
 };
 
 class ReflectedLight {
  public:
   explicit ReflectedLight(const Scene& scene)
       : depth_(scene.domain.depth), k_(scene.k), medium_(scene.medium) {
-    with_scattering(scene, phase_of(scene.scatterer), [&](const auto& scattering) {
-      amplitude_ = [scattering](Vec2 from, Vec2 to) -> Complex {
+    with_scattering(scene, phase_of(scene), [&](const auto& scattering) {
+      amplitude_ = [scattering](Vec from, Vec to) -> Complex {
         return scattering.amplitude(from, to);
       };
     });
@@ -87,12 +87,12 @@ class ReflectedLight {
 
   double depth_, k_;
   const BulkMedium& medium_;
-  std::function<Complex(Vec2, Vec2)> amplitude_;
+  std::function<Complex(Vec, Vec)> amplitude_;
 };
 
 Reflection reflection(const CovarianceRequest& request, std::uint32_t channel) {
   const Channel c = request.channels[channel];
-  return {direction(request.lights[c.light].angle), direction(request.views[c.view].angle)};
+  return {request.lights[c.light].direction(), request.views[c.view].direction()};
 }
 
 /// Whether a request has tilts with matched views, for plane waves on a homogeneous 2D slab.

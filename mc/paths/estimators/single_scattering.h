@@ -14,14 +14,14 @@ namespace flatspeckle::mc {
 /// A plane wave along `light`, detected in the far view along `view`, at the wavenumber k.
 struct FarField {
   double k = 0;
-  Vec2 light, view;
+  Vec light, view;
 
   FarField() = default;
   /// Makes the field of a channel of the scene.
   FarField(const Scene& scene, std::size_t channel) : k(scene.k) {
     const Channel c = scene.request.channels[channel];
-    light = direction(scene.request.lights[c.light].angle);
-    view = direction(scene.request.views[c.view].angle);
+    light = scene.request.lights[c.light].direction();
+    view = scene.request.views[c.view].direction();
   }
 };
 
@@ -32,7 +32,7 @@ inline Complex single_scattering(const Scene& scene, const PathWalks& walks, con
   const Complex amplitudes = product_with_conjugate(walks.amplitude({}, a.light, a.view),
                                                     walks.amplitude({}, b.light, b.view));
   // This form makes kappa exactly 0 if both fields are equal.
-  const Vec2 kappa =
+  const Vec kappa =
       a.k * ((a.light - b.light) - (a.view - b.view)) + (a.k - b.k) * (b.light - b.view);
   return scene.medium.mu_s * amplitudes *
          attenuated_wave_integral(scene.domain, scene.medium.mu_t, kappa,

@@ -28,12 +28,12 @@ struct LayerTally {
   PerLayer scatterers{}, length{};
   PerLayer phase_derivative{};  ///< sum of d log p / d g over the inner scatterers
 
-  void flight(Vec2 x, const SpaceDirection& to, double r) {
-    const Vec2 w = to;
+  void flight(Vec x, Vec to, double r) {
+    const Vec w = to;
     layers->each_part(x, w, r, [this](std::size_t layer, double part) { length[layer] += part; });
     ++scatterers[layers->material_at(x + r * w)];
   }
-  void scattering(Vec2 x, const SpaceDirection& from, const SpaceDirection& to) {
+  void scattering(Vec x, Vec from, Vec to) {
     const std::size_t layer = layers->material_at(x);
     phase_derivative[layer] += henyey_greenstein_derivative(layers->materials()[layer].medium.g,
                                                             one_minus_cosine(from, to));
@@ -71,10 +71,10 @@ class LayerTerms : public DerivativeSums {
     return {std::vector<Complex>(count), std::vector<double>(count * parameters_.size())};
   }
 
-  void attenuate(EndpointFactors& endpoints, Vec2 x, LayerEndpoints& out) const {
+  void attenuate(EndpointFactors& endpoints, Vec x, LayerEndpoints& out) const {
     endpoints.attenuate(x, out.value);
     for (std::size_t j = 0; j < endpoints.size(); ++j) {
-      const Vec2 w = endpoints.direction(j);
+      const Vec w = endpoints.direction(j);
       PerLayer length{};
       layers_.each_part(x, w, domain_.distance_to_edge(x, w),
                         [&](std::size_t layer, double part) { length[layer] += part; });
@@ -87,24 +87,22 @@ class LayerTerms : public DerivativeSums {
   }
 
   /// Adds the derivatives with respect to g of scattering at x towards the endpoints.
-  void turn(const EndpointFactors& endpoints, Vec2 x, const SpaceDirection& arrival,
-            LayerEndpoints& out) const {
+  void turn(const EndpointFactors& endpoints, Vec x, Vec arrival, LayerEndpoints& out) const {
     const std::size_t here = layers_.material_at(x);
     for (std::size_t p = 0; p < parameters_.size(); ++p) {
       const auto [layer, parameter] = parameters_[p];
       if (layer != here || parameter != BulkParameter::g) continue;
       for (std::size_t j = 0; j < endpoints.size(); ++j)
         out.log_derivatives[j * parameters_.size() + p] +=
-            henyey_greenstein_derivative(
-                layers_.materials()[layer].medium.g,
-                one_minus_cosine(arrival, SpaceDirection(endpoints.direction(j)))) /
+            henyey_greenstein_derivative(layers_.materials()[layer].medium.g,
+                                         one_minus_cosine(arrival, endpoints.direction(j))) /
             2;
     }
   }
 
   /// Returns half of the logarithmic derivatives of a path, including its first scatterer: each of
   /// the two fields of a covariance entry contributes one half.
-  const std::vector<double>& inner(const LayerTally& tally, Vec2 first) {
+  const std::vector<double>& inner(const LayerTally& tally, Vec first) {
     for (std::size_t p = 0; p < parameters_.size(); ++p) {
       const auto [layer, parameter] = parameters_[p];
       const BulkMedium& medium = layers_.materials()[layer].medium;
@@ -118,7 +116,7 @@ class LayerTerms : public DerivativeSums {
     }
     return path_derivatives_;
   }
-  const std::vector<double>& one(Vec2 x, Vec2 from, Vec2 to) {
+  const std::vector<double>& one(Vec x, Vec from, Vec to) {
     LayerTally tally{&layers_};
     tally.scattering(x, from, to);
     return inner(tally, x);

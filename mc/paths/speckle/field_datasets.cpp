@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numbers/blas.h"
 #include "core/result/result_group.h"
 #include "core/run/runner.h"
 #include "flatland/request/request.h"
@@ -35,13 +36,16 @@ class FieldDrawing {
 
   DrawnFields draw(const FieldDemand& demand,
                    const std::function<void(const DrawingPlan&)>& planned) {
-    const RunState survey = run("survey", survey_job(scene_, plan_, settings_.seed), survey_paths);
+    const Scene surveyed = scene_.request.camera ? on_coarse_camera(scene_) : scene_;
+    const RunState survey =
+        run("survey", survey_job(surveyed, plan_, settings_.seed), survey_paths);
     drawn_.plan = make_field_plan(scene_, read_survey(survey.sums), demand);
-    planned(drawn_.plan);
     const bool by_paths = drawn_.plan.method == FieldMethod::paths;
-    const auto source =
-        by_paths ? fields_by_paths(scene_, plan_, settings_.seed, drawn_.plan.paths_per_field)
-                 : from_covariance();
+    if (by_paths && scene_.request.camera) choose_camera(surveyed, demand.camera_tolerance);
+    planned(drawn_.plan);
+    const auto source = drawn_.plan.camera ? on_camera()
+                        : by_paths         ? directly()
+                                           : from_covariance();
     const RunState fields = run("fields", field_job(source, demand.fields), demand.fields);
     if (by_paths) drawn_.intensity = jackknife(fields.sums, sample_mean);
     if (by_paths && siegert_applies()) covariance({scene_.request.lights.front()}, siegert_paths);
@@ -56,6 +60,23 @@ class FieldDrawing {
     drawn_.wall_s += state.wall_s;
     drawn_.cpu_s += state.cpu_s;
     return state;
+  }
+
+  /// Uses a CameraSum if it can be accurate enough.
+  void choose_camera(const Scene& coarse, double tolerance) {
+    blas_single_thread();  // must come before several threads request memory from BLAS
+    const auto walks = path_walks(coarse, plan_, settings_.seed);
+    if (!walks || coarse.profile || coarse.faces) return;
+    const CameraResolution found = camera_resolution(*walks, tolerance);
+    if (found.error <= tolerance) drawn_.plan.camera = found;
+  }
+
+  FieldDraw directly() const {
+    return fields_by_paths(scene_, plan_, settings_.seed, drawn_.plan.paths_per_field);
+  }
+  FieldDraw on_camera() const {
+    return fields_on_camera(scene_, plan_, settings_.seed, drawn_.plan.paths_per_field,
+                            *drawn_.plan.camera);
   }
 
   bool siegert_applies() const {
@@ -149,6 +170,10 @@ const DatasetTable field_table{
          {"field", "paths_per_field", "uint64", "light paths of each field, if drawn from paths"},
          {"field", "excess_kurtosis", "float64",
           "expected E|u|^4/(E|u|^2)^2 - 2, if drawn from paths"},
+         {"field", "camera_error", "float64",
+          "relative rms error of the sums over pixels, if paths are summed on a camera"},
+         {"field", "camera_nodes", "uint64",
+          "interpolation nodes along each side of the camera, if paths are summed on one"},
          {"field", "covariance_paths", "uint64", "light paths of the covariance, if drawn from it"},
          {"field", "paths_cost", "float64",
           "cost of drawing all fields from paths, in complex multiply-adds"},
@@ -165,18 +190,14 @@ std::vector<double> steps(std::size_t count, double step) {
   return values;
 }
 
-void write_field_axes(ResultFile& file, const Scene& scene, const std::vector<double>& tilts) {
-  const auto lights = scene.request.lights.angles();
+void write_field_axes(ResultFile& file, const Scene& scene) {
   const ResultGroup root(file, field_table);
-  ResultGroup(file, axes_table).put("light_angle", lights);
-  write_view_axis(file, scene.request.views);
+  write_light_axis(file, scene.request.lights);
+  write_view_axis(file, scene.request.views, scene.request.camera);
   bind_units(file, scene);
-  if (tilts.empty()) return;
-  std::vector<double> q;
-  for (std::size_t t = 0; t < tilts.size(); ++t)
-    q.push_back(scene.k * (std::sin(lights[t]) - std::sin(lights[t] - tilts[t])));
-  root.put("tilt", tilts);
-  root.put("tilt_q", q);
+  if (scene.request.tilts.empty()) return;
+  root.put("tilt", scene.request.tilts);
+  root.put("tilt_q", scene.request.tilt_q);
 }
 
 /// Writes the fields in chunks of about a mebibyte.
@@ -188,11 +209,20 @@ void write_field(ResultFile& file, const Scene& scene, const DrawnFields& drawn)
                     chunk_lights = std::clamp<std::size_t>(chunk_values / views, 1, lights);
   const ResultGroup root(file, field_table);
   root.number("realization", realizations);
-  root.begin("field", {at_once, chunk_lights, std::min(views, chunk_values)});
+  const auto& camera = scene.request.camera;
+  const auto with_views = [&](std::vector<std::size_t> extents, std::size_t rows, std::size_t all) {
+    if (camera) extents.push_back(rows);
+    extents.push_back(all);
+    return extents;
+  };
+  const std::size_t columns = camera ? camera->pixels : views;
+  root.begin("field", with_views({at_once, chunk_lights},
+                                 std::clamp<std::size_t>(chunk_values / columns, 1, columns),
+                                 std::min(columns, chunk_values)));
   for (std::size_t first = 0; first < realizations; first += at_once) {
     const std::size_t count = std::min(at_once, realizations - first);
     file.write_block("field", std::span(drawn.field).subspan(first * channels, count * channels),
-                     {first, 0, 0}, {count, lights, views});
+                     with_views({first, 0}, 0, 0), with_views({count, lights}, columns, columns));
   }
 }
 
@@ -202,6 +232,10 @@ void write_plan(const ResultGroup& root, const DrawingPlan& plan) {
   if (by_paths) {
     root.attribute("field", "paths_per_field", plan.paths_per_field);
     root.attribute("field", "excess_kurtosis", plan.excess);
+    if (plan.camera) {
+      root.attribute("field", "camera_error", plan.camera->error);
+      root.attribute("field", "camera_nodes", static_cast<std::uint64_t>(plan.camera->nodes));
+    }
   } else {
     root.attribute("field", "covariance_paths", plan.covariance_paths);
   }
@@ -225,8 +259,7 @@ void write_histogram(const ResultGroup& root, const FieldStatistics& statistics)
 
 }  // namespace
 
-FieldSummary write_fields(ResultFile& file, const Scene& scene, const std::vector<double>& tilts,
-                          const DrawnFields& drawn) {
+FieldSummary write_fields(ResultFile& file, const Scene& scene, const DrawnFields& drawn) {
   const auto& views = scene.request.views;
   const std::size_t channels = scene.request.channels.size();
   const auto step = equal_step(views);
@@ -234,7 +267,7 @@ FieldSummary write_fields(ResultFile& file, const Scene& scene, const std::vecto
   for (std::size_t first = 0; first < drawn.field.size(); first += channels)
     statistics.add(std::span(drawn.field).subspan(first, channels));
 
-  write_field_axes(file, scene, tilts);
+  write_field_axes(file, scene);
   write_field(file, scene, drawn);
   const ResultGroup root(file, field_table);
   write_plan(root, drawn.plan);

@@ -50,9 +50,7 @@ struct FieldSummary {
   std::optional<Estimate> grain_width;
 };
 
-/// Writes axes, fields and their statistics. tilts: rotation of each light, in the order of the
-/// axis light_angle, or empty.
-FieldSummary write_fields(ResultFile& file, const Scene& scene, const std::vector<double>& tilts,
-                          const DrawnFields& drawn);
+/// Writes axes, fields and their statistics.
+FieldSummary write_fields(ResultFile& file, const Scene& scene, const DrawnFields& drawn);
 
 }  // namespace flatspeckle::mc

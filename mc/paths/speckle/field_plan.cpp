@@ -166,6 +166,9 @@ std::string DrawingPlan::describe() const {
     text << "fields by paths, " << paths_per_field << " each (excess kurtosis " << excess << ")";
   else
     text << "fields from the covariance of " << covariance_paths << " paths, Cholesky";
+  if (method == FieldMethod::paths && camera)
+    text << "; camera sums with " << camera->nodes << "^2 nodes, kernels of " << camera->width
+         << " points, error " << 100 * camera->error << " %";
   text << "; multiply-adds: by paths " << paths_cost << ", from the covariance ";
   if (std::isfinite(covariance_cost))
     text << covariance_cost;

@@ -7,6 +7,7 @@
 
 #include "core/run/runner.h"
 #include "flatland/scene/scene.h"
+#include "mc/paths/speckle/camera_sum.h"
 #include "mc/paths/walk/plan.h"
 
 namespace flatspeckle::mc {
@@ -41,6 +42,7 @@ struct FieldDemand {
   /// of 0.01 of the fields.
   std::optional<std::uint64_t> paths_per_field = std::nullopt;
   double covariance_error = 0.01;  ///< relative error of the diagonal of the covariance
+  double camera_tolerance = 0.01;  ///< largest relative rms error of a CameraSum
 };
 
 /// Plan for drawing the fields of a scene.
@@ -52,6 +54,7 @@ struct DrawingPlan {
   /// Costs of drawing all fields from paths and from the covariance, in complex multiply-adds.
   /// covariance_cost is infinite if the covariance does not fit into memory.
   double paths_cost = 0, covariance_cost = 0;
+  std::optional<CameraResolution> camera{};  ///< set if paths are summed on a camera
 
   std::string describe() const;
 };

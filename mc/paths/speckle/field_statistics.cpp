@@ -50,9 +50,10 @@ std::optional<double> equal_step(const std::vector<View>& views) {
   if (views.size() < fewest_views) return std::nullopt;
   const bool near = views.front().near;
   const auto place = [&](std::size_t v) {
-    return near ? views[v].point : Vec2{std::sin(views[v].angle), 0};
+    const Vec w = views[v].direction();
+    return near ? views[v].point : Vec{w.x, 0, w.y};
   };
-  const Vec2 step = place(1) - place(0);
+  const Vec step = place(1) - place(0);
   /// Tolerance, relative to the step, for angles that are rounded in lists
   constexpr double rounding = 1e-3;
   for (std::size_t v = 1; v < views.size(); ++v) {

@@ -52,6 +52,84 @@ FieldDraw fields_by_paths(const Scene& scene, const Plan& general, std::uint64_t
   };
 }
 
+namespace {
+
+/// Adds the ends of all paths to the sum of a camera, with one field for each light.
+class CameraScorer : public PathScorer {
+ public:
+  CameraScorer(const PathWalks& walks, const RandomStream& phases, CameraSum& sum)
+      : walks_(walks),
+        phases_(phases),
+        sum_(sum),
+        lights_(walks.factors(walks.scene(), light_endpoints(walks.scene()), true)),
+        first_(lights_->size()),
+        last_(lights_->size()),
+        scaled_(lights_->size()) {}
+
+  void single(Vec x, double weight, FaceWaves) override {
+    lights_->attenuate(x, last_);
+    const Complex factor = draw_factor(weight);
+    std::vector<Complex> only(last_.size());
+    for (std::size_t i = 0; i < last_.size(); ++i) {
+      only[i] = product(factor, last_[i]);
+      sum_.add(x, -lights_->direction(i), only);
+      only[i] = 0;
+    }
+  }
+  void multiple(const Path& path) override {
+    const Complex factor = draw_factor(path.weight);
+    if (path.new_start) light(path.first, -path.start, first_);
+    add(path.last, path.arrival, factor, first_);
+    if (!walks_.plan().reversed) return;
+    light(path.last, path.arrival, last_);
+    add(path.first, -path.start, factor, last_);
+  }
+
+ private:
+  Complex draw_factor(double weight) {
+    return std::polar(std::sqrt(weight), 2 * std::numbers::pi * phases_.uniform());
+  }
+  void light(Vec x, Vec arrival, std::vector<Complex>& field) {
+    lights_->attenuate(x, field);
+    walks_.towards(x, arrival, lights_->directions(), field);
+  }
+  void add(Vec x, Vec arrival, Complex factor, const std::vector<Complex>& lights) {
+    for (std::size_t i = 0; i < lights.size(); ++i) scaled_[i] = product(factor, lights[i]);
+    sum_.add(x, arrival, scaled_);
+  }
+
+  const PathWalks& walks_;
+  RandomStream phases_;
+  CameraSum& sum_;
+  std::unique_ptr<EndpointFactors> lights_;
+  std::vector<Complex> first_, last_, scaled_;
+};
+
+}  // namespace
+
+FieldDraw fields_on_camera(const Scene& scene, const Plan& general, std::uint64_t seed,
+                           std::uint64_t paths, const CameraResolution& resolution) {
+  Plan plan = plan_for_fields(general);
+  plan.paths_per_batch = paths;
+  const FarCamera camera = scene.request.camera.value();
+  return [walks = path_walks(on_coarse_camera(scene), plan, seed), camera, seed, paths, resolution,
+          lights = scene.request.lights.size()](std::uint64_t number, std::span<Complex> field,
+                                                std::span<double> intensity) {
+    std::fill(field.begin(), field.end(), 0);
+    if (walks) {
+      CameraSum sum(*walks, camera, resolution, lights);
+      CameraScorer scorer(*walks, stream_of(seed, number), sum);
+      walks->batch(number, scorer);
+      sum.finish(field);
+    }
+    const double amplitude = std::sqrt(1 / static_cast<double>(paths));
+    for (std::size_t c = 0; c < field.size(); ++c) {
+      field[c] *= amplitude;
+      intensity[c] = std::norm(field[c]);
+    }
+  };
+}
+
 CovarianceFactor::CovarianceFactor(std::size_t channels, std::span<const Complex> lower)
     : scale_(channels) {
   if (channels == 0) return;

@@ -10,6 +10,7 @@
 #include "core/numbers/random.h"
 #include "flatland/scene/scene.h"
 #include "mc/paths/estimators/covariance_estimator.h"
+#include "mc/paths/speckle/camera_sum.h"
 #include "mc/paths/walk/accumulator.h"
 #include "mc/paths/walk/plan.h"
 
@@ -60,6 +61,11 @@ Plan plan_for_fields(Plan plan);
 /// any number of paths; their distribution becomes Gaussian for many paths (field_plan.h).
 FieldDraw fields_by_paths(const Scene& scene, const Plan& plan, std::uint64_t seed,
                           std::uint64_t paths);
+
+/// Draws fields by paths on the camera of a box in space, by a CameraSum. The intensity of
+/// FieldDraw is |u|^2, with the noise of speckle.
+FieldDraw fields_on_camera(const Scene& scene, const Plan& plan, std::uint64_t seed,
+                           std::uint64_t paths, const CameraResolution& resolution);
 
 /// Factorisation F F^H of a Hermitian, positive semidefinite matrix, in which F has as many columns
 /// as the rank of the matrix (to rounding). It is computed by Cholesky factorisation with complete

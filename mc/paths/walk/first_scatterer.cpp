@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "grin/media/scattering/free_flight.h"
+#include "grin/media/scattering/start_directions.h"
 #include "mc/paths/bent/graded_endpoints.h"
 #include "mc/paths/walk/importance.h"
 
@@ -47,20 +48,21 @@ void narrow(Chord& chord, double position, double speed, double low, double high
 }
 
 /// Moves x into the box if rounding has put it outside.
-Vec2 kept_inside(const Domain& box, Vec2 x) {
-  return {std::clamp(x.x, -box.width / 2, box.width / 2), std::clamp(x.z, 0.0, box.depth)};
+Vec kept_inside(const Domain& box, Vec x) {
+  return {std::clamp(x.x, -box.width / 2, box.width / 2), std::clamp(x.z, 0.0, box.depth),
+          std::clamp(x.y, -box.height / 2, box.height / 2)};
 }
 
-Vec2 after_flight(const Domain& box, const Extinction& extinction, Vec2 origin, Vec2 w,
-                  const Chord& chord, RandomStream& random) {
+Vec after_flight(const Domain& box, const Extinction& extinction, Vec origin, Vec w,
+                 const Chord& chord, RandomStream& random) {
   const double flight =
       extinction.sample_flight(origin + chord.enter * w, w, chord.length(), random.uniform());
   return kept_inside(box, origin + (chord.enter + flight) * w);
 }
 
 /// Returns half the extent of the box along a unit vector, about the centre of the box.
-double half_extent(const Domain& box, Vec2 w) {
-  return (box.width * std::abs(w.x) + box.depth * std::abs(w.z)) / 2;
+double half_extent(const Domain& box, Vec w) {
+  return (box.width * std::abs(w.x) + box.depth * std::abs(w.z) + box.height * std::abs(w.y)) / 2;
 }
 
 double gaussian_share(double low, double high, double sigma) {
@@ -77,7 +79,7 @@ double sample_gaussian(RandomStream& random) {
 bool alike(const Light& a, const Light& b, double spacing, double wavelength) {
   if (a.kind != b.kind) return false;
   if (a.kind == Light::Kind::point) return length(a.point - b.point) <= wavelength / 2;
-  const double turn = std::abs(std::remainder(a.angle - b.angle, 2 * std::numbers::pi));
+  const double turn = 2 * std::asin(std::min(1.0, length(a.direction() - b.direction()) / 2));
   const double divergence = wavelength / (std::numbers::pi * b.waist);
   return turn <= std::min(spacing, divergence / 2) && a.waist == b.waist &&
          length(a.point - b.point) <= b.waist / 2;
@@ -105,7 +107,7 @@ GradedFirst::Rays GradedFirst::rays_of(const Light& light) const {
   constexpr std::size_t per_side = 128;
   std::vector<double> around;
   const double middle = point ? rays.wave->at({0, domain_.depth / 2})->launch : 0;
-  for (const Vec2 place : edge_places(domain_, per_side)) {
+  for (const Vec place : edge_places(domain_, per_side)) {
     const double launch = rays.wave->at(place)->launch;
     around.push_back(point ? std::remainder(launch - middle, 2 * pi) : launch);
   }
@@ -118,16 +120,13 @@ GradedFirst::Rays GradedFirst::rays_of(const Light& light) const {
 RayPlace GradedFirst::launched(const Rays& rays, double launch) const {
   if (rays.light.kind == Light::Kind::point) return {rays.light.point, direction(launch)};
   const double sine = std::sin(rays.light.angle), cosine = std::cos(rays.light.angle);
-  const Vec2 entry{launch, cosine > 0 ? 0 : domain_.depth};
+  const Vec entry{launch, cosine > 0 ? 0 : domain_.depth};
   const double n2 = medium_.square(entry), up = std::sqrt(std::max(n2 - sine * sine, 0.0));
-  return {entry, 1 / std::sqrt(n2) * Vec2{sine, std::copysign(up, cosine)}};
+  return {entry, 1 / std::sqrt(n2) * Vec{sine, std::copysign(up, cosine)}};
 }
 
 GradedFirst::Sample GradedFirst::sample(RandomStream& random) const {
-  if (straight_) {
-    const auto [x, arrival] = straight_->sample(random);
-    return {x, arrival};
-  }
+  if (straight_) return straight_->sample(random);
   const auto number =
       static_cast<std::size_t>(random.uniform() * static_cast<double>(lights_.size()));
   const Rays& rays = lights_[number];
@@ -141,14 +140,14 @@ GradedFirst::Sample GradedFirst::sample(RandomStream& random) const {
   return {place->x, place->w};
 }
 
-double GradedFirst::density(const Rays& rays, const Arrival& arrival, Vec2 x) const {
+double GradedFirst::density(const Rays& rays, const Arrival& arrival, Vec x) const {
   const double whole = arrival.inside + medium_.inside(x, arrival.w),
                wide = rays.low == rays.high ? 1 : rays.high - rays.low;
   return grin::BoundedFlight{mu_t_, whole}.density(arrival.inside) * arrival.amplitude *
          arrival.amplitude / (rays.per_launch * wide);
 }
 
-double GradedFirst::density(Vec2 x) const {
+double GradedFirst::density(Vec x) const {
   if (straight_) return straight_->density(x);
   double sum = 0;
   for (const Rays& rays : lights_)
@@ -156,7 +155,7 @@ double GradedFirst::density(Vec2 x) const {
   return sum / static_cast<double>(lights_.size());
 }
 
-double GradedFirst::density(Vec2 x, Vec2 start, const GradedScattering& scattering) const {
+double GradedFirst::density(Vec x, Vec start, const GradedScattering& scattering) const {
   if (straight_) return straight_->density(x, start, scattering);
   double sum = 0;
   for (const Rays& rays : lights_)
@@ -165,102 +164,133 @@ double GradedFirst::density(Vec2 x, Vec2 start, const GradedScattering& scatteri
   return sum / static_cast<double>(lights_.size());
 }
 
-Chord chord_through(const Domain& box, Vec2 origin, Vec2 w, double least) {
+Chord chord_through(const Domain& box, Vec origin, Vec w, double least) {
   Chord chord{least, std::numeric_limits<double>::max()};
   narrow(chord, origin.x, w.x, -box.width / 2, box.width / 2);
   narrow(chord, origin.z, w.z, 0, box.depth);
+  if (box.height > 0) narrow(chord, origin.y, w.y, -box.height / 2, box.height / 2);
   return chord;
 }
 
-PointRays::PointRays(const Domain& box, const Extinction& extinction, Vec2 source)
-    : box_(box), extinction_(extinction), source_(source), first_angle_(-pi), wedge_(2 * pi) {
-  const double half = box.width / 2;
-  const bool inside = std::abs(source.x) < half && source.z > 0 && source.z < box.depth;
+PointRays::PointRays(const Domain& box, const Extinction& extinction, Vec source)
+    : box_(box), extinction_(extinction), source_(source) {
+  const bool in_space = box.height > 0;
+  const double whole = in_space ? 4 * pi : 2 * pi;
+  first_angle_ = -pi;
+  measure_ = whole;
+  const Vec centre{0, box.depth / 2}, offset = centre - source;
+  axis_ = length(offset) > 0 ? 1 / length(offset) * offset : Vec{0, 1};
+  const bool inside = std::abs(source.x) < box.width / 2 && source.z > 0 && source.z < box.depth &&
+                      (!in_space || std::abs(source.y) < box.height / 2);
   if (inside) return;
-  const double middle = angle_of(Vec2{0, box.depth / 2} - source);
-  double low = 0, high = 0;
-  for (Vec2 corner : {Vec2{-half, 0}, {half, 0}, {-half, box.depth}, {half, box.depth}}) {
-    const Vec2 offset = corner - source;
-    if (length(offset) == 0) continue;
-    const double angle = std::remainder(angle_of(offset) - middle, 2 * pi);
-    low = std::min(low, angle);
-    high = std::max(high, angle);
-  }
+  double low = 0, high = 0, least_cosine = 1;
+  const double middle = angle_of(offset);
+  for (const double x : {-box.width / 2, box.width / 2})
+    for (const double z : {0.0, box.depth})
+      for (const double y : {-box.height / 2, box.height / 2}) {
+        const Vec to = Vec{x, z, y} - source;
+        if (length(to) == 0) continue;
+        least_cosine = std::min(least_cosine, dot(to, axis_) / length(to));
+        const double angle = std::remainder(angle_of(to) - middle, 2 * pi);
+        low = std::min(low, angle);
+        high = std::max(high, angle);
+      }
   first_angle_ = middle + low;
-  wedge_ = high - low;
+  measure_ = in_space ? 2 * pi * (1 - least_cosine) : high - low;
 }
 
-Vec2 PointRays::sample(RandomStream& random) const {
+Vec PointRays::sample_direction(RandomStream& random) const {
+  if (box_.height == 0) return direction(first_angle_ + measure_ * random.uniform());
+  const grin::Vec3 w = grin::random_turn({axis_.x, axis_.y, axis_.z},
+                                         measure_ / (2 * pi) * random.uniform(), random);
+  return {w[0], w[2], w[1]};
+}
+
+std::optional<Vec> PointRays::sample(RandomStream& random) const {
   while (true) {  // because of rounding, a ray that grazes a corner may miss the box
-    const Vec2 w = direction(first_angle_ + wedge_ * random.uniform());
+    const Vec w = sample_direction(random);
     const Chord chord = chord_through(box_, source_, w, 0);
     if (chord.length() > 0) return after_flight(box_, extinction_, source_, w, chord, random);
+    if (box_.height > 0) return std::nullopt;
   }
 }
 
-double PointRays::density(Vec2 x) const {
+double PointRays::density(Vec x) const {
   const double r = length(x - source_);
-  const Vec2 w = arrival(x);
+  const Vec w = arrival(x);
   const Chord chord = chord_through(box_, source_, w, 0);
   if (!(chord.length() > 0)) return 0;
   return extinction_.flight_density(source_ + chord.enter * w, w, chord.length(), r - chord.enter) /
-         (r * wedge_);
+         ((box_.height > 0 ? r * r : r) * measure_);
 }
 
-Vec2 PointRays::arrival(Vec2 x) const {
-  const Vec2 offset = x - source_;
+Vec PointRays::arrival(Vec x) const {
+  const Vec offset = x - source_;
   return 1 / length(offset) * offset;
 }
 
 BeamRays::BeamRays(const Domain& box, const Extinction& extinction, const GaussianBeam& beam,
                    double width)
     : box_(box), extinction_(extinction), beam_(beam), sigma_(width / 2) {
-  const double middle = beam.across({0, box.depth / 2}),
-               half = half_extent(box, beam.across_axis());
-  low_ = middle - half;
-  high_ = middle + half;
-  nearest_ = std::max(0.0, std::abs(middle) - half);
-  share_ = gaussian_share(low_, high_, sigma_);
+  for (std::size_t i = 0; i < beam.transverse(); ++i) {
+    const double middle = beam.across({0, box.depth / 2}, i),
+                 half = half_extent(box, beam.across_axis(i));
+    across_.push_back({middle - half, middle + half, std::max(0.0, std::abs(middle) - half),
+                       gaussian_share(middle - half, middle + half, sigma_)});
+  }
 }
 
-/// Samples a Gaussian restricted to [low_, high_] by rejection. The candidates are Gaussian, or
+bool BeamRays::misses() const {
+  return std::ranges::any_of(across_, [&](const Across& one) { return one.nearest > 4 * sigma_; });
+}
+
+/// Samples a Gaussian restricted to [low, high] by rejection. The candidates are Gaussian, or
 /// uniform if little of the Gaussian lies in this interval.
-double BeamRays::sample_across(RandomStream& random) const {
+double BeamRays::sample(const Across& of, RandomStream& random) const {
   constexpr double little = 0.2;
   while (true) {
-    if (share_ > little) {
+    if (of.share > little) {
       const double across = sigma_ * sample_gaussian(random);
-      if (across > low_ && across < high_) return across;
+      if (across > of.low && across < of.high) return across;
       continue;
     }
-    const double across = low_ + (high_ - low_) * random.uniform();
-    const double exponent = (nearest_ * nearest_ - across * across) / (2 * sigma_ * sigma_);
+    const double across = of.low + (of.high - of.low) * random.uniform();
+    const double exponent = (of.nearest * of.nearest - across * across) / (2 * sigma_ * sigma_);
     if (std::log(random.uniform()) < exponent) return across;
   }
 }
 
-Vec2 BeamRays::sample(RandomStream& random) const {
+/// Returns the part inside the box of the line through `origin` parallel to the axis.
+Chord BeamRays::chord(Vec origin) const {
   constexpr double anywhere = std::numeric_limits<double>::lowest();
+  return chord_through(box_, origin, beam_.axis(), anywhere);
+}
+
+std::optional<Vec> BeamRays::sample(RandomStream& random) const {
   while (true) {
-    const double across = sample_across(random);
-    const Vec2 origin = beam_.focus() + across * beam_.across_axis();
-    const Chord chord = chord_through(box_, origin, beam_.axis(), anywhere);
-    if (chord.length() > 0)
-      return after_flight(box_, extinction_, origin, beam_.axis(), chord, random);
+    Vec origin = beam_.focus();
+    for (std::size_t i = 0; i < across_.size(); ++i)
+      origin = origin + sample(across_[i], random) * beam_.across_axis(i);
+    const Chord inside = chord(origin);
+    if (inside.length() > 0)
+      return after_flight(box_, extinction_, origin, beam_.axis(), inside, random);
+    if (box_.height > 0) return std::nullopt;
   }
 }
 
-double BeamRays::density(Vec2 x) const {
-  constexpr double anywhere = std::numeric_limits<double>::lowest();
-  const double across = beam_.across(x);
-  const Vec2 origin = beam_.focus() + across * beam_.across_axis();
-  const Chord chord = chord_through(box_, origin, beam_.axis(), anywhere);
-  if (!(chord.length() > 0)) return 0;
-  const double deviation = across / sigma_;
-  const double gaussian = std::exp(-deviation * deviation / 2) / (std::sqrt(2 * pi) * sigma_);
-  return gaussian / share_ *
-         extinction_.flight_density(origin + chord.enter * beam_.axis(), beam_.axis(),
-                                    chord.length(), beam_.along(x) - chord.enter);
+double BeamRays::density(Vec x) const {
+  Vec origin = beam_.focus();
+  double gaussian = 1;
+  for (std::size_t i = 0; i < across_.size(); ++i) {
+    const double across = beam_.across(x, i), deviation = across / sigma_;
+    origin = origin + across * beam_.across_axis(i);
+    gaussian *=
+        std::exp(-deviation * deviation / 2) / (std::sqrt(2 * pi) * sigma_) / across_[i].share;
+  }
+  const Chord inside = chord(origin);
+  if (!(inside.length() > 0)) return 0;
+  return gaussian * extinction_.flight_density(origin + inside.enter * beam_.axis(), beam_.axis(),
+                                               inside.length(), beam_.along(x) - inside.enter);
 }
 
 std::vector<BeamRays> beam_rays(const Domain& box, const Extinction& extinction,
@@ -288,16 +318,16 @@ Lights representative_lights(const Scene& scene) {
     return std::abs(std::sin(a.angle)) > std::abs(std::sin(b.angle));
   });
   Lights chosen;
-  std::vector<Vec2> waves;  // directions of the chosen plane waves
+  std::vector<Vec> waves;  // directions of the chosen plane waves
   for (const Light& light : lights) {
     const bool plane = light.kind == Light::Kind::plane;
-    const bool known = plane ? reached(scene, direction(light.angle), waves, spacing)
+    const bool known = plane ? reached(scene, light.direction(), waves, spacing)
                              : std::any_of(chosen.begin(), chosen.end(), [&](const Light& other) {
                                  return alike(light, other, spacing, scene.wavelength);
                                });
     if (known) continue;
     chosen.push_back(light);
-    if (plane) waves.push_back(direction(light.angle));
+    if (plane) waves.push_back(light.direction());
   }
   return chosen;
 }
@@ -311,13 +341,14 @@ FirstScatterer::FirstScatterer(const Scene& scene, double mean_derivative)
   for (const Light& light : representative_lights(scene)) {
     switch (light.kind) {
       case Light::Kind::plane:
-        plane_.push_back(direction(light.angle));
+        plane_.emplace_back(domain_, light.direction());
         break;
       case Light::Kind::point:
         point_.emplace_back(domain_, extinction, light.point);
         break;
       case Light::Kind::beam:
-        for (const auto& rays : beam_rays(domain_, extinction, GaussianBeam(light, scene.k)))
+        for (const auto& rays :
+             beam_rays(domain_, extinction, GaussianBeam(light, scene.k, scene.medium.dimension)))
           beam_.push_back(rays);
         break;
     }

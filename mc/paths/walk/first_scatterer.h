@@ -11,6 +11,7 @@
 #include "flatland/request/light.h"
 #include "flatland/scene/scene.h"
 #include "grin/media/scattering/free_flight.h"
+#include "mc/jobs/light_aperture.h"
 #include "mc/paths/endpoint_factors/endpoint_factors.h"
 #include "mc/paths/endpoint_factors/gaussian_beam.h"
 #include "mc/paths/endpoint_factors/profile_flight.h"
@@ -59,51 +60,61 @@ struct Chord {
 };
 /// Returns the part of a ray inside a box, without points nearer to the origin of the ray than
 /// `least`. The length of the chord is 0 or negative if the ray misses the box.
-Chord chord_through(const Domain& box, Vec2 origin, Vec2 w, double least);
+Chord chord_through(const Domain& box, Vec origin, Vec w, double least);
 
-/// Samples the first scatterer of a path from a point source inside or outside a box. The angle of
-/// the ray is uniform over the angles under which the source sees the box; the distance follows
-/// from the attenuation along the ray.
+/// Samples the first scatterer of a path from a point source inside or outside a box. The direction
+/// of the ray is uniform over the angles under which the source sees the box or, in space, over a
+/// cone that contains the box. The distance follows from the attenuation along the ray.
 class PointRays {
  public:
-  PointRays(const Domain& box, const Extinction& extinction, Vec2 source);
+  PointRays(const Domain& box, const Extinction& extinction, Vec source);
 
-  Vec2 sample(RandomStream& random) const;
-  double density(Vec2 x) const;  ///< density of sample() at x, per area
-  Vec2 arrival(Vec2 x) const;
+  /// Returns nullopt for a ray of the cone that misses the box.
+  std::optional<Vec> sample(RandomStream& random) const;
+  double density(Vec x) const;  ///< density of sample() at x, per area or volume
+  Vec arrival(Vec x) const;
 
  private:
+  Vec sample_direction(RandomStream& random) const;
+
   Domain box_;
   Extinction extinction_;
-  Vec2 source_;
-  double first_angle_, wedge_;
+  Vec source_;
+  double first_angle_ = 0;  ///< of the wedge in the plane
+  Vec axis_;                ///< of the cone in space
+  double measure_;          ///< angle of the wedge or solid angle of the cone
 };
 
 /// Samples the first scatterer of a path from a Gaussian beam in a box. Its density across the axis
-/// of the beam is Gaussian, with the width of the beam's intensity at one distance from the focus.
-/// Its density along the axis follows from the attenuation. width: 1/e radius of the beam's field
-/// at that distance (GaussianBeam::width()).
+/// of the beam is Gaussian, with the width of the beam's intensity at one distance from the focus,
+/// within limits that contain the box. Its density along the axis follows from the attenuation.
+/// width: 1/e radius of the beam's field at that distance (GaussianBeam::width()).
 class BeamRays {
  public:
   BeamRays(const Domain& box, const Extinction& extinction, const GaussianBeam& beam, double width);
 
   /// Whether the whole box lies more than two beam widths away from the axis of the beam.
-  bool misses() const { return nearest_ > 4 * sigma_; }
-  Vec2 sample(RandomStream& random) const;
-  double density(Vec2 x) const;  ///< density of sample() at x, per area
-  Vec2 arrival(Vec2 x) const { return beam_.ray(x); }
+  bool misses() const;
+  /// Returns nullopt for a ray that misses the box, which is possible only in space.
+  std::optional<Vec> sample(RandomStream& random) const;
+  double density(Vec x) const;  ///< density of sample() at x, per area or volume
+  Vec arrival(Vec x) const { return beam_.ray(x); }
 
  private:
-  double sample_across(RandomStream& random) const;
+  /// Coordinate perpendicular to the axis of the beam.
+  struct Across {
+    double low, high;  ///< smallest and largest value in the box
+    double nearest;    ///< smallest modulus in the box
+    double share;      ///< probability that the Gaussian lies in [low, high]
+  };
+  double sample(const Across& across, RandomStream& random) const;
+  Chord chord(Vec origin) const;
 
   Domain box_;
   Extinction extinction_;
   GaussianBeam beam_;
-  /// Standard deviation of the transverse coordinate (distance from the axis), and the smallest and
-  /// largest value of this coordinate in the box
-  double sigma_, low_, high_;
-  double nearest_;  ///< smallest distance of the box from the axis
-  double share_;    ///< probability that the Gaussian lies in [low_, high_]
+  double sigma_;  ///< standard deviation of the Gaussian
+  std::vector<Across> across_;
 };
 
 /// Returns samplers that together cover a beam: one with the largest width that the beam has in the
@@ -129,7 +140,8 @@ class FirstScatterer {
   explicit FirstScatterer(const Scene& scene, double mean_derivative = 0);
 
   struct Sample {
-    Vec2 x, arrival;
+    Vec x, arrival;
+    bool hit = true;  ///< whether the ray meets the medium; if not, the path has no scatterer
   };
   /// Samples the first scatterer and the direction in which the light arrives there. For plane
   /// waves the point of entry is uniform over the cross-section of the medium, and the free flight
@@ -138,8 +150,8 @@ class FirstScatterer {
     const auto number = static_cast<std::size_t>(random.uniform() * count_);
     if (number >= plane_.size()) [[unlikely]]
       return sample_near(number - plane_.size(), random);
-    const Vec2 w = plane_[number];
-    const Vec2 entry = sample_entry(w, random);
+    const Vec w = plane_[number].light();
+    const Vec entry = plane_[number].sample(random);
     const double chord = domain_.distance_to_edge(entry, w);
     if (profile_ != nullptr) [[unlikely]]
       return {entry + ProfileFlight(*profile_, entry, w, chord).sample(random.uniform()) * w, w};
@@ -147,44 +159,45 @@ class FirstScatterer {
   }
 
   /// Returns the density of the position of the first scatterer: per area or, in a slab, per depth.
-  double density(Vec2 x) const {
+  double density(Vec x) const {
     double sum = 0;
-    for (Vec2 w : plane_) sum += density(x, w);
+    for (const LightAperture& wave : plane_) sum += density(x, wave);
     if (has_near()) [[unlikely]]
-      sum += near_sum(x, [](Vec2) { return 1.0; });
+      sum += near_sum(x, [](Vec) { return 1.0; });
     return sum / count_;
   }
 
   /// Returns the joint density of the position of the first scatterer and of the direction in which
   /// the path leaves it.
   template <typename Scattering>
-  double density(Vec2 x, const typename Scattering::Direction& start,
-                 const Scattering& scattering) const {
+  double density(Vec x, Vec start, const Scattering& scattering) const {
     double sum = 0;
     const auto& here = local(scattering, x);
-    for (Vec2 w : plane_) sum += density(x, w) * here.density(w, start);
+    for (const LightAperture& wave : plane_)
+      sum += density(x, wave) * here.density(wave.light(), start);
     if (has_near()) [[unlikely]]
-      sum += near_sum(x, [&](Vec2 arrival) { return here.density(arrival, start); });
+      sum += near_sum(x, [&](Vec arrival) { return here.density(arrival, start); });
     return sum / count_;
   }
 
  private:
-  double density(Vec2 x, Vec2 w) const {
+  double density(Vec x, const LightAperture& wave) const {
+    const Vec w = wave.light();
     const double behind = domain_.distance_to_edge(x, -w);
     const double chord = behind + domain_.distance_to_edge(x, w);
     if (profile_ != nullptr) [[unlikely]]
-      return ProfileFlight(*profile_, x - behind * w, w, chord).density(behind) / aperture(w);
-    return flight(w, chord).density(behind) / aperture(w);
+      return ProfileFlight(*profile_, x - behind * w, w, chord).density(behind) / wave.all();
+    return flight(w, chord).density(behind) / wave.all();
   }
 
-  BoundedBiasedFlight flight(Vec2 w, double chord) const { return {mu_t_, chord, bias_ * w.z}; }
+  BoundedBiasedFlight flight(Vec w, double chord) const { return {mu_t_, chord, bias_ * w.z}; }
 
   bool has_near() const { return plane_.size() < static_cast<std::size_t>(count_); }
 
   /// Sums density times factor(direction of arrival at x) over the samplers of point sources and
   /// beams. It is not inlined, so that it does not slow down plane waves.
   template <typename Factor>
-  [[gnu::noinline]] double near_sum(Vec2 x, Factor factor) const {
+  [[gnu::noinline]] double near_sum(Vec x, Factor factor) const {
     double sum = 0;
     for (const auto& rays : point_) sum += rays.density(x) * factor(rays.arrival(x));
     for (const auto& rays : beam_) sum += rays.density(x) * factor(rays.arrival(x));
@@ -193,33 +206,16 @@ class FirstScatterer {
 
   [[gnu::noinline]] Sample sample_near(std::size_t number, RandomStream& random) const {
     const auto from = [&](const auto& rays) {
-      const Vec2 x = rays.sample(random);
-      return Sample{x, rays.arrival(x)};
+      const std::optional<Vec> x = rays.sample(random);
+      return x ? Sample{*x, rays.arrival(*x)} : Sample{{}, {}, false};
     };
     return number < point_.size() ? from(point_[number]) : from(beam_[number - point_.size()]);
-  }
-
-  /// Returns the width of the medium perpendicular to the light; for a slab, per unit length of the
-  /// face.
-  double aperture(Vec2 w) const {
-    if (domain_.kind == Domain::Kind::slab) return std::abs(w.z);
-    return domain_.width * std::abs(w.z) + domain_.depth * std::abs(w.x);
-  }
-
-  Vec2 sample_entry(Vec2 w, RandomStream& random) const {
-    const double far_z = w.z > 0 ? 0 : domain_.depth;
-    if (domain_.kind == Domain::Kind::slab) return {0, far_z};
-    const double across = random.uniform() * aperture(w);
-    const double through_face = domain_.width * std::abs(w.z);
-    if (across < through_face) return {across / std::abs(w.z) - domain_.width / 2, far_z};
-    const double side = w.x > 0 ? -domain_.width / 2 : domain_.width / 2;
-    return {side, (across - through_face) / std::abs(w.x)};
   }
 
   Domain domain_;
   const MediumProfile* profile_;  ///< null if the medium is homogeneous
   double mu_t_, bias_;
-  std::vector<Vec2> plane_;
+  std::vector<LightAperture> plane_;
   std::vector<PointRays> point_;
   std::vector<BeamRays> beam_;
   double count_ = 0;  ///< number of samplers of all three kinds
@@ -233,14 +229,11 @@ class GradedFirst {
  public:
   GradedFirst(const Scene& scene, const GradedScattering& scattering);
 
-  struct Sample {
-    Vec2 x, arrival;
-    bool hit = true;  ///< whether the ray meets the domain; if not, the path has no scatterer
-  };
+  using Sample = FirstScatterer::Sample;
   Sample sample(RandomStream& random) const;
 
-  double density(Vec2 x) const;
-  double density(Vec2 x, Vec2 start, const GradedScattering& scattering) const;
+  double density(Vec x) const;
+  double density(Vec x, Vec start, const GradedScattering& scattering) const;
 
  private:
   struct Rays {
@@ -253,7 +246,7 @@ class GradedFirst {
   };
   Rays rays_of(const Light& light) const;
   RayPlace launched(const Rays& rays, double launch) const;
-  double density(const Rays& rays, const Arrival& arrival, Vec2 x) const;
+  double density(const Rays& rays, const Arrival& arrival, Vec x) const;
 
   Domain domain_;
   double mu_t_;

@@ -5,12 +5,11 @@
 #include <limits>
 #include <numbers>
 #include <set>
-#include <type_traits>
 
 #include "core/numbers/log_sinh.h"
 #include "grin/media/scattering/diffusion_rate.h"
 #include "grin/media/scattering/phase_function.h"
-#include "mc/paths/endpoint_factors/space_scattering.h"
+#include "mc/paths/endpoint_factors/scattering.h"
 #include "mc/theory/diffusion.h"
 
 namespace flatspeckle::mc {
@@ -19,13 +18,13 @@ namespace {
 
 /// Whether the plane waves along `others` represent (see reached()) the ray that enters along w.
 /// Tests four places on the ray, from just behind the entry to ten mean free paths from it.
-bool ray_reached(const Scene& scene, Vec2 w, Vec2 entry, const std::vector<Vec2>& others) {
+bool ray_reached(const Scene& scene, Vec w, Vec entry, const std::vector<Vec>& others) {
   const double mfp = scene.medium.mean_free_path(), chord = scene.domain.distance_to_edge(entry, w);
   constexpr double tolerated = 1.5;  // additional path in the medium, in mean free paths
   for (const double deep : {0.01, 1.0, 3.0, 10.0}) {
     const double s = std::min(deep * mfp, 0.99 * chord);
-    const Vec2 x = entry + s * w;
-    const bool lit = std::any_of(others.begin(), others.end(), [&](Vec2 other) {
+    const Vec x = entry + s * w;
+    const bool lit = std::any_of(others.begin(), others.end(), [&](Vec other) {
       return scene.domain.distance_to_edge(x, -other) <= s + tolerated * mfp;
     });
     if (!lit) return false;
@@ -46,6 +45,13 @@ double log_sinh_ratio(double a, double b) {
 double about_exp(double x) {
   const double square = (1 + x / 8) * (1 + x / 8), fourth = square * square;
   return 1 / (fourth * fourth);
+}
+
+/// Returns the phase function for scattering between two directions, relative to the isotropic one.
+template <int dimension>
+double relative_lobe(double g, Vec from, Vec to) {
+  return grin::HenyeyGreenstein<dimension>{g}.density_beside(one_minus_cosine(from, to)) /
+         grin::Isotropic<dimension>::value;
 }
 
 /// Returns typical depths at which the lights are first scattered.
@@ -75,22 +81,27 @@ std::set<double> view_depths(const Scene& scene) {
 
 }  // namespace
 
-bool reached(const Scene& scene, Vec2 w, const std::vector<Vec2>& others, double spacing) {
+bool reached(const Scene& scene, Vec w, const std::vector<Vec>& others, double spacing) {
   const auto& domain = scene.domain;
   const double cosine = std::cos(std::min(spacing, 3.0)) - 1e-12;
-  std::vector<Vec2> close;
-  for (Vec2 other : others)
+  std::vector<Vec> close;
+  for (Vec other : others)
     if (dot(w, other) >= cosine) close.push_back(other);
   if (close.empty()) return false;
   const double face = w.z > 0 ? 0 : domain.depth;
   if (domain.kind == Domain::Kind::slab) return ray_reached(scene, w, {0, face}, close);
-  constexpr int points = 16;
-  const double side = w.x > 0 ? -domain.width / 2 : domain.width / 2;
+  const int points = domain.height > 0 ? 64 : 16;
+  const double side = w.x > 0 ? -domain.width / 2 : domain.width / 2,
+               other_side = w.y > 0 ? -domain.height / 2 : domain.height / 2;
   for (int i = 0; i < points; ++i) {
-    const double share = (i + 0.5) / points;
-    if (w.z != 0 && !ray_reached(scene, w, {(share - 0.5) * domain.width, face}, close))
+    const double share = (i + 0.5) / points, x = (share - 0.5) * domain.width,
+                 second = (i + 0.5) * std::numbers::phi,
+                 y = (second - std::floor(second) - 0.5) * domain.height;
+    if (w.z != 0 && !ray_reached(scene, w, {x, face, y}, close)) return false;
+    if (w.x != 0 && !ray_reached(scene, w, {side, share * domain.depth, y}, close)) return false;
+    if (w.y != 0 &&
+        !ray_reached(scene, w, {x, (y / domain.height + 0.5) * domain.depth, other_side}, close))
       return false;
-    if (w.x != 0 && !ray_reached(scene, w, {side, share * domain.depth}, close)) return false;
   }
   return true;
 }
@@ -101,7 +112,8 @@ DiffusionImportance::DiffusionImportance(const Scene& scene) : step_(scene.domai
   const double beyond = extrapolation_length(medium);
   double rate = grin::diffusion_rate(medium.albedo, medium.g, medium.dimension) * medium.mu_t;
   if (scene.domain.kind == Domain::Kind::box)  // light that leaves through the sides is also lost
-    rate = std::hypot(rate, pi / (scene.domain.width + 2 * beyond));
+    for (const double across : {scene.domain.width, scene.domain.height})
+      if (across > 0) rate = std::hypot(rate, pi / (across + 2 * beyond));
   rate = std::max(rate, 1e-8 / depth);
   // Log of the fraction of the light at depth z that reaches the depth `there` before it leaves
   // through the face on the other side.
@@ -173,14 +185,17 @@ std::size_t DiffusionImportance::interval(double z) const {
 
 ExpectedContribution::ExpectedContribution(const Scene& scene,
                                            const std::vector<Endpoint>& endpoints)
-    : domain_(scene.domain), extinction_(scene), g_(scene.medium.g) {
+    : domain_(scene.domain),
+      extinction_(scene),
+      dimension_(scene.medium.dimension),
+      g_(scene.medium.g) {
   always_ =
       std::any_of(endpoints.begin(), endpoints.end(), [](const Endpoint& end) { return end.near; });
   if (always_) return;
   constexpr std::size_t few = 16;
   double spacing = std::max(0.5 * (1 - std::abs(g_)), 0.05);
   const auto choose = [&] {
-    std::vector<Vec2> chosen;  // exit directions of the selected endpoints, reversed
+    std::vector<Vec> chosen;  // exit directions of the selected endpoints, reversed
     for (const Endpoint& end : endpoints)
       if (chosen.size() <= few && !reached(scene, -end.towards, chosen, spacing))
         chosen.push_back(-end.towards);
@@ -191,26 +206,20 @@ ExpectedContribution::ExpectedContribution(const Scene& scene,
   // The lobe of the phase function is made no narrower than the angle between the representative
   // endpoints.
   g_ = std::copysign(std::min(std::abs(g_), std::max(0.0, 1 - spacing)), g_);
-  for (Vec2 w : chosen) towards_.push_back(-w);
+  for (Vec w : chosen) towards_.push_back(-w);
 }
 
-template <typename Direction>
-double ExpectedContribution::operator()(Vec2 x, const Direction& arrival) const {
+double ExpectedContribution::operator()(Vec x, Vec arrival) const {
   if (always_) return 1;
-  constexpr int dimension = std::is_same_v<Direction, Vec2> ? 2 : 3;
-  const grin::HenyeyGreenstein<dimension> lobe{g_};
   double largest = 0.01;  // bound for directions far from all representative endpoints
-  for (Vec2 w : towards_) {
+  for (Vec w : towards_) {
     double value = about_exp(extinction_.optical_depth(x, w, domain_.distance_to_edge(x, w)));
     if (g_ != 0)
-      value *= lobe.density_beside(one_minus_cosine(arrival, Direction(w))) /
-               grin::Isotropic<dimension>::value;
+      value *=
+          dimension_ == 2 ? relative_lobe<2>(g_, arrival, w) : relative_lobe<3>(g_, arrival, w);
     largest = std::max(largest, value);
   }
   return largest;
 }
-
-template double ExpectedContribution::operator()(Vec2, const Vec2&) const;
-template double ExpectedContribution::operator()(Vec2, const SpaceDirection&) const;
 
 }  // namespace flatspeckle::mc

@@ -12,7 +12,7 @@ namespace flatspeckle::mc {
 /// place of the medium, one of those whose direction differs from w by at most `spacing` (radians)
 /// is at most exp(1.5) times more attenuated than the wave along w. By reciprocity the result also
 /// holds for light that leaves the medium along -w.
-bool reached(const Scene& scene, Vec2 w, const std::vector<Vec2>& others, double spacing);
+bool reached(const Scene& scene, Vec w, const std::vector<Vec>& others, double spacing);
 
 /// Importance of a depth for the views: the fraction of the light at that depth that reaches the
 /// views, by diffusion theory, relative to the same fraction at one mean free path inside the face
@@ -59,15 +59,15 @@ class ExpectedContribution {
   ExpectedContribution(const Scene& scene, const std::vector<Endpoint>& endpoints);
 
   /// Returns the estimate, which is about 1 for isotropic scattering where little medium lies
-  /// between x and an endpoint. Direction: Vec2 or SpaceDirection.
-  template <typename Direction>
-  double operator()(Vec2 x, const Direction& arrival) const;
+  /// between x and an endpoint.
+  double operator()(Vec x, Vec arrival) const;
 
  private:
   Domain domain_;
   Extinction extinction_;
+  int dimension_;
   double g_;
-  std::vector<Vec2> towards_;
+  std::vector<Vec> towards_;
   bool always_ = false;  ///< true if an endpoint is near; the estimate is then 1 everywhere
 };
 

@@ -13,10 +13,10 @@ namespace flatspeckle::mc {
 /// is F, or F + R if reversed paths are included (conventions, C14), with all amplitudes divided by
 /// sqrt(sigma_s).
 struct Path {
-  Vec2 first;            ///< the first scatterer
-  SpaceDirection start;  ///< direction in which the path leaves the first scatterer
-  Vec2 last;
-  SpaceDirection arrival;  ///< direction in which the path reaches the last scatterer
+  Vec first;  ///< the first scatterer
+  Vec start;  ///< direction in which the path leaves the first scatterer
+  Vec last;
+  Vec arrival;  ///< direction in which the path reaches the last scatterer
   double weight = 0;
   bool new_start = false;  ///< true for the first path with these values of `first` and `start`
   FaceWaves waves{};
@@ -29,7 +29,7 @@ class PathScorer {
 
   /// Scores a path of one scatterer at x. Called only if the plan samples such paths
   /// (Plan::sampled_single).
-  virtual void single(Vec2 x, double weight, FaceWaves waves) = 0;
+  virtual void single(Vec x, double weight, FaceWaves waves) = 0;
   /// Scores a path of two or more scatterers.
   virtual void multiple(const Path& path) = 0;
 
@@ -39,11 +39,10 @@ class PathScorer {
   /// Whether the scorer has a tally. Walks call step() only for scorers that have one.
   virtual bool has_tally() const { return false; }
   /// Begins the tally of a path with the flight from its first scatterer x along w.
-  virtual void begin(Vec2 /*x*/, const SpaceDirection& /*w*/, double /*length*/) {}
+  virtual void begin(Vec /*x*/, Vec /*w*/, double /*length*/) {}
   /// Adds the scattering at x from direction `from` to direction `to`, and the flight along `to`
   /// that follows.
-  virtual void step(Vec2 /*x*/, const SpaceDirection& /*from*/, const SpaceDirection& /*to*/,
-                    double /*length*/) {}
+  virtual void step(Vec /*x*/, Vec /*from*/, Vec /*to*/, double /*length*/) {}
   /// Saves the tally for the paths into which this path splits. Each of these paths restores the
   /// saved tally by take_up(), the last one with last = true. Saved tallies form a stack.
   virtual void keep() {}
@@ -58,11 +57,11 @@ template <typename Tally>
 class TallyScorer : public PathScorer {
  public:
   bool has_tally() const final { return true; }
-  void begin(Vec2 x, const SpaceDirection& w, double length) final {
+  void begin(Vec x, Vec w, double length) final {
     tally_ = none_;
     tally_.flight(x, w, length);
   }
-  void step(Vec2 x, const SpaceDirection& from, const SpaceDirection& to, double length) final {
+  void step(Vec x, Vec from, Vec to, double length) final {
     tally_.scattering(x, from, to);
     tally_.flight(x, to, length);
   }

@@ -23,8 +23,7 @@ bool can_detect_backscattering(const CovarianceRequest& request, const Domain& d
       return view.near ? view.point.z < 0 : std::cos(view.angle) < 0;
     if (view.near) return true;
     return std::any_of(request.lights.begin(), request.lights.end(), [&](const Light& light) {
-      return light.kind == Light::Kind::point ||
-             dot(direction(light.angle), direction(view.angle)) <= 0;
+      return light.kind == Light::Kind::point || dot(light.direction(), view.direction()) <= 0;
     });
   });
 }
@@ -42,9 +41,10 @@ double score_level(double g, int dimension) {
 /// no path would be scored.
 double level_of(const Scene& scene) {
   constexpr double thin = 1e-3;
-  const double across = scene.domain.kind == Domain::Kind::box
-                            ? std::min(scene.domain.depth, scene.domain.width)
-                            : scene.domain.depth;
+  const Domain& domain = scene.domain;
+  double across = domain.depth;
+  if (domain.kind == Domain::Kind::box) across = std::min(across, domain.width);
+  if (domain.height > 0) across = std::min(across, domain.height);
   return score_level(scene.medium.g, scene.medium.dimension) *
          std::min(1.0, scene.medium.mu_t * across / thin);
 }
@@ -74,9 +74,17 @@ std::uint64_t paths_per_batch(const Scene& scene, const Plan& plan) {
 
 }  // namespace
 
-Plan::Phase phase_of(const Scatterer& scatterer) {
+Plan::Phase phase_of(const Scene& scene) {
+  const Scatterer& scatterer = scene.scatterer;
+  const bool hg = scatterer.kind == Scatterer::Kind::hg;
+  if (scene.medium.dimension == 3) {
+    // Spheres have complex amplitudes, or a phase function that is slow to compute.
+    if (scene.medium.has_scatterers || scatterer.kind == Scatterer::Kind::mie)
+      return Plan::Phase::tabulated_in_space;
+    return hg ? Plan::Phase::henyey_greenstein_in_space : Plan::Phase::space;
+  }
   if (scatterer.kind == Scatterer::Kind::point) return Plan::Phase::isotropic;
-  if (scatterer.kind != Scatterer::Kind::hg) return Plan::Phase::tabulated;
+  if (!hg) return Plan::Phase::tabulated;
   return scatterer.g == 0 ? Plan::Phase::isotropic : Plan::Phase::henyey_greenstein;
 }
 
@@ -84,10 +92,9 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   const auto& request = scene.request;
   Plan plan;
   plan.domain = scene.domain.kind;
-  plan.phase = scene.index                   ? Plan::Phase::graded
-               : scene.profile               ? Plan::Phase::varying
-               : scene.medium.dimension == 3 ? Plan::Phase::space
-                                             : phase_of(scene.scatterer);
+  plan.phase = scene.index     ? Plan::Phase::graded
+               : scene.profile ? Plan::Phase::varying
+                               : phase_of(scene);
   plan.reversed =
       reversed == ReversedPaths::yes ||
       (reversed == ReversedPaths::automatic && can_detect_backscattering(request, scene.domain));
@@ -98,8 +105,9 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   plan.weighted = scene.medium.albedo < 1 - 1e-12 || loses_light_by_sides(scene);
   constexpr std::size_t few = 20000;  // entries; quadrature takes at most 1 ms for each
   plan.waves = scored_waves(scene);
-  plan.sampled_single = scene.faces || scene.index || scene.profile || plan.near || plan.rank_k ||
-                        request.entries.size() > few;
+  const bool box_in_space = scene.domain.height > 0;
+  plan.sampled_single = box_in_space || scene.faces || scene.index || scene.profile || plan.near ||
+                        plan.rank_k || request.entries.size() > few;
   plan.paths_per_batch = paths_per_batch(scene, plan);
   return plan;
 }
@@ -109,8 +117,6 @@ void require_walks(const Scene& scene, bool weighted) {
     throw InputError(
         "method: beams, near sources and near sensors beside a slab require method = "
         "transport, or a box");
-  if (scene.profile && scene.medium.dimension == 3)
-    throw InputError("dimension", 3, "layers require method = transport; leave out method = mc");
   if (scene.faces && scene.profile)
     throw InputError("medium_index", scene.faces->inside,
                      "Monte Carlo requires a homogeneous medium; use method = transport");
@@ -146,6 +152,12 @@ std::string Plan::describe() const {
       break;
     case Phase::space:
       text << "phase function in space";
+      break;
+    case Phase::henyey_greenstein_in_space:
+      text << "Henyey-Greenstein scattering in space";
+      break;
+    case Phase::tabulated_in_space:
+      text << "tabulated amplitude in space";
       break;
     case Phase::varying:
       text << "varying scattering";

@@ -16,7 +16,16 @@ enum class ReversedPaths { automatic, yes, no };
 /// Settings of the Monte Carlo estimator for a scene, selected before the first batch. Each form of
 /// scattering (Phase) has its own compiled walk, without code for the other forms.
 struct Plan {
-  enum class Phase { isotropic, henyey_greenstein, tabulated, space, varying, graded };
+  enum class Phase {
+    isotropic,
+    henyey_greenstein,
+    tabulated,
+    space,
+    henyey_greenstein_in_space,
+    tabulated_in_space,
+    varying,
+    graded
+  };
   Domain::Kind domain = Domain::Kind::box;
   Phase phase = Phase::isotropic;
   /// false: only magnitudes of fields are computed; sufficient for intensities
@@ -39,8 +48,8 @@ struct Plan {
   std::string describe() const;
 };
 
-/// Returns the form of scattering of a scatterer in 2D: isotropic, Henyey-Greenstein or tabulated.
-Plan::Phase phase_of(const Scatterer& scatterer);
+/// Returns the form of scattering in a homogeneous medium.
+Plan::Phase phase_of(const Scene& scene);
 
 Plan make_plan(const Scene& scene, ReversedPaths reversed);
 

@@ -16,8 +16,6 @@ namespace flatspeckle::mc {
 /// scatterers are curved.
 class GradedScattering {
  public:
-  using Direction = Vec2;
-
   GradedScattering(AnyScattering form, std::shared_ptr<const GradedMedium> medium)
       : form_(std::move(form)), medium_(std::move(medium)) {}
 
@@ -29,7 +27,7 @@ class GradedScattering {
   std::shared_ptr<const GradedMedium> medium_;
 };
 
-inline const AnyScattering& local(const GradedScattering& scattering, Vec2) {
+inline const AnyScattering& local(const GradedScattering& scattering, Vec) {
   return scattering.form();
 }
 
@@ -38,13 +36,14 @@ constexpr bool bends = false;
 template <>
 inline constexpr bool bends<GradedScattering> = true;
 
-/// Calls f with the scattering object of a 2D scene, of the type that `phase` selects: isotropic,
-/// Henyey-Greenstein or tabulated. Throws std::logic_error for other values of `phase` and for 3D
-/// scenes.
+/// Returns the amplitudes of spheres at equal steps of the scattering angle from 0 to pi; for mie,
+/// the square root of the phase function.
+std::vector<Complex> sphere_amplitudes(const Scene& scene);
+
+/// Calls f with the scattering object of a homogeneous medium, of the type that `phase` selects.
+/// Throws std::logic_error for varying and graded media.
 template <typename F>
 void with_scattering(const Scene& scene, Plan::Phase phase, F f) {
-  if (scene.medium.dimension != 2)
-    throw std::logic_error("with_scattering: a scene in space has no form in the plane");
   switch (phase) {
     case Plan::Phase::isotropic:
       return f(IsotropicScattering{});
@@ -53,11 +52,16 @@ void with_scattering(const Scene& scene, Plan::Phase phase, F f) {
     case Plan::Phase::tabulated:
       return f(TabulatedScattering(scene.medium, scene.k));
     case Plan::Phase::space:
+      return f(SpaceScattering(scene.medium.space_phase));
+    case Plan::Phase::henyey_greenstein_in_space:
+      return f(HenyeyGreensteinInSpace{{scene.scatterer.g}});
+    case Plan::Phase::tabulated_in_space:
+      return f(TabulatedSpaceScattering(sphere_amplitudes(scene)));
     case Plan::Phase::varying:
     case Plan::Phase::graded:
       break;
   }
-  throw std::logic_error("with_scattering: not the phase function of a scatterer in the plane");
+  throw std::logic_error("with_scattering: the medium is not homogeneous");
 }
 
 /// Returns the scattering of a medium whose material varies with position. Each material has its

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <tuple>
 #include <utility>
@@ -38,8 +39,6 @@ namespace {
 /// reversed, and keeps |R|^2 times the weight bounded.
 template <typename Scattering>
 class PathWalk {
-  using Direction = typename Scattering::Direction;
-
  public:
   PathWalk(const Scene& scene, const Plan& plan, const Scattering& scattering)
       : plan_(plan),
@@ -64,11 +63,9 @@ class PathWalk {
   void walk(RandomStream& random, PathScorer& scorer) {
     has_tally_ = scorer.has_tally();
     const auto first = first_.sample(random);
-    if constexpr (bends<Scattering>) {
-      if (!first.hit) return;
-    }
-    const Vec2 x = first.x;
-    const Direction arrival = first.arrival;
+    if (!first.hit) return;
+    const Vec x = first.x;
+    const Vec arrival = first.arrival;
     if constexpr (varies<Scattering>) {
       if (mu_s(x) == 0) return;
     }
@@ -104,25 +101,25 @@ class PathWalk {
   /// A walker on its arrival at a scatterer. Its weight is in units of mu_s^2 / mu_t, the weight of
   /// a path of two scatterers in C14. copies: number of paths that are still to continue from here.
   struct Walker {
-    Vec2 x;
-    Direction arrival;
+    Vec x;
+    Vec arrival;
     double weight;
     std::uint32_t copies;
   };
 
   // Properties of the medium at a place.
-  double mu_s(Vec2 x) const {
+  double mu_s(Vec x) const {
     if constexpr (varies<Scattering>) return profile_->mu_s(x);
     return medium_.mu_s;
   }
-  double albedo(Vec2 x) const {
+  double albedo(Vec x) const {
     if constexpr (varies<Scattering>) return profile_->albedo(x);
     return medium_.albedo;
   }
 
   /// Returns the length and weight of the first flight between scatterers. This flight always ends
   /// inside the medium; otherwise most walks in a thin medium would yield no path.
-  std::pair<double, double> first_flight(Vec2 x, Vec2 w, RandomStream& random) const {
+  std::pair<double, double> first_flight(Vec x, Vec w, RandomStream& random) const {
     if constexpr (bends<Scattering>) {
       const grin::BoundedFlight flight{medium_.mu_t, scattering_.medium().inside(x, w)};
       return {flight.sample(random.uniform()), flight.probability()};
@@ -138,25 +135,24 @@ class PathWalk {
   }
 
   /// Returns the place where a flight ends, and the direction of the flight at this place.
-  std::pair<Vec2, Direction> flight_end(Vec2 x, const Direction& w, double length) const {
+  std::pair<Vec, Vec> flight_end(Vec x, Vec w, double length) const {
     if constexpr (bends<Scattering>) {
       const auto place = scattering_.medium().after_flight(x, w, length);
       return place ? std::pair(place->x, place->w) : std::pair(x, w);
     } else {
-      if (faces_) return folded(x + length * Vec2(w), w);
-      return {x + length * Vec2(w), w};
+      if (faces_) return folded(x + length * w, w);
+      return {x + length * w, w};
     }
   }
 
   /// Returns the length of the path from x along w to the place where light leaves the medium. With
   /// faces, the number of reflections on the way is sampled.
-  double path_to_exit(Vec2 x, const Direction& w, RandomStream& random) const {
+  double path_to_exit(Vec x, Vec w, RandomStream& random) const {
     const double edge = domain_.distance_to_edge(x, w);
     if (!faces_ || w.z == 0) return edge;
     const double cosine = std::abs(w.z), reflectance = faces_->leaving().reflectance(cosine),
-                 side = domain_.kind == Domain::Kind::slab || w.x == 0
-                            ? std::numeric_limits<double>::infinity()
-                            : (domain_.width / 2 - (w.x > 0 ? x.x : -x.x)) / std::abs(w.x);
+                 side = domain_.kind == Domain::Kind::slab ? std::numeric_limits<double>::infinity()
+                                                           : domain_.distance_to_side(x, w);
     if (reflectance == 0 || edge >= side) return edge;
     if (reflectance >= 1) return side;
     const double reflections = std::floor(std::log(random.uniform()) / std::log(reflectance));
@@ -166,12 +162,12 @@ class PathWalk {
 
   /// Returns the place and direction in the medium of a ray that was continued beyond the faces
   /// without reflections.
-  std::pair<Vec2, Direction> folded(Vec2 x, Direction w) const {
+  std::pair<Vec, Vec> folded(Vec x, Vec w) const {
     const double crossings = std::floor(x.z / domain_.depth),
                  rest = std::clamp(x.z - crossings * domain_.depth, 0.0, domain_.depth);
     const bool turned = std::fmod(std::abs(crossings), 2) == 1;
     if (turned) w.z = -w.z;
-    return {{x.x, turned ? domain_.depth - rest : rest}, w};
+    return {{x.x, turned ? domain_.depth - rest : rest, x.y}, w};
   }
 
   /// Follows a walker from its arrival at a scatterer until it leaves the medium, is terminated or
@@ -187,7 +183,7 @@ class PathWalk {
   bool step(Walker& walker, RandomStream& random, PathScorer& scorer) {
     constexpr std::uint64_t between_checks = 4096;
     if (++steps_ % between_checks == 0) stop_if_interrupted();
-    const Direction w = local(scattering_, walker.x).sample(walker.arrival, random);
+    const Vec w = local(scattering_, walker.x).sample(walker.arrival, random);
     if constexpr (bends<Scattering>) return fly_bent(walker, w, random, scorer);
     const double edge = path_to_exit(walker.x, w, random),
                  flight = sample_flight(walker, w, edge, random);
@@ -197,7 +193,7 @@ class PathWalk {
     return true;
   }
 
-  bool fly_bent(Walker& walker, Vec2 w, RandomStream& random, PathScorer& scorer) const {
+  bool fly_bent(Walker& walker, Vec w, RandomStream& random, PathScorer& scorer) const {
     const double flight = grin::sample_free_flight(medium_.mu_t, random.uniform());
     const auto place = scattering_.medium().after_flight(walker.x, w, flight);
     if (!place) return false;
@@ -210,7 +206,7 @@ class PathWalk {
   /// Samples the length of a flight. Where light decays with depth, half of the flights towards
   /// higher importance are biased by the exponential transform [dwivedi1982]; otherwise rare long
   /// flights would dominate the result.
-  double sample_flight(Walker& walker, Vec2 w, double edge, RandomStream& random) const {
+  double sample_flight(Walker& walker, Vec w, double edge, RandomStream& random) const {
     if constexpr (varies<Scattering>)
       return profile_->reach(walker.x, w, -std::log(random.uniform()), edge);
     const double mu_t = medium_.mu_t;
@@ -228,7 +224,7 @@ class PathWalk {
   }
 
   /// Returns the derivative of the log importance at x in the direction w, per mean free path.
-  double bias(Vec2 x, Vec2 w) const {
+  double bias(Vec x, Vec w) const {
     return plan_.weighted ? importance_.derivative(x.z) * w.z / medium_.mu_t : 0;
   }
 
@@ -288,7 +284,7 @@ class PathWalk {
   }
 
   /// Scores a path of one scatterer, with a weight in the same units as in score().
-  void score_single(Vec2 x, const Direction& light, PathScorer& scorer) {
+  void score_single(Vec x, Vec light, PathScorer& scorer) {
     double weight = mu_s(x) / first_.density(x);
     if (plan_.single_roulette && albedo(x) > 0 &&
         !survives(expected_view_(x, light) / (albedo(x) * plan_.score_level), weight))
@@ -316,7 +312,7 @@ class PathWalk {
 
   /// Returns the importance of x relative to that of the first scatterer, so that a walk that
   /// begins at a great depth is not split at once.
-  double importance(Vec2 x) const {
+  double importance(Vec x) const {
     constexpr double largest_log = 600;  // logarithm whose exp is finite
     return std::exp(std::min(importance_.log_importance(x.z) - log_importance_first_, largest_log));
   }
@@ -324,7 +320,7 @@ class PathWalk {
   /// Returns the expected contribution of a path that ends at x, for a walker of unit weight. It is
   /// multiplied by the importance at x, because walkers there have typically the weight 1 /
   /// importance.
-  double expected(Vec2 x, const Direction& arrival) const {
+  double expected(Vec x, Vec arrival) const {
     const double value = expected_view_(x, arrival);
     return plan_.weighted ? value * importance(x) : value;
   }
@@ -347,7 +343,7 @@ class PathWalk {
   ExpectedContribution expected_view_;
   std::vector<Walker> waiting_;
   bool has_tally_ = false;
-  Direction start_;
+  Vec start_;
   Path path_;
   double start_density_ = -1, log_importance_first_ = 0, expected_first_ = 0;
   /// fraction of the sum of survival probabilities; a path survives when it reaches 1
@@ -371,11 +367,10 @@ class WalksBy final : public PathWalks {
     for (std::uint64_t path = 0; path < plan_.paths_per_batch; ++path) own.walk(random, scorer);
   }
 
-  Complex amplitude(Vec2 x, Vec2 from, Vec2 to) const override {
+  Complex amplitude(Vec x, Vec from, Vec to) const override {
     return local(scattering_, x).amplitude(from, to);
   }
-  void towards(Vec2 x, const SpaceDirection& from, const Directions& to,
-               std::span<Complex> out) const override {
+  void towards(Vec x, Vec from, const Directions& to, std::span<Complex> out) const override {
     local(scattering_, x).towards(from, to, out);
   }
   std::unique_ptr<EndpointFactors> factors(const Scene& scene,
@@ -398,11 +393,22 @@ template <typename F>
 void with_any_scattering(const Scene& scene, Plan::Phase phase, F f) {
   if (phase == Plan::Phase::varying) return f(varying_scattering(scene));
   if (phase == Plan::Phase::graded) return f(graded_scattering(scene));
-  if (phase == Plan::Phase::space) return f(SpaceScattering(scene.medium.space_phase));
   with_scattering(scene, phase, f);
 }
 
 }  // namespace
+
+std::vector<Complex> sphere_amplitudes(const Scene& scene) {
+  const BulkMedium& medium = scene.medium;
+  if (medium.has_scatterers) return amplitudes_in_space(medium.t_matrix, scene.k);
+  const auto intervals =
+      16384 * (1 + static_cast<std::size_t>(scene.k * scene.scatterer.radius / 10));
+  std::vector<Complex> values;
+  for (std::size_t i = 0; i <= intervals; ++i)
+    values.emplace_back(std::sqrt(medium.space_phase.density(
+        std::cos(std::numbers::pi * static_cast<double>(i) / static_cast<double>(intervals)))));
+  return values;
+}
 
 VaryingScattering varying_scattering(const Scene& scene) {
   std::vector<AnyScattering> forms;
@@ -410,7 +416,7 @@ VaryingScattering varying_scattering(const Scene& scene) {
     Scene own = scene;
     own.scatterer = material.scatterer;
     own.medium = material.medium;
-    with_scattering(own, phase_of(own.scatterer),
+    with_scattering(own, phase_of(own),
                     [&](const auto& scattering) { forms.emplace_back(scattering); });
   }
   return {*scene.profile, std::move(forms)};
@@ -420,7 +426,7 @@ GradedScattering graded_scattering(const Scene& scene) {
   std::vector<GradedScattering> made;
   const auto medium = graded_medium(scene);
   check_graded_endpoints(scene, *medium);
-  with_scattering(scene, phase_of(scene.scatterer), [&](const auto& scattering) {
+  with_scattering(scene, phase_of(scene), [&](const auto& scattering) {
     made.emplace_back(AnyScattering(scattering), medium);
   });
   return made.front();

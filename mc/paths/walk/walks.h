@@ -27,10 +27,9 @@ class PathWalks {
 
   /// Returns the scattering amplitude A (conventions, C14) of a scatterer at x divided by
   /// sqrt(sigma_s), for two directions in the plane of incidence.
-  virtual Complex amplitude(Vec2 x, Vec2 from, Vec2 to) const = 0;
+  virtual Complex amplitude(Vec x, Vec from, Vec to) const = 0;
   /// Multiplies out[j], for all j, by the same amplitude for scattering from `from` to to[j].
-  virtual void towards(Vec2 x, const SpaceDirection& from, const Directions& to,
-                       std::span<Complex> out) const = 0;
+  virtual void towards(Vec x, Vec from, const Directions& to, std::span<Complex> out) const = 0;
   /// Makes the endpoint factors (C13) of lights or views. scene: has the medium of these walks, but
   /// may have another wavenumber. phases: whether the factors are complex, not only magnitudes.
   virtual std::unique_ptr<EndpointFactors> factors(const Scene& scene,

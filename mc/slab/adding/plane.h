@@ -120,7 +120,7 @@ struct PlaneGeometry {
   using Law = ScatteringLaw;
   using Momentum = double;  ///< transverse momentum in units of mu_t
 
-  static Direction direction(double angle) { return angle; }
+  static Direction direction(double angle, double) { return angle; }
   /// Returns the direction of the second view for which the views have the same transverse momentum
   /// as the lights (C39).
   static Direction matched(const Pair& lights, const Pair& views, double shift);

@@ -84,13 +84,14 @@ struct RequestOf {
   std::vector<Entry> entries;
 };
 
-/// Converts the angles of a request to directions. In space the directions lie in the plane y = 0.
+/// Returns the directions of a request.
 template <typename Geometry>
-RequestOf<typename Geometry::Direction> directions_of(const CovarianceRequest& plane) {
-  RequestOf<typename Geometry::Direction> request{{}, {}, plane.channels, plane.entries};
-  for (const Light& light : plane.lights)
-    request.lights.push_back(Geometry::direction(light.angle));
-  for (const View& view : plane.views) request.views.push_back(Geometry::direction(view.angle));
+RequestOf<typename Geometry::Direction> directions_of(const CovarianceRequest& of) {
+  RequestOf<typename Geometry::Direction> request{{}, {}, of.channels, of.entries};
+  for (const Light& light : of.lights)
+    request.lights.push_back(Geometry::direction(light.angle, light.azimuth));
+  for (const View& view : of.views)
+    request.views.push_back(Geometry::direction(view.angle, view.azimuth));
   return request;
 }
 

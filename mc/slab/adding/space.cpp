@@ -43,7 +43,7 @@ void set_sphere_density(BulkMedium& medium, const Scatterer& spheres) {
     throw InputError("radius", spheres.radius,
                      "with this density or extinction, the mean free path or the number density is "
                      "not finite");
-  medium.packing_fraction = medium.density * scatterer_content(spheres, 3);
+  medium.packing_fraction = medium.density * spheres.content(3);
   medium.albedo = medium.cross_sections.scattering / sigma_e;
   medium.mu_s = medium.albedo * medium.mu_t;
 }
@@ -70,7 +70,7 @@ void set_spheres(BulkMedium& medium, const Scatterer& scatterer, double k) {
   const grin::MieSphere sphere(size, scatterer.index);
   if (!(sphere.scattering() > 0))
     throw InputError("index", scatterer.index.real(), "spheres of this index do not scatter");
-  const double area = scatterer_content(scatterer, 2), sigma_s = area * sphere.scattering();
+  const double area = scatterer.content(2), sigma_s = area * sphere.scattering();
   const bool lossless = scatterer.index.imag() == 0;
   medium.cross_sections = {sigma_s, lossless ? sigma_s : area * sphere.extinction(),
                            sphere.mean_cosine()};
@@ -93,6 +93,16 @@ void set_phase(BulkMedium& medium, const Scatterer& scatterer, const ScattererVa
                      "rayleigh or mie");
   const auto& terms = std::get<TwoTermHg>(values.bulk);
   set_phase(medium, grin::TwoTermPhase{{*terms.g}, {*terms.g_back}, *terms.forward_share});
+}
+
+/// Returns the phase function of points, or of spheres with a T-matrix (C56, C57).
+void set_wave_phase(BulkMedium& medium, double k) {
+  const auto sampled = grin::phase_of_amplitudes(amplitudes_in_space(medium.t_matrix, k));
+  medium.space_phase = {
+      [t = medium.t_matrix, k, per = 1 / medium.cross_sections.scattering](double cosine) {
+        return per * std::norm(amplitude_in_space(t, k, cosine));
+      },
+      [sampled](RandomStream& random) { return sampled.one_minus_cosine(random); }};
 }
 
 using std::numbers::pi;
@@ -152,12 +162,12 @@ Matrix associated_legendre(const Eigen::VectorXd& angle, int m, int last) {
 }  // namespace
 
 Scene in_space(Scene slab, const ScattererValues& values) {
-  if (slab.domain.kind != Domain::Kind::slab)
-    throw InputError("dimension", 3, "requires domain = slab");
   const auto convert = [&](BulkMedium& medium, const Scatterer& scatterer, double k) {
     medium.dimension = 3;
     if (scatterer.kind == Scatterer::Kind::mie)
       set_spheres(medium, scatterer, k);
+    else if (medium.has_scatterers)
+      set_wave_phase(medium, k);
     else
       set_phase(medium, scatterer, values);
   };

@@ -16,10 +16,9 @@
 
 namespace flatspeckle::mc {
 
-/// Converts a slab in the plane to a slab in space with the same scene keys. Illuminations and
-/// views lie in the plane of incidence, the phase function of the medium is per steradian, and its
-/// `dimension` is 3. Throws InputError for boxes, and for scatterers other than hg, two_term_hg,
-/// phase_table, rayleigh and mie. For mie the albedo follows from the spheres, and so does the
+/// Completes a scene in space: the phase function of the medium is per steradian, and its
+/// `dimension` is 3. Throws InputError for phase functions that exist only in the plane. For mie
+/// the albedo follows from the spheres, and so does the
 /// extinction if the scene gives their density; the phase function includes the structure factor.
 Scene in_space(Scene slab, const ScattererValues& values);
 
@@ -76,7 +75,10 @@ struct SpaceGeometry {
   using Law = SpaceLaw;
   using Momentum = std::array<double, 2>;  ///< transverse momentum in units of k
 
-  static Direction direction(double angle) { return {std::sin(angle), 0, std::cos(angle)}; }
+  static Direction direction(double angle, double azimuth) {
+    const Vec w = flatspeckle::direction(angle, azimuth);
+    return {w.x, w.y, w.z};
+  }
   /// Returns the direction of the second view for which the views have the same transverse momentum
   /// as the lights (C39).
   static Direction matched(const SpacePair& lights, const SpacePair& views, double shift);

@@ -39,7 +39,7 @@ std::vector<Complex> values(const Scene& scene, const Motion& at, ReversedPaths 
   return job.all(sums.total_samples(), sums.total());
 }
 
-MovingDerivative by_motion(double diffusion, Vec2 velocity, double shear) {
+MovingDerivative by_motion(double diffusion, Vec velocity, double shear) {
   return {{"motion", 0, 0, {}}, diffusion, velocity, shear};
 }
 

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include "mc/paths/estimators/flux.h"
 #include "mc/slab/slab_flux.h"
 #include "tests/mc/space/scenes_in_space.h"
 #include "tests/oracles/photon_walk.h"
@@ -50,6 +51,52 @@ TEST_CASE("3D slab flux: lossless slabs conserve power, angle bins sum to the to
       CHECK(transmitted == doctest::Approx(found.transmittance.value[0].real()).epsilon(1e-5));
       CHECK(reflected == doctest::Approx(found.reflectance.value[0].real()).epsilon(1e-5));
     }
+}
+
+TEST_CASE("3D flux: walks through slabs agree with transport") {
+  for (const auto& [g, albedo] : {std::pair{0.0, 0.9}, {0.8, 1.0}}) {
+    const Scene scene = lit(tests::hg_in_space(1, 3, g, albedo), 0.4);
+    const FluxJob job = flux_job(scene, 4, 1);
+    const FluxEstimates found = flux_estimates(job, tests::summed(job.batches, 40000)),
+                        expected = estimates(scene, 4, 1e-5);
+    CHECK_WITHIN_4_SIGMA(found.reflectance.value[0], found.reflectance.error[0],
+                         expected.reflectance.value[0], 0);
+    CHECK_WITHIN_4_SIGMA(found.transmittance.value[0], found.transmittance.error[0],
+                         expected.transmittance.value[0], 0);
+    for (std::size_t bin = 0; bin < 4; ++bin)
+      CHECK_WITHIN_4_SIGMA(found.exit_radiance.value[bin], found.exit_radiance.error[bin],
+                           expected.exit_radiance.value[bin], 0);
+  }
+}
+
+TEST_CASE("3D flux: shares of boxes sum to 1, and turned boxes exchange face and sides") {
+  SceneSpec spec = tests::hg_in_space(2, 2, 0.5, 0.9);
+  spec.dimension = 3;
+  spec.domain = "box";
+  spec.width = 3;
+  spec.height = 4;
+  const Light light = plane_wave(0.7, 0.3);
+  const auto shares = [](const SceneSpec& own, const Light& from) {
+    Scene scene = mc::in_space(make_scene(own), own);
+    scene.request = intensity_request(Lights{from}, {far_view(0)});
+    const FluxJob job = flux_job(scene, 2, 3);
+    const GroupedSums sums = tests::summed(job.batches, 40000);
+    const Invariant power = power_balance(job, sums, unscattered_shares(scene)).front();
+    CHECK(power.holds());
+    return flux_estimates(job, sums);
+  };
+  const FluxEstimates upright = shares(spec, light);
+  // It is the same box with y as its depth.
+  const Vec w = light.direction();
+  SceneSpec turned = spec;
+  turned.depth = spec.height;
+  turned.optical_depth = 2 * *spec.height / *spec.depth;
+  turned.height = spec.depth;
+  const Light other = plane_wave(std::acos(w.y), std::atan2(w.z, w.x));
+  const FluxEstimates lying = shares(turned, other);
+  CHECK_WITHIN_4_SIGMA(upright.absorptance.value[0],
+                       std::hypot(upright.absorptance.error[0], lying.absorptance.error[0]),
+                       lying.absorptance.value[0], 0);
 }
 
 TEST_CASE("3D slab flux: lossless spheres conserve power") {

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/error.h"
+#include "core/numbers/random.h"
 #include "grin/media/scattering/mie_phase.h"
 #include "mc/paths/dynamics/brownian.h"
 #include "mc/paths/estimators/gradient.h"
@@ -23,6 +24,28 @@ using tests::tilted_pairs;
 constexpr double depth = 200;
 const std::vector<double> momenta = {0, 1 / depth, -3 / depth};
 
+/// Returns pairs of directions at random azimuths, and their intensities. The transverse momenta of
+/// lights and views change by the same random vector of at most 3 / depth.
+CovarianceRequest random_pairs(int count) {
+  RandomStream random(7, 0, 0);
+  const auto ends = [](double x, double y, double side) {
+    return std::array{std::atan2(std::hypot(x, y), side * std::sqrt(1 - x * x - y * y)),
+                      std::atan2(y, x)};
+  };
+  std::vector<AnglePair> pairs;
+  for (int i = 0; i < count; ++i) {
+    const auto uniform = [&](double most) { return most * (2 * random.uniform() - 1); };
+    const double lx = uniform(0.5), ly = uniform(0.5), vx = uniform(0.5), vy = uniform(0.5),
+                 side = i % 2 == 0 ? 1 : -1, qx = uniform(3 / depth) / (2 * pi),
+                 qy = uniform(3 / depth) / (2 * pi);
+    const auto l1 = ends(lx, ly, 1), l2 = ends(lx + qx, ly + qy, 1), v1 = ends(vx, vy, side),
+               v2 = ends(vx + qx, vy + qy, side);
+    pairs.push_back({l1[0], v1[0], l1[0], v1[0], {l1[1], v1[1], l1[1], v1[1]}});
+    pairs.push_back({l1[0], v1[0], l2[0], v2[0], {l1[1], v1[1], l2[1], v2[1]}});
+  }
+  return pairs_request(pairs);
+}
+
 }  // namespace
 
 TEST_CASE("3D slabs: Monte Carlo agrees with transport") {
@@ -34,6 +57,31 @@ TEST_CASE("3D slabs: Monte Carlo agrees with transport") {
                       false, 60000, 0.05);
   check_agreement(tests::in_space(hg_in_space(depth, 5, 0.9, 1), tilted_pairs(0.05, 0, momenta)),
                   false, 60000, 0.05);
+}
+
+TEST_CASE("3D slabs: pairs off the plane of incidence agree with transport") {
+  for (const auto& [g, optical_depth] : {std::pair{0.0, 1.0}, {0.7, 4.0}}) {
+    const Scene scene =
+        tests::in_space(hg_in_space(depth, optical_depth, g, 0.95), random_pairs(10));
+    const auto found =
+        tests::run(scene, ReversedPaths::no, tests::is_night ? 20000000 : 100000, 3).entries();
+    const auto expected = by_transport(scene, false, tests::is_night ? 1e-5 : 1e-4).value;
+    for (std::size_t e = 0; e < expected.size(); ++e) {
+      CAPTURE(e);
+      CHECK_WITHIN_4_SIGMA(found.value[e], found.error[e], expected[e], 0);
+      CHECK(found.error[e] < (tests::is_night ? 0.003 : 0.05) * std::abs(expected[e - e % 2]));
+    }
+  }
+}
+
+TEST_CASE("3D layers: Monte Carlo agrees with transport") {
+  const CovarianceRequest request = tilted_pairs(0.3, 0.2, {0, 2.0 / 60});
+  const SceneSpec values;
+  check_agreement(
+      mc::in_space(
+          tests::layered({{20, 2, 0.8, 0.99}, {30, 0.5, 0, 0.6}, {10, 1, -0.3, 1}}, request),
+          values),
+      false, 60000, 0.05);
 }
 
 TEST_CASE("3D slabs: Monte Carlo with reversed paths agrees with transport") {

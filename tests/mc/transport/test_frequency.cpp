@@ -36,7 +36,7 @@ class PhotonWalks {
         light_(direction(light)),
         difference_(-k * shift),
         along_exit_(std::asin(std::sin(light) - (std::sin(light) - std::sin(view)) / (1 + shift))) {
-    const Vec2 first = direction(view), second = direction(along_exit_);
+    const Vec first = direction(view), second = direction(along_exit_);
     exit_ = k * first - k * (1 + shift) * second;
     loss_ = (1 / first.z + 1 / second.z) / 2;
   }
@@ -57,7 +57,7 @@ class PhotonWalks {
   double free_flight() { return std::exponential_distribution(1.0)(random_); }
 
   Complex walk() {
-    Vec2 x{0, free_flight() * light_.z};  // origin moved so that the phase is 0 at the entry
+    Vec x{0, free_flight() * light_.z};  // origin moved so that the phase is 0 at the entry
     double weight = light_.z, phase = difference_ * light_.z * x.z;
     Complex sum = 0;
     while (x.z > 0 && x.z < depth_) {
@@ -72,9 +72,9 @@ class PhotonWalks {
   }
 
   double depth_, albedo_;
-  Vec2 light_;
+  Vec light_;
   double difference_, along_exit_;
-  Vec2 exit_{};
+  Vec exit_{};
   double loss_ = 0;
   std::mt19937_64 random_{7};
 };

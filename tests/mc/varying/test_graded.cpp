@@ -19,7 +19,7 @@ namespace {
 using tests::pi;
 using Kind = IndexField::Kind;
 
-IndexField linear(Vec2 slope) {
+IndexField linear(Vec slope) {
   IndexField field;
   field.kind = Kind::linear;
   field.gradient = slope;
@@ -58,16 +58,16 @@ Scene graded(const IndexField& field) {
 
 /// Checks a wave at x by central differences: the eikonal's gradient is n w, and the amplitude
 /// conserves the power of a tube of rays, div(amplitude^2 n w) = 0.
-void check_eikonal(const GradedMedium& medium, const Wavefront& wave, Vec2 x, double tolerance) {
+void check_eikonal(const GradedMedium& medium, const Wavefront& wave, Vec x, double tolerance) {
   const double h = 1e-3;
-  const auto path = [&](Vec2 at) { return wave.at(at)->path; };
-  const auto power = [&](Vec2 at) {
+  const auto path = [&](Vec at) { return wave.at(at)->path; };
+  const auto power = [&](Vec at) {
     const Arrival here = *wave.at(at);
     return here.amplitude * here.amplitude * std::sqrt(medium.square(at)) * here.w;
   };
-  const Vec2 along{h, 0}, deep{0, h};
+  const Vec along{h, 0}, deep{0, h};
   const Arrival here = *wave.at(x);
-  const Vec2 v = std::sqrt(medium.square(x)) * here.w;
+  const Vec v = std::sqrt(medium.square(x)) * here.w;
   CAPTURE(x.x);
   CAPTURE(x.z);
   CHECK((path(x + along) - path(x - along)) / (2 * h) == doctest::Approx(v.x).epsilon(tolerance));
@@ -96,7 +96,7 @@ TEST_CASE("graded index: waves satisfy the eikonal equation and conserve power")
     if (field.gradient.x == 0) waves.push_back(medium->from_afar(0.3));
     if (field.gradient.x == 0) waves.push_back(medium->from_afar(pi - 0.2));
     for (const auto& wave : waves)
-      for (const Vec2 x : {Vec2{0.3, 0.4}, {-3.1, 2.2}, {2.7, 4.6}})
+      for (const Vec x : {Vec{0.3, 0.4}, {-3.1, 2.2}, {2.7, 4.6}})
         check_eikonal(*medium, *wave, x, tolerance);
   }
 }
@@ -132,7 +132,7 @@ TEST_CASE("graded index: stepped rays and tables agree with closed forms") {
 TEST_CASE("graded index: a ray that leaves and returns counts only its length inside") {
   const LinearMedium medium({Domain::Kind::box, 30, 5}, linear({0, 0.2}));
   const double n = std::sqrt(1 + 0.2 * 0.05);
-  const Vec2 w{std::sqrt(1 - 0.04), -0.2};
+  const Vec w{std::sqrt(1 - 0.04), -0.2};
   const double inside = medium.inside({-14, 0.05}, w);
   // z = 0.05 - 0.2 n s + 0.05 s^2 is below 0 between its roots.
   const double square = std::sqrt(0.04 * n * n - 4 * 0.05 * 0.05), first = (0.2 * n - square) / 0.1,
@@ -193,7 +193,7 @@ TEST_CASE("graded index: a negligible gradient gives the paths of a constant ind
 TEST_CASE("graded index: exchanged source and sensor give the same intensity") {
   for (const IndexField& field : {linear({0, 0.1}), parabolic(0.1), blobs(0.08)}) {
     CAPTURE(field.describe());
-    const Vec2 a{0, -2}, b{1, 7};
+    const Vec a{0, -2}, b{1, 7};
     const auto there =
         tests::run(graded(field, intensity_request({point_source(a)}, {near_sensor(b)})),
                    ReversedPaths::no, 50000, 5)

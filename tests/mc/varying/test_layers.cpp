@@ -29,9 +29,9 @@ oracles::SlabTransport theory_of(const std::vector<Layer>& layers,
 TEST_CASE("layers: optical depth along a ray and its inverse, the reach, agree") {
   const Scene scene = layered(three, intensity_request({0}, tests::far_views({0})));
   const MediumProfile& profile = *scene.profile;
-  for (const Vec2 x : {Vec2{0, 0}, {0, 19.999}, {3, 35}, {0, 60}})
+  for (const Vec x : {Vec{0, 0}, {0, 19.999}, {3, 35}, {0, 60}})
     for (const double angle : {0.0, 0.7, pi / 2, 2.0, pi, 4.0}) {
-      const Vec2 w = direction(angle);
+      const Vec w = direction(angle);
       const double edge = std::min(100.0, scene.domain.distance_to_edge(x, w));
       for (const double share : {0.01, 0.4, 0.99}) {
         const double depth = profile.optical_depth(x, w, share * edge);

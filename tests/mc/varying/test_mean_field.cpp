@@ -26,11 +26,11 @@ Complex integral(const F& f) {
 
 /// Returns int (i/4) H_0(k |x - y|) exp(i k w.y) dy over the box, by parts that have x as a corner:
 /// there the substitutions u^3 and v^3 remove the logarithm.
-Complex scattered_once(Vec2 x, Vec2 w) {
-  const auto part = [&](Vec2 size) {
+Complex scattered_once(Vec x, Vec w) {
+  const auto part = [&](Vec size) {
     return std::abs(size.x * size.z) * integral([&](double u) {
              return integral([&](double v) {
-               const Vec2 offset{u * u * u * size.x, v * v * v * size.z};
+               const Vec offset{u * u * u * size.x, v * v * v * size.z};
                const double r = k * length(offset);
                return 9 * u * u * v * v * Complex(0, 0.25) * Complex(::j0(r), ::y0(r)) *
                       std::polar(1.0, k * dot(w, x + offset));
@@ -39,7 +39,7 @@ Complex scattered_once(Vec2 x, Vec2 w) {
   };
   Complex sum = 0;
   for (const double side : {-box.width / 2, box.width / 2})
-    for (const double face : {0.0, box.depth}) sum += part(Vec2{side, face} - x);
+    for (const double face : {0.0, box.depth}) sum += part(Vec{side, face} - x);
   return sum;
 }
 
