@@ -8,12 +8,6 @@
 
 namespace flatspeckle::mc {
 
-/// Makes the slab of a scene. If the scene has Layers, each becomes a layer of the slab; at least
-/// one must scatter. delay: FieldChange::delay, which is multiplied by the diffusion factor of each
-/// layer.
-template <typename Geometry>
-SlabOf<Geometry, double> slab_of(const Scene& scene, double delay = 0);
-
 /// Returns the covariance of each entry of the request for a slab in the plane (C14, C18) or, if
 /// the scene's dimension is 3, for scalar waves in space (C41). covariance_job() estimates the same
 /// quantity by Monte Carlo. This function solves the linear transport of field pairs at one

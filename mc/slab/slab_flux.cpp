@@ -15,7 +15,7 @@
 #include "mc/slab/adding/direction_modes.h"
 #include "mc/slab/adding/plane.h"
 #include "mc/slab/adding/space.h"
-#include "mc/slab/slab_covariance.h"
+#include "mc/slab/scene_slab.h"
 
 namespace flatspeckle::mc {
 

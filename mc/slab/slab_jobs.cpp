@@ -9,6 +9,7 @@
 #include "flatland/media/layers.h"
 #include "mc/slab/adding/plane.h"
 #include "mc/slab/adding/space.h"
+#include "mc/slab/scene_slab.h"
 #include "mc/slab/slab_covariance.h"
 #include "mc/theory/memory_effect.h"
 

@@ -179,17 +179,17 @@ void CameraSum::select_side_pixels(Vec x) {
     return depth * std::abs(cosine) > (half - std::copysign(at, at * cosine)) * least_z_;
   };
   const std::size_t pixels = camera_.pixels;
-  std::vector<std::size_t> columns, all(pixels);
-  for (std::size_t i = 0; i < pixels; ++i) {
-    all[i] = i;
+  std::vector<std::size_t> columns;
+  for (std::size_t i = 0; i < pixels; ++i)
     if (may_leave(box_.width / 2, x.x, camera_.cosine(camera_.axis.x, i))) columns.push_back(i);
-  }
-  for (std::size_t row = 0; row < pixels; ++row) {
-    const bool whole = may_leave(box_.height / 2, x.y, camera_.cosine(camera_.axis.y, row));
-    for (const std::size_t column : whole ? all : columns)
-      if (leaves(pixel_directions_[row * pixels + column]))
-        side_pixels_.push_back(row * pixels + column);
-  }
+  const auto select = [&](std::size_t pixel) {
+    if (leaves(pixel_directions_[pixel])) side_pixels_.push_back(pixel);
+  };
+  for (std::size_t row = 0; row < pixels; ++row)
+    if (may_leave(box_.height / 2, x.y, camera_.cosine(camera_.axis.y, row)))
+      for (std::size_t column = 0; column < pixels; ++column) select(row * pixels + column);
+    else
+      for (const std::size_t column : columns) select(row * pixels + column);
 }
 
 void CameraSum::correct_sides(Vec x, Vec arrival, std::span<const Complex> c) {
