@@ -13,12 +13,11 @@ class LightAperture {
  public:
   LightAperture(const Domain& domain, Vec light)
       : domain_(domain), light_(light), is_slab_(domain.kind == Domain::Kind::slab) {
-    const double height = domain.height > 0 ? domain.height : 1;
     face_ = is_slab_ ? std::abs(light.z) : domain.width * std::abs(light.z);
     side_ = is_slab_ ? 0 : domain.depth * std::abs(light.x);
     if (is_slab_ || domain.height == 0) return;
-    face_ *= height;
-    side_ *= height;
+    face_ *= domain.height;
+    side_ *= domain.height;
     other_side_ = domain.width * domain.depth * std::abs(light.y);
   }
 

@@ -75,6 +75,21 @@ struct IsotropicScattering {
   }
 };
 
+/// Multiplies out[j] by the real amplitude of `scattering` for scattering from `from` to to[j].
+template <typename Scattering>
+void multiply_by_amplitudes(const Scattering& scattering, Vec from, const Directions& to,
+                            std::span<Complex> out) {
+  // Amplitudes are computed in a separate loop, which the compiler can vectorise
+  constexpr std::size_t most = 128;
+  std::array<double, most> amplitudes;
+  for (std::size_t begin = 0; begin < out.size(); begin += most) {
+    const std::size_t count = std::min(most, out.size() - begin);
+    for (std::size_t j = 0; j < count; ++j)
+      amplitudes[j] = scattering.amplitude(from, to[begin + j]);
+    for (std::size_t j = 0; j < count; ++j) out[begin + j] *= amplitudes[j];
+  }
+}
+
 struct HenyeyGreensteinScattering {
   grin::HenyeyGreenstein<2> phase;
 
@@ -83,14 +98,7 @@ struct HenyeyGreensteinScattering {
   }
   double amplitude(Vec from, Vec to) const { return std::sqrt(density(from, to)); }
   void towards(Vec from, const Directions& to, std::span<Complex> out) const {
-    // Amplitudes are computed in a separate loop, which the compiler can vectorise
-    constexpr std::size_t most = 128;
-    std::array<double, most> amplitudes;
-    for (std::size_t begin = 0; begin < out.size(); begin += most) {
-      const std::size_t count = std::min(most, out.size() - begin);
-      for (std::size_t j = 0; j < count; ++j) amplitudes[j] = amplitude(from, to[begin + j]);
-      for (std::size_t j = 0; j < count; ++j) out[begin + j] *= amplitudes[j];
-    }
+    multiply_by_amplitudes(*this, from, to, out);
   }
   /// Samples theta by tan(theta/2) = (1-g)/(1+g) tan(a), with a uniform angle a (C22).
   Vec sample(Vec from, RandomStream& random) const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -47,14 +46,7 @@ struct HenyeyGreensteinInSpace {
   }
   double amplitude(Vec from, Vec to) const { return std::sqrt(density(from, to)); }
   void towards(Vec from, const Directions& to, std::span<Complex> out) const {
-    // Amplitudes are computed in a separate loop, which the compiler can vectorise
-    constexpr std::size_t most = 128;
-    std::array<double, most> amplitudes;
-    for (std::size_t begin = 0; begin < out.size(); begin += most) {
-      const std::size_t count = std::min(most, out.size() - begin);
-      for (std::size_t j = 0; j < count; ++j) amplitudes[j] = amplitude(from, to[begin + j]);
-      for (std::size_t j = 0; j < count; ++j) out[begin + j] *= amplitudes[j];
-    }
+    multiply_by_amplitudes(*this, from, to, out);
   }
   Vec sample(Vec from, RandomStream& random) const {
     return turned_in_space(from, phase.sample_one_minus_cosine(random.uniform()), random);

@@ -239,14 +239,11 @@ std::vector<Complex> CameraSum::to_pixels(const Axis& axis, double axis_cosine) 
 void CameraSum::finish(std::span<Complex> out) const {
   const std::size_t pixels = camera_.pixels, across = nodes_ * x_.size, down = nodes_ * y_.size;
   const auto of_x = to_pixels(x_, camera_.axis.x), of_y = to_pixels(y_, camera_.axis.y);
-  std::vector<double> off(pixels * pixels), scale(off.size());
-  for (std::size_t y = 0; y < pixels; ++y)
-    for (std::size_t x = 0; x < pixels; ++x) {
-      const double vx = camera_.cosine(camera_.axis.x, x), vy = camera_.cosine(camera_.axis.y, y),
-                   z = std::copysign(std::sqrt(1 - vx * vx - vy * vy), camera_.axis.z);
-      off[y * pixels + x] = k_ * (z - z_middle_);
-      scale[y * pixels + x] = 1 / z_.transform(off[y * pixels + x]);
-    }
+  std::vector<double> off, scale;
+  for (const Vec w : pixel_directions_) {
+    off.push_back(k_ * (w.z - z_middle_));
+    scale.push_back(1 / z_.transform(off.back()));
+  }
   for (std::size_t i = 0; i < out.size(); ++i) out[i] += side_field_[i];
   std::vector<Complex> plane(across * down), half(pixels * across), image(off.size());
   const Complex one = 1, zero = 0;
