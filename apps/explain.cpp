@@ -181,9 +181,12 @@ void note_pictures(const ResultReader& file, const std::string& group,
   if (shape.size() == 2 && shape[0] * shape[1] > 1) scripts.push_back({"render"});
 }
 
-/// Adds the plot script for results of `field` with more than one detection direction.
+/// Adds the plot scripts for fields in more than one detection direction, and for cameras in space.
 void note_fields(const ResultReader& file, std::vector<PlotCommand>& scripts) {
-  if (!file.has("field")) return;
+  const bool camera = file.has("camera_x");
+  if (camera && file.has("field")) scripts.push_back({"camera_field"});
+  if (camera && file.has("intensity")) scripts.push_back({"camera_intensity"});
+  if (camera || !file.has("field")) return;
   const auto shape = file.shape("field");
   if (shape.size() == 3 && shape[2] > 1) scripts.push_back({"speckle_field"});
 }

@@ -160,8 +160,6 @@ void read_scene(const Keys& keys, const SceneSpec& scene) {
   SceneSpec values;
   Keys own;
   add_keys(own, values);
-  add_space_keys(own, values);
-  add_faces_keys(own, values);
   values = scene;
   own.read(values.dimension);
   const Scene made = make_scene(own, values);

@@ -179,8 +179,6 @@ mc::MovingSpec arranged(const std::string& path, const std::string& config, cons
   Subcommand there("measurement", "");
   SceneSpec measured;
   add_keys(there.keys(), measured);
-  add_space_keys(there.keys(), measured);
-  add_faces_keys(there.keys(), measured);
   there.parse_config(arrangement_of(config));
   check_same(path, fit_keys, there.keys());
   Keyed<mc::MovingSpec> keyed(medium);

@@ -59,8 +59,6 @@ class CovarianceExperiment : public Experiment {
     add_mc_keys(keys, methods_);
     add_wave_keys(keys, methods_);
     add_transport_keys(keys, methods_);
-    add_space_keys(keys, spec_);
-    add_faces_keys(keys, spec_);
     add_run_keys(keys, run_);
   }
 

@@ -324,8 +324,6 @@ void add_keys(Keys& keys, ValidateKeys& values) {
   add_mc_keys(keys, values.methods);
   add_wave_keys(keys, values.methods);
   add_transport_keys(keys, values.methods);
-  add_space_keys(keys, values.spec);
-  add_faces_keys(keys, values.spec);
   add_run_keys(keys, values.run);
 }
 

@@ -263,9 +263,11 @@ class SweepWriter {
 
   static void write_single_scattering(const ResultGroup& root, const CovarianceRequest& request,
                                       double depth) {
-    const auto views = request.reference_angles();
+    const std::vector<View> views(
+        request.views.begin(), request.views.begin() + static_cast<long>(request.reference_views));
     const auto curve = column(request.tilt_q, [&](double q) {
-      return mc::single_scattering_correlation(request.lights.front().angle, views, depth, q);
+      return mc::single_scattering_correlation(request.lights.front(), views, depth, q,
+                                               request.tilt_azimuth);
     });
     const auto range =
         mc::memory_effect_range(request.tilt_q, std::vector<Complex>(curve.begin(), curve.end()));

@@ -151,6 +151,7 @@ void CurveSweep::with_point(std::size_t run,
 }
 
 Scene CurveSweep::scene_of(const Keyed<SceneSpec>& point) const {
+  if (std::ranges::count(method_words, "wave") == 0) point.keys.read(point.values.dimension);
   const Scene scene = make_scene(point.keys, point.values);
   return with_dimension(method_words.size() > 1 ? rounded_scene(scene, point.values) : scene,
                         point.values);

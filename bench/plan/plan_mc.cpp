@@ -12,6 +12,7 @@
 #include "mc/paths/dynamics/frequency_shifts.h"
 #include "mc/paths/estimators/covariance_estimator.h"
 #include "mc/paths/estimators/gradient.h"
+#include "mc/slab/adding/space.h"
 
 namespace flatspeckle::bench {
 
@@ -134,9 +135,9 @@ TwoKernels curved_rays(const Scene& scene) {
 TwoKernels even_map(const Scene& scene) {
   constexpr std::size_t rows = 8, columns = 16;
   Scene mapped = scene;
-  mapped.profile =
-      std::make_shared<const CellDensity>(scene.domain, Material{scene.scatterer, scene.medium},
-                                          rows, std::vector<double>(rows * columns, 1));
+  mapped.profile = std::make_shared<const CellDensity>(
+      scene.domain, Material{scene.scatterer, scene.medium}, CellDensity::Counts{columns, rows},
+      std::vector<double>(rows * columns, 1));
   return beside(mapped, scene, true);
 }
 
@@ -177,6 +178,20 @@ TwoKernels frequencies(const Scene& scene) {
           kernel_of(mc::covariance_job(scene, plan, first_seed))};
 }
 
+/// Returns a box of points in space, with 64 views around it.
+Scene points_in_space() {
+  SceneSpec spec;
+  spec.dimension = 3;
+  spec.width = spec.height = 20;
+  spec.depth = 10;
+  spec.count = 1257;
+  Scene scene = mc::in_space(make_scene(spec), spec);
+  std::vector<View> views;
+  for (int v = 0; v < 64; ++v) views.push_back(far_view(std::acos((v - 31.5) / 32), 2.4 * v));
+  scene.request = intensity_request({0}, views);
+  return scene;
+}
+
 Scene with_request(Scene scene, CovarianceRequest request) {
   scene.request = std::move(request);
   return scene;
@@ -199,6 +214,7 @@ std::vector<PlanCase> mc_plan_cases() {
   const NamedScene full{"box_points, full, 128 channels",
                         with_request(points.scene, full_request({0, 0.1}, views_around(64)))};
   const NamedScene near{points.name + ", near ends", points.scene};
+  const NamedScene space{"points in space, 64 intensities", points_in_space()};
   const NamedScene flowing{around.name + ", 8 delays", around.scene};
   constexpr auto same = Draws::same, other = Draws::other;
   constexpr auto sample = Measure::sample, error = Measure::error;
@@ -226,6 +242,11 @@ std::vector<PlanCase> mc_plan_cases() {
       case_of("8 delays", around, same, delays),
       case_of("flow", flowing, same, flow),
       case_of("8 frequency shifts", around, same, frequencies),
+      flag("anisotropy", space, other, sample,
+           [](Plan& plan) { plan.phase = Plan::Phase::henyey_greenstein_in_space; }),
+      flag("absorption", space, other, sample, [](Plan& plan) { plan.weighted = true; }),
+      flag("reversed paths", space, other, sample, [](Plan& plan) { plan.reversed = true; }),
+      flag("phases", space, same, sample, [](Plan& plan) { plan.phases = true; }),
   };
 }
 

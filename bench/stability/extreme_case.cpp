@@ -15,14 +15,23 @@ std::vector<ExtremeCase> extreme_cases() {
     const char* module_name;
     void (*add)(ExtremeRows& rows);
   };
-  constexpr Part parts[] = {{"functions", function_extremes}, {"flatland", flatland_extremes},
-                            {"wave_solver", wave_extremes},   {"wave_solver", wave_point_extremes},
-                            {"mc", mc_theory_extremes},       {"mc", mc_slab_extremes},
-                            {"mc", mc_transport_extremes},    {"mc", mc_box_extremes},
-                            {"mc", mc_varying_extremes},      {"mc imaging", mc_imaging_extremes},
-                            {"grin", index_extremes},         {"grin", ray_extremes},
-                            {"grin", connection_extremes},    {"grin", flight_extremes},
-                            {"grin", render_extremes},        {"grin", mesh_extremes},
+  constexpr Part parts[] = {{"functions", function_extremes},
+                            {"flatland", flatland_extremes},
+                            {"wave_solver", wave_extremes},
+                            {"wave_solver", wave_point_extremes},
+                            {"mc", mc_theory_extremes},
+                            {"mc", mc_slab_extremes},
+                            {"mc", mc_transport_extremes},
+                            {"mc", mc_box_extremes},
+                            {"mc", mc_space_extremes},
+                            {"mc", mc_varying_extremes},
+                            {"mc imaging", mc_imaging_extremes},
+                            {"grin", index_extremes},
+                            {"grin", ray_extremes},
+                            {"grin", connection_extremes},
+                            {"grin", flight_extremes},
+                            {"grin", render_extremes},
+                            {"grin", mesh_extremes},
                             {"grin", design_extremes}};
   ExtremeRows rows;
   for (const auto& [module_name, add] : parts) {

@@ -79,6 +79,7 @@ void mc_theory_extremes(ExtremeRows& rows);
 void mc_slab_extremes(ExtremeRows& rows);
 void mc_transport_extremes(ExtremeRows& rows);
 void mc_box_extremes(ExtremeRows& rows);
+void mc_space_extremes(ExtremeRows& rows);
 void mc_varying_extremes(ExtremeRows& rows);
 void mc_imaging_extremes(ExtremeRows& rows);
 void index_extremes(ExtremeRows& rows);

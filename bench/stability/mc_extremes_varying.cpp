@@ -43,7 +43,7 @@ Finding as_undivided(const std::vector<double>& densities, const std::vector<dou
 /// density 1e6 and 0.
 Finding rugged_map() {
   const Scene box = hg_box(20, {5}, intensity_request({0}, far_views({0})));
-  const CellDensity map(box.domain, {box.scatterer, box.medium}, 4,
+  const CellDensity map(box.domain, {box.scatterer, box.medium}, {4, 4},
                         {1, 0, 1e6, 1, 1e-6, 1, 0, 1, 0, 0, 1, 1e6, 1, 1, 1, 0});
   double worst = 0;
   for (const double angle : {0.0, 0.3, -1.2, pi / 2})

@@ -55,6 +55,13 @@ double Layers::reach(Vec x, Vec w, double optical_depth, double longest) const {
   }
 }
 
+std::shared_ptr<const MediumProfile> Layers::with(std::vector<Material> materials) const {
+  std::vector<double> thicknesses;
+  for (std::size_t layer = 0; layer < materials.size(); ++layer)
+    thicknesses.push_back(thickness(layer));
+  return std::make_shared<const Layers>(std::move(materials), thicknesses);
+}
+
 BulkMedium Layers::mean() const {
   std::vector<std::pair<const BulkMedium*, double>> shares;
   for (std::size_t layer = 0; layer < materials().size(); ++layer)

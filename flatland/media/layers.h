@@ -37,6 +37,7 @@ class Layers : public MediumProfile {
   double most_density() const override;
   double optical_depth(Vec x, Vec w, double length) const override;
   double reach(Vec x, Vec w, double optical_depth, double longest) const override;
+  std::shared_ptr<const MediumProfile> with(std::vector<Material> materials) const override;
   BulkMedium mean() const override;
   void write(ResultFile& file) const override;
   std::string describe() const override;

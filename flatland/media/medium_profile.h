@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,7 +42,7 @@ class MediumProfile {
   double mu_t(Vec x) const { return relative_density(x) * bulk(x).mu_t; }
   double mu_s(Vec x) const { return relative_density(x) * bulk(x).mu_s; }
   double albedo(Vec x) const { return bulk(x).albedo; }
-  /// Returns the number of scatterers per area.
+  /// Returns the number of scatterers per area or, in space, per volume.
   double density(Vec x) const { return relative_density(x) * bulk(x).density; }
   /// Returns an upper bound of density().
   virtual double most_density() const = 0;
@@ -52,6 +53,9 @@ class MediumProfile {
   /// Returns the distance from x along w after which the path has the given optical depth; at most
   /// `longest`.
   virtual double reach(Vec x, Vec w, double optical_depth, double longest) const = 0;
+
+  /// Returns the same profile with other materials, one for each of materials().
+  virtual std::shared_ptr<const MediumProfile> with(std::vector<Material> materials) const = 0;
 
   /// Returns the average over the whole domain: means of mu_t, mu_s, absorption, density and
   /// k_shift, and the mean of g weighted by mu_s. The result has no T-matrix.

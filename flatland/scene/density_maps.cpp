@@ -23,7 +23,7 @@ std::ptrdiff_t cell_of(double position, std::size_t cells) {
                     static_cast<std::ptrdiff_t>(cells) - 1);
 }
 
-/// Steps of a straight path through the cells of a grid along one axis (columns or rows).
+/// Steps of a straight path through the cells of a grid along one axis.
 struct Steps {
   std::ptrdiff_t cell, step, last;  ///< current cell; +1 or -1; last cell that the path can reach
   double next, between;  ///< path length from the start to the next cell; path length across a cell
@@ -76,6 +76,10 @@ class Blobs : public DensityMap {
     return std::max(0.0, density);  // rounding may make it negative in a hole
   }
 
+  std::shared_ptr<const MediumProfile> with(std::vector<Material> materials) const override {
+    return std::make_shared<const Blobs>(box(), std::move(materials.front()), blobs_);
+  }
+
   std::string describe() const override {
     return "density with " + std::to_string(blobs_.size()) + " Gaussian blobs";
   }
@@ -85,8 +89,9 @@ class Blobs : public DensityMap {
     double sum = length;
     for (const auto& [centre, radius, amplitude] : blobs_) {
       const Vec to_centre = centre - x;
-      const double along = dot(to_centre, w), across = to_centre.x * w.z - to_centre.z * w.x;
-      sum += amplitude * std::exp(-across * across / (2 * radius * radius)) *
+      const double along = dot(to_centre, w);
+      const Vec across = cross(to_centre, w);
+      sum += amplitude * std::exp(-dot(across, across) / (2 * radius * radius)) *
              gaussian_between(0, length, along, radius);
     }
     return std::max(0.0, sum);
@@ -102,20 +107,26 @@ class Blobs : public DensityMap {
     double sum = 0;
     for (const auto& [centre, radius, amplitude] : blobs_)
       sum += amplitude * gaussian_between(-box().width / 2, box().width / 2, centre.x, radius) *
-             gaussian_between(0, box().depth, centre.z, radius);
+             gaussian_between(0, box().depth, centre.z, radius) *
+             (box().height > 0
+                  ? gaussian_between(-box().height / 2, box().height / 2, centre.y, radius)
+                  : 1);
     return 1 + sum / box().content();
   }
 
   std::vector<Blob> blobs_;
 };
 
-std::vector<Blob> read_blobs(const std::string& path) {
-  const Table table = read_key_table("density_blobs", path, {"x", "z", "radius", "amplitude"});
+std::vector<Blob> read_blobs(const std::string& path, bool in_space) {
+  std::vector<std::string> columns{"x", "z", "radius", "amplitude"};
+  if (in_space) columns.emplace_back("y");
+  const Table table = read_key_table("density_blobs", path, columns);
   std::vector<Blob> blobs;
   double holes = 0;
   for (std::size_t row = 0; row < table.rows(); ++row) {
     const auto of = [&](const char* name) { return table.column(name)[row]; };
-    blobs.push_back({{of("x"), of("z")}, of("radius"), of("amplitude")});
+    blobs.push_back(
+        {{of("x"), of("z"), table.has("y") ? of("y") : 0}, of("radius"), of("amplitude")});
     if (!(blobs.back().radius > 0))
       throw InputError(path + ", radius", blobs.back().radius, "must be positive");
     holes += std::min(0.0, blobs.back().amplitude);
@@ -127,18 +138,21 @@ std::vector<Blob> read_blobs(const std::string& path) {
 }
 
 struct Cells {
-  std::size_t rows = 0;
+  CellDensity::Counts counts;
   std::vector<double> density;
 };
 
-Cells read_cells(const std::string& path) {
+Cells read_cells(const std::string& path, bool in_space) {
   const ResultReader file(path);
   if (!file.has("relative_density"))
     throw InputError("density_map", path, "has no dataset relative_density");
   const auto shape = file.shape("relative_density");
-  if (shape.size() != 2 || shape[0] == 0 || shape[1] == 0)
-    throw InputError("density_map", path, "relative_density must have two axes, z and x");
-  Cells cells{shape[0], file.dataset<double>("relative_density")};
+  if (shape.size() != (in_space ? 3 : 2) || std::ranges::count(shape, 0) > 0)
+    throw InputError("density_map", path,
+                     std::string("relative_density must have ") +
+                         (in_space ? "three axes, z, y and x" : "two axes, z and x"));
+  Cells cells{{shape.back(), shape[0], in_space ? shape[1] : 1},
+              file.dataset<double>("relative_density")};
   const bool possible = std::ranges::all_of(
       cells.density, [](double value) { return value >= 0 && std::isfinite(value); });
   if (!possible || std::ranges::all_of(cells.density, [](double value) { return value == 0; }))
@@ -158,34 +172,45 @@ void refuse_beside_map(const Keys& keys, const SceneSpec& spec, const std::strin
 
 }  // namespace
 
-CellDensity::CellDensity(Domain box, Material material, std::size_t rows,
-                         std::vector<double> density)
+CellDensity::CellDensity(Domain box, Material material, Counts counts, std::vector<double> density)
     : DensityMap(box, std::move(material)),
-      rows_(rows),
-      columns_(density.size() / rows),
-      across_(box.width / static_cast<double>(columns_)),
-      deep_(box.depth / static_cast<double>(rows)),
+      counts_(counts),
+      size_{box.width / static_cast<double>(counts.x), box.depth / static_cast<double>(counts.z),
+            box.height > 0 ? box.height / static_cast<double>(counts.y) : 1},
       density_(std::move(density)) {}
 
+Vec CellDensity::in_cells(Vec x) const {
+  return {(x.x + box().width / 2) / size_.x, x.z / size_.z, (x.y + box().height / 2) / size_.y};
+}
+
+double CellDensity::density_of(std::ptrdiff_t x, std::ptrdiff_t z, std::ptrdiff_t y) const {
+  const auto row = static_cast<std::size_t>(z) * counts_.y + static_cast<std::size_t>(y);
+  return density_[row * counts_.x + static_cast<std::size_t>(x)];
+}
+
 double CellDensity::relative_density(Vec x) const {
-  const auto row = static_cast<std::size_t>(cell_of(x.z / deep_, rows_)),
-             column =
-                 static_cast<std::size_t>(cell_of((x.x + box().width / 2) / across_, columns_));
-  return density_[row * columns_ + column];
+  const Vec at = in_cells(x);
+  return density_of(cell_of(at.x, counts_.x), cell_of(at.z, counts_.z), cell_of(at.y, counts_.y));
+}
+
+std::shared_ptr<const MediumProfile> CellDensity::with(std::vector<Material> materials) const {
+  return std::make_shared<const CellDensity>(box(), std::move(materials.front()), counts_,
+                                             density_);
 }
 
 double CellDensity::met(Vec x, Vec w, double length) const {
-  Steps columns((x.x + box().width / 2) / across_, w.x / across_, columns_),
-      rows(x.z / deep_, w.z / deep_, rows_);
+  const Vec at = in_cells(x);
+  Steps along_x(at.x, w.x / size_.x, counts_.x), along_z(at.z, w.z / size_.z, counts_.z),
+      along_y(at.y, w.y / size_.y, counts_.y);
   double sum = 0, gone = 0;
   while (gone < length) {
-    const double to = std::min({columns.next, rows.next, length});
-    const auto here =
-        static_cast<std::size_t>(rows.cell) * columns_ + static_cast<std::size_t>(columns.cell);
-    sum += density_[here] * std::max(0.0, to - gone);
+    Steps& next = along_x.next <= along_z.next ? (along_x.next <= along_y.next ? along_x : along_y)
+                                               : (along_z.next <= along_y.next ? along_z : along_y);
+    const double to = std::min(next.next, length);
+    sum += density_of(along_x.cell, along_z.cell, along_y.cell) * std::max(0.0, to - gone);
     gone = std::max(gone, to);
     if (to == length) break;
-    (columns.next <= rows.next ? columns : rows).advance();
+    next.advance();
   }
   return sum;
 }
@@ -200,7 +225,9 @@ double CellDensity::mean_relative() const {
 }
 
 std::string CellDensity::describe() const {
-  return "density of " + std::to_string(rows_) + " x " + std::to_string(columns_) + " cells";
+  std::string text = "density of " + std::to_string(counts_.z) + " x ";
+  if (box().height > 0) text += std::to_string(counts_.y) + " x ";
+  return text + std::to_string(counts_.x) + " cells";
 }
 
 DensityMap::DensityMap(Domain box, Material material)
@@ -233,7 +260,8 @@ const DatasetTable density_table{
     {{"map_density_x", Data::scale, "", "length", "x of the density samples"},
      {"map_density_z", Data::scale, "", "length", "z of the density samples"},
      {"relative_density", Data::real, "map_density_z map_density_x", "1",
-      "density of the scatterers relative to the density that the scene states"}}};
+      "density of the scatterers relative to the density that the scene states; in space at y = "
+      "0"}}};
 
 void DensityMap::write(ResultFile& file) const {
   constexpr int cells = 64;
@@ -256,14 +284,15 @@ MakeDensityMap density_map(const Keys& keys, const SceneSpec& spec) {
   if (blobs_path.empty() && cells_path.empty()) return {};
   if (!blobs_path.empty() && !cells_path.empty())
     throw InputError("density_blobs, density_map: give only one of them");
+  const bool in_space = spec.dimension == 3;
   refuse_beside_map(keys, spec, blobs_path.empty() ? "density_map" : "density_blobs");
   if (!blobs_path.empty())
-    return [blobs = read_blobs(blobs_path)](const Domain& box, const Material& material) {
+    return [blobs = read_blobs(blobs_path, in_space)](const Domain& box, const Material& material) {
       return std::make_shared<const Blobs>(box, material, blobs);
     };
-  return [cells = guarded_read(cells_path, [&] { return read_cells(cells_path); })](
+  return [cells = guarded_read(cells_path, [&] { return read_cells(cells_path, in_space); })](
              const Domain& box, const Material& material) {
-    return std::make_shared<const CellDensity>(box, material, cells.rows, cells.density);
+    return std::make_shared<const CellDensity>(box, material, cells.counts, cells.density);
   };
 }
 

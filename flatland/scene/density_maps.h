@@ -41,23 +41,34 @@ class DensityMap : public MediumProfile {
 
 extern const DatasetTable density_table;
 
-/// Relative density that is constant within each of the equal rectangular cells that fill a box.
+/// Relative density that is constant within each of the equal cells that fill a box: rectangles or,
+/// in space, cuboids (voxels).
 class CellDensity : public DensityMap {
  public:
-  /// density: relative density of each cell, [row][column]. Row 0 begins at z = 0, column 0 at x =
-  /// -width/2. No value may be negative.
-  CellDensity(Domain box, Material material, std::size_t rows, std::vector<double> density);
+  /// Numbers of cells along x, z and y.
+  struct Counts {
+    std::size_t x = 1, z = 1, y = 1;
+  };
+
+  /// density: relative density of each cell, [z][y][x]. The first cell begins at z = 0, y =
+  /// -height/2 and x = -width/2. No value may be negative.
+  CellDensity(Domain box, Material material, Counts counts, std::vector<double> density);
 
   double relative_density(Vec x) const override;
+  std::shared_ptr<const MediumProfile> with(std::vector<Material> materials) const override;
   std::string describe() const override;
 
  private:
   double met(Vec x, Vec w, double length) const override;
   double most_relative() const override;
   double mean_relative() const override;
+  /// Returns the coordinates of a point in units of cells, from the corner of the first cell.
+  Vec in_cells(Vec x) const;
+  /// Returns the density of the cell with these numbers.
+  double density_of(std::ptrdiff_t x, std::ptrdiff_t z, std::ptrdiff_t y) const;
 
-  std::size_t rows_, columns_;
-  double across_, deep_;  ///< extents of a cell along x and along z
+  Counts counts_;
+  Vec size_;  ///< extents of a cell; y is 1 in the plane
   std::vector<double> density_;
 };
 

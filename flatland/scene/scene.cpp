@@ -364,8 +364,6 @@ Scene make_scene(const Keys& keys, const SceneSpec& spec) {
     make_layered(scene, layers->layers(spec));
   else if (!scene.scatterer.is_bulk())
     scene.medium = medium_of_scatterers(spec, scene.scatterer, scene.domain, scene.k);
-  if (map && spec.dimension == 3)
-    throw InputError("dimension", 3, "requires a medium without density maps");
   if (map) {
     scene.profile = map(scene.domain, {scene.scatterer, scene.medium});
     scene.medium = scene.profile->mean();
@@ -381,8 +379,10 @@ Scene make_scene(const Keys& keys, const SceneSpec& spec) {
 }
 
 Scene make_scene(const SceneSpec& spec) {
-  return made_of(spec,
-                 [](const Keys& keys, const SceneSpec& own) { return make_scene(keys, own); });
+  return made_of(spec, [](const Keys& keys, const SceneSpec& own) {
+    keys.read(own.dimension);
+    return make_scene(keys, own);
+  });
 }
 
 CovarianceRequest make_request(const SceneSpec& spec) {
@@ -393,7 +393,8 @@ CovarianceRequest make_request(const SceneSpec& spec) {
 std::string inputs_text(const Scene& scene) {
   std::string text;
   const auto add = [&](Vec point) {
-    text += number_text(point.x) + ',' + number_text(point.z) + '\n';
+    text += number_text(point.x) + ',' + number_text(point.z);
+    text += (point.y == 0 ? "" : ',' + number_text(point.y)) + '\n';
   };
   for (const View& view : scene.request.views)
     if (view.near) add(view.point);

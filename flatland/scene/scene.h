@@ -80,8 +80,7 @@ struct Scene {
   double outside_k() const { return faces ? k * (faces->outside / faces->inside) : k; }
 };
 
-// These functions add the schema entries of the scene keys, by topic. add_keys() calls all of them
-// except add_space_keys() and add_faces_keys().
+// These functions add the schema entries of the scene keys, by topic. add_keys() calls all of them.
 void add_scatterer_keys(Keys& keys, SceneSpec& spec);
 /// Adds the keys g, albedo and optical_depth, and the keys of other phase functions.
 void add_bulk_keys(Keys& keys, SceneSpec& spec);

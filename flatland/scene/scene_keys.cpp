@@ -183,12 +183,13 @@ void add_profile_keys(Keys& keys, SceneSpec& spec) {
       .file()
       .only_of("layered media, instead of depth and density");
   keys.add("density_blobs", spec.density_blobs,
-           "CSV with columns x, z, radius, amplitude: Gaussians added to the relative "
-           "density of 1")
+           "CSV with columns x, z, radius, amplitude and, in space, y: Gaussians added to the "
+           "relative density of 1")
       .file()
       .only_of("a box");
   keys.add("density_map", spec.density_map,
-           "HDF5 file with relative_density [z][x] of equal cells that fill the box")
+           "HDF5 file with relative_density [z][x], in space [z][y][x], of equal cells that fill "
+           "the box")
       .file()
       .only_of("a box");
 }
@@ -291,6 +292,8 @@ void add_keys(Keys& keys, SceneSpec& spec) {
   add_view_keys(keys, spec);
   add_light_keys(keys, spec);
   add_request_keys(keys, spec);
+  add_space_keys(keys, spec);
+  add_faces_keys(keys, spec);
 }
 
 }  // namespace flatspeckle

@@ -37,8 +37,8 @@ void add_keys(Keys& keys, DynamicsValues& values) {
       .unit("length")
       .only_of("delays with temperature");
   keys.add("velocity", values.velocity,
-           "Velocity of the scatterers, v_x and v_z, in lengths per unit of delay")
-      .exactly(2, "v_x, v_z")
+           "Velocity of the scatterers, v_x and v_z and, in space, v_y, in lengths per unit of "
+           "delay")
       .unit("length")
       .only_of("delays by method = mc");
   keys.add("shear", values.shear, "Velocity gradient: increase of v_x per unit of depth")
@@ -137,8 +137,13 @@ Dynamics make_dynamics(const Keys& keys, const DynamicsValues& values, const Sce
   }
   if (!(dynamics.motion.diffusion >= 0 && dynamics.motion.diffusion <= 1e100))
     throw InputError("diffusion", values.diffusion.value_or(""), "must not be negative");
-  if (const auto& velocity = keys.read(values.velocity); !velocity.empty())
-    dynamics.motion.velocity = {velocity[0], velocity[1]};
+  if (const auto& velocity = keys.read(values.velocity); !velocity.empty()) {
+    const bool three = velocity.size() == 3 && spec.dimension == 3;
+    if (velocity.size() != 2 && !three)
+      throw InputError("velocity", std::to_string(velocity.size()) + " numbers",
+                       "must be v_x, v_z or, with dimension = 3, v_x, v_z, v_y");
+    dynamics.motion.velocity = {velocity[0], velocity[1], three ? velocity[2] : 0};
+  }
   dynamics.motion.shear = keys.read(values.shear).value_or(0);
   dynamics.exposure.times = times("exposures", keys.read(values.exposures), in_seconds);
   for (const double time : dynamics.exposure.times)

@@ -27,7 +27,7 @@ class LocalMotion {
   double diffusion(Vec x) const { return motion_.diffusion * material(x).diffusion; }
   Vec velocity(Vec x) const {
     const double share = material(x).velocity;
-    return {share * (motion_.velocity.x + motion_.shear * x.z), share * motion_.velocity.z};
+    return share * (motion_.velocity + Vec{motion_.shear * x.z});
   }
 
  private:

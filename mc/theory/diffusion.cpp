@@ -15,7 +15,7 @@ namespace {
 
 /// Returns the integrals of R cos^n over the directions towards a face, n = 1, 2, 3, relative to
 /// their values for R = 1. Above the critical angle R is 1; below it the substitution angle =
-/// critical (1 - u^2) removes the infinite slope of R at the critical angle.
+/// critical (1 - u^2) removes the infinite per_depth of R at the critical angle.
 std::array<double, 3> reflectance_moments(const Faces& faces, int dimension) {
   const double ratio = faces.outside / faces.inside,
                critical = ratio < 1 ? std::asin(ratio) : std::numbers::pi / 2;
@@ -127,11 +127,15 @@ double scatterings_of_slowest_mode(const BulkMedium& medium, const Domain& domai
   return medium.mu_s / (medium.mu_t - medium.mu_s + leaving(domain.depth) + sides);
 }
 
-double single_scattering_correlation(double light, const std::vector<double>& views,
-                                     double thickness, double q) {
+double single_scattering_correlation(const Light& light, const std::vector<View>& views,
+                                     double thickness, double q, double tilt_azimuth) {
+  // Transverse distance along q that a ray covers per unit of depth
+  const auto per_depth = [&](const auto& ray) {
+    return std::tan(ray.angle) * std::cos(ray.azimuth - tilt_azimuth);
+  };
   Complex sum = 0;
-  for (double view : views) {
-    const double phase = q * thickness * (std::tan(view) - std::tan(light)) / 2;
+  for (const View& view : views) {
+    const double phase = q * thickness * (per_depth(view) - per_depth(light)) / 2;
     sum += std::polar(1.0, phase) * (phase == 0 ? 1 : std::sin(phase) / phase);
   }
   return std::abs(sum) / static_cast<double>(views.size());

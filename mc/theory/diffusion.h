@@ -67,9 +67,10 @@ double diffusion_range(const DiffusingSlab& slab);
 double scatterings_of_slowest_mode(const BulkMedium& medium, const Domain& domain);
 
 /// Returns the field correlation C_E of light scattered once in a slab without attenuation (C21),
-/// for the tilt wavenumber q and matched views. light and views are angles. All views are assumed
-/// equally bright; their contributions are summed before the modulus is taken (C19).
-double single_scattering_correlation(double light, const std::vector<double>& views,
-                                     double thickness, double q);
+/// to first order in the tilt wavenumber q, for matched views. All views are assumed equally
+/// bright; their contributions are summed before the modulus is taken (C19). tilt_azimuth:
+/// direction of q in space (C55).
+double single_scattering_correlation(const Light& light, const std::vector<View>& views,
+                                     double thickness, double q, double tilt_azimuth = 0);
 
 }  // namespace flatspeckle::mc

@@ -145,15 +145,16 @@ class MovesWriter {
   void theory(const std::vector<std::size_t>& group) const {
     if (request_.kind != Kind::tilt_shift || !far() || !request_.lights.all(Light::Kind::plane))
       return;
-    const auto views = column(group, [&](std::size_t v) { return request_.views[v].angle; });
-    if (std::cos(views.front()) <= 0) return;
-    const double depth = scene_.domain.depth, light = request_.lights.front().angle;
+    std::vector<View> views;
+    for (const std::size_t v : group) views.push_back(request_.views[v]);
+    if (std::cos(views.front().angle) <= 0) return;
     if (!scene_.profile)
       out_.put("diffusion_theory", column(request_.tilt_q, [&](double q) {
                  return diffusion_field_correlation(scene_, q);
                }));
     out_.put("single_scattering", column(request_.tilt_q, [&](double q) {
-               return single_scattering_correlation(light, views, depth, q);
+               return single_scattering_correlation(request_.lights.front(), views,
+                                                    scene_.domain.depth, q, request_.tilt_azimuth);
              }));
   }
 

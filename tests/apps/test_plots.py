@@ -33,6 +33,7 @@ SPACE = {"stage_box": [-1, -1, -1, 1, 1, 1], "mu_s": 1, "point_light": [0, 0, -0
          "method": "bidirectional"}
 RAYS = {"config": DATA / "scenes/trace_luneburg.toml", "path_points": 10}
 SHIFTS = {"tilts": [-0.05, 0, 0.05], "shifts": [-0.1, 0, 0.1], "covariance": "tilt_shift"}
+SPACE_BOX = {**BOX, "dimension": 3, "height": 20, "camera_pixels": 9, "camera_aperture": 0.1, "view_angles": 0}
 # Kinds of results: subcommand and keys.
 KINDS = {
     "grid": ("sweep", {**SLAB, "tilts": [0, 0.004, 0.016], "g": [0, 0.5], "albedo": [0.9, 1]}),
@@ -55,6 +56,8 @@ KINDS = {
     "grains": ("field", {**BOX, "view_angles": [0.005 * i for i in range(40)], "fields": 8, "threads": 1}),
     "fields": ("field", {**BOX, "view_angles": [0.1, 0.2, 0.3], "light_angles": [0, 0.01, 0.2],
                          "fields": 4, "threads": 1}),
+    "camera": ("field", {**SPACE_BOX, "tilts": [0, 0.02], "fields": 2, "threads": 1}),
+    "cone": ("covariance", {**SPACE_BOX, "view_angles": 3.14159, **FEW}),
     "frames": ("image", {**BOX, "count": None, "scatterer": "hg", "optical_depth": 1,
                          "object_x": [0, 3], "object_depth": -30, "camera": [-0.5, 0.5], "pixels": 512, "repeats": 2, "threads": 1}),
     "blinks": ("image", {**BOX, "count": None, "scatterer": "hg", "optical_depth": 1, "blinking": "subsets",
@@ -93,6 +96,7 @@ OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}
        "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"}, "graded_range": {"graded"},
        "refraction": {"curve", "layers", "graded"},
        "frequency": {"frequencies"}, "validation": {"both", "own_places"}, "speckle_field": {"fields", "grains"},
+       "camera_field": {"camera"}, "camera_intensity": {"camera", "cone"},
        "image_success": {"pictures"}, "image": {"frames", "blinks"}, "sources": {"blinks", "separated"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
        "design": {"lens", "display", "core"}, "design_methods": {"lens", "display", "core"},
        "render": {"picture", "pulse", "mixed"}, "render_time": {"pulse"},

@@ -3,6 +3,7 @@
 import unittest
 
 import h5py
+import numpy as np
 
 from program import ProgramTest
 
@@ -41,6 +42,27 @@ class Space(ProgramTest):
             error = file["intensity_error"][0, 0]
             self.assertAlmostEqual(file["intensity"][0, 0], 0.058862, delta=4 * error)
             self.assertLess(error, 1e-3)
+
+    def test_a_sweep_of_boxes_has_the_curves_of_single_runs(self):
+        box = {"dimension": 3, "domain": "box", "width": 20, "height": 10, "depth": 10, "scatterer": "hg", "optical_depth": 1,
+               "tilts": [0, 0.02], "tilt_azimuth": 1, "view_angles": 0.3, "view_azimuths": 1, "samples": 4000}
+        self.call("sweep", **box, g=[0, 0.5], out="sweep.h5")
+        self.call("covariance", **box, g=0.5, covariance="memory_effect", out="one.h5")
+        with h5py.File(self.folder / "sweep.h5") as sweep, h5py.File(self.folder / "one.h5") as one:
+            alone, swept = one["field_correlation"][:], sweep["field_correlation"][:].squeeze()
+            self.assertEqual(swept.shape, (2, 2))
+            self.assertLess(abs(swept[1, 1] - alone[1]), 1e-12)
+            self.assertGreater(abs(swept[0, 1] - alone[1]), 1e-3)
+
+    def test_a_flow_across_the_plane_of_incidence_rotates_the_phase(self):
+        self.call("covariance", dimension=3, domain="box", width=20, height=20, depth=10, scatterer="hg", g=0.5,
+                  optical_depth=1, light_angles=0.3, light_azimuths=1, view_angles=0.5, view_azimuths=-1,
+                  delays=[0.01, 0.03], diffusion=0, velocity=[1, 2, 5], method="mc", samples=2000, out="x.h5")
+        light, view = ([np.sin(a) * np.cos(b), np.cos(a), np.sin(a) * np.sin(b)] for a, b in ((0.3, 1), (0.5, -1)))
+        turn = np.dot(np.subtract(light, view), [1, 2, 5])
+        with h5py.File(self.folder / "x.h5") as file:
+            found = file["complex_correlation"][:].squeeze()
+        np.testing.assert_allclose(found, np.exp(-2j * np.pi * np.array([0.01, 0.03]) * turn), atol=1e-12)
 
     def test_validate(self):
         keys = {key: value for key, value in SPACE.items() if key != "method"}

@@ -5,6 +5,7 @@
 
 #include "bench/oracles/slab_theory.h"
 #include "bench/oracles/textbook.h"
+#include "mc/slab/adding/space.h"
 #include "tests/mc/estimates.h"
 
 namespace flatspeckle::mc::test_textbook {
@@ -50,6 +51,25 @@ SceneSpec cylinders() {
   spec.radius = 1 / k;
   spec.index = "1.5";
   return spec;
+}
+
+/// A box in space, seen out of the plane of incidence under tilts that are also out of it.
+Scene space_box(std::int64_t count, const std::string& scatterer, double albedo) {
+  SceneSpec spec = box(count);
+  spec.dimension = 3;
+  spec.width = spec.height = 10;
+  spec.light_angles = {0.4};
+  spec.light_azimuths = {-0.5};
+  spec.view_azimuths = {0, 1, 2, 0};
+  spec.tilt_azimuth = 0.7;
+  spec.scatterer = scatterer;
+  if (scatterer == "point")
+    spec.albedo = albedo;
+  else {
+    spec.radius = 1 / k;
+    spec.index = "2";
+  }
+  return in_space(make_scene(spec), spec);
 }
 
 using Channel = oracles::IsotropicSlab::Channel;
@@ -98,6 +118,12 @@ TEST_CASE("box of points: estimates agree with the textbook estimator") {
 TEST_CASE("box of cylinders: estimates agree with the textbook estimator") {
   check_same(make_scene(cylinders()), false, 40000);
   check_same(make_scene(cylinders()), true, 40000);
+}
+
+TEST_CASE("boxes in space: estimates agree with the textbook estimator") {
+  check_same(space_box(300, "point", 1), true, 20000);
+  check_same(space_box(375, "point", 0.8), false, 20000);
+  check_same(space_box(313, "penetrable", 1), true, 20000);
 }
 
 TEST_CASE("Henyey-Greenstein slabs: estimates agree with the textbook estimator") {

@@ -111,11 +111,15 @@ TEST_CASE("single-scattering correlation: agrees with C21, views summed before t
   const auto sinc = [](double a) { return std::sin(a) / a; };
   const double a = q * depth * (std::tan(0.5) - std::tan(0.1)) / 2,
                b = q * depth * (std::tan(-0.3) - std::tan(0.1)) / 2;
-  CHECK(single_scattering_correlation(0.1, {0.5}, depth, q) ==
+  CHECK(single_scattering_correlation(plane_wave(0.1), {far_view(0.5)}, depth, q) ==
         doctest::Approx(std::abs(sinc(a))).epsilon(1e-12));
-  CHECK(single_scattering_correlation(0.1, {0.5, -0.3}, depth, q) ==
+  CHECK(single_scattering_correlation(plane_wave(0.1), {far_view(0.5), far_view(-0.3)}, depth, q) ==
         doctest::Approx(std::abs(std::polar(sinc(a), a) + std::polar(sinc(b), b)) / 2));
-  CHECK(single_scattering_correlation(0.1, {0.1}, depth, q) == 1);
+  CHECK(single_scattering_correlation(plane_wave(0.1), {far_view(0.1)}, depth, q) == 1);
+  const double c =
+      q * depth * std::tan(0.4) * std::sin(1) / 2;  // tilt out of the plane of incidence
+  CHECK(single_scattering_correlation(plane_wave(0.5), {far_view(0.4, 1)}, depth, q, pi / 2) ==
+        doctest::Approx(std::abs(sinc(c))));
 }
 
 }  // namespace flatspeckle::mc::test_tilt_shift

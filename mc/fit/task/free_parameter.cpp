@@ -27,8 +27,6 @@ void add_motion_keys(Keys& keys, MovingSpec& spec) {
 
 void add_keys(Keys& keys, MovingSpec& spec) {
   add_keys(keys, static_cast<SceneSpec&>(spec));
-  add_space_keys(keys, spec);
-  add_faces_keys(keys, spec);
   add_motion_keys(keys, spec);
 }
 

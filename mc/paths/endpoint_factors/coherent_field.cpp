@@ -5,6 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include "mc/paths/endpoint_factors/box_integral.h"
+
 namespace flatspeckle::mc {
 
 namespace {
@@ -129,6 +131,7 @@ double radians(const Domain& domain, Complex mu_t, Vec kappa, std::span<const Se
 
 Complex attenuated_wave_integral(const Domain& domain, Complex mu_t, Vec kappa,
                                  const std::vector<Vec>& towards) {
+  if (domain.height > 0) return attenuated_wave_integral_in_space(domain, mu_t, kappa, towards);
   Domain box = domain;
   if (domain.kind == Domain::Kind::slab) box.width = no_side;
   std::vector<Segment> segments;
@@ -148,8 +151,7 @@ Complex attenuated_wave_integral(const Domain& domain, Complex mu_t, Vec kappa,
 }
 
 bool has_coherent_field(const Scene& scene) {
-  return scene.domain.kind == Domain::Kind::box && scene.medium.dimension == 2 &&
-         scene.medium.has_scatterers && !scene.profile &&
+  return scene.domain.kind == Domain::Kind::box && scene.medium.has_scatterers && !scene.profile &&
          (!scene.index || !scene.index->is_around()) &&
          scene.request.lights.all(Light::Kind::plane) &&
          std::none_of(scene.request.views.begin(), scene.request.views.end(),
@@ -160,11 +162,15 @@ std::vector<Complex> coherent_field(const Scene& scene) {
   const BulkMedium& medium = scene.medium;
   std::vector<Complex> field;
   for (const auto [light, view] : scene.request.channels) {
-    const double from = scene.request.lights[light].angle, to = scene.request.views[view].angle;
-    const Vec w = direction(from);
-    field.push_back(medium.density * amplitude(medium.t_matrix, scene.k, to - from) *
+    const Light& from = scene.request.lights[light];
+    const View& to = scene.request.views[view];
+    const Vec w = from.direction();
+    const Complex scattered =
+        medium.dimension == 3 ? amplitude_in_space(medium.t_matrix, scene.k, dot(w, to.direction()))
+                              : amplitude(medium.t_matrix, scene.k, to.angle - from.angle);
+    field.push_back(medium.density * scattered *
                     attenuated_wave_integral(scene.domain, {medium.mu_t, -2 * medium.k_shift},
-                                             scene.k * (w - direction(to)), {-w}));
+                                             scene.k * (w - to.direction()), {-w}));
   }
   return field;
 }

@@ -57,8 +57,7 @@ inline Vec sample_disk(RandomStream& random) {
 /// Three forms of scattering, of which Plan::phase selects one. amplitude() is A of C14 divided by
 /// sqrt(sigma_s), so that |amplitude|^2 is the phase function; towards() multiplies out[j] by the
 /// amplitude for scattering from `from` to to[j]; sample() draws a new direction from the phase
-/// function. The fourth form, SpaceScattering (space_scattering.h), is for 3D and has its own type
-/// of direction.
+/// function. The forms for media in space are in space_scattering.h.
 
 struct IsotropicScattering {
   static constexpr grin::Isotropic<2> phase{};

@@ -14,7 +14,8 @@ namespace flatspeckle::mc {
 class AnyScattering {
  public:
   using Form = std::variant<IsotropicScattering, HenyeyGreensteinScattering, TabulatedScattering,
-                            SpaceScattering, HenyeyGreensteinInSpace, TabulatedSpaceScattering>;
+                            IsotropicInSpace, SpaceScattering, HenyeyGreensteinInSpace,
+                            TabulatedSpaceScattering>;
 
   explicit AnyScattering(Form form) : form_(std::move(form)) {}
 

@@ -143,8 +143,12 @@ Plan gradient_plan(const Scene& scene, ReversedPaths reversed) {
   check_gradient(scene);
   Plan plan = make_plan(scene, reversed);
   plan.rank_k = false;
-  if (plan.phase == Plan::Phase::isotropic && scene.scatterer.kind == Scatterer::Kind::hg)
-    plan.phase = Plan::Phase::henyey_greenstein;
+  if (scene.scatterer.kind == Scatterer::Kind::hg) {
+    // isotropic scattering has no derivative by g
+    if (plan.phase == Plan::Phase::isotropic) plan.phase = Plan::Phase::henyey_greenstein;
+    if (plan.phase == Plan::Phase::isotropic_in_space)
+      plan.phase = Plan::Phase::henyey_greenstein_in_space;
+  }
   return plan;
 }
 

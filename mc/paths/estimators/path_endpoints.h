@@ -16,8 +16,10 @@ class PathEndpoints {
   template <typename MakeValues>
   PathEndpoints(const PathWalks& walks, const Scene& scene, bool phases, MakeValues values)
       : reversed_(walks.plan().reversed),
-        lights_(walks.factors(scene, light_endpoints(scene), phases)),
-        views_(walks.factors(scene, view_endpoints(scene), phases)),
+        lights_(&scene == &walks.scene() ? walks.factors(scene, walks.lights(), phases)
+                                         : walks.factors(scene, light_endpoints(scene), phases)),
+        views_(&scene == &walks.scene() ? walks.factors(scene, walks.views(), phases)
+                                        : walks.factors(scene, view_endpoints(scene), phases)),
         light_first(values(lights_->size())),
         light_last(light_first),
         view_first(values(views_->size())),

@@ -77,15 +77,16 @@ std::uint64_t paths_per_batch(const Scene& scene, const Plan& plan) {
 Plan::Phase phase_of(const Scene& scene) {
   const Scatterer& scatterer = scene.scatterer;
   const bool hg = scatterer.kind == Scatterer::Kind::hg;
+  const bool isotropic = scatterer.kind == Scatterer::Kind::point || (hg && scatterer.g == 0);
   if (scene.medium.dimension == 3) {
+    if (isotropic) return Plan::Phase::isotropic_in_space;
     // Spheres have complex amplitudes, or a phase function that is slow to compute.
     if (scene.medium.has_scatterers || scatterer.kind == Scatterer::Kind::mie)
       return Plan::Phase::tabulated_in_space;
     return hg ? Plan::Phase::henyey_greenstein_in_space : Plan::Phase::space;
   }
-  if (scatterer.kind == Scatterer::Kind::point) return Plan::Phase::isotropic;
-  if (!hg) return Plan::Phase::tabulated;
-  return scatterer.g == 0 ? Plan::Phase::isotropic : Plan::Phase::henyey_greenstein;
+  if (isotropic) return Plan::Phase::isotropic;
+  return hg ? Plan::Phase::henyey_greenstein : Plan::Phase::tabulated;
 }
 
 Plan make_plan(const Scene& scene, ReversedPaths reversed) {
@@ -105,9 +106,8 @@ Plan make_plan(const Scene& scene, ReversedPaths reversed) {
   plan.weighted = scene.medium.albedo < 1 - 1e-12 || loses_light_by_sides(scene);
   constexpr std::size_t few = 20000;  // entries; quadrature takes at most 1 ms for each
   plan.waves = scored_waves(scene);
-  const bool box_in_space = scene.domain.height > 0;
-  plan.sampled_single = box_in_space || scene.faces || scene.index || scene.profile || plan.near ||
-                        plan.rank_k || request.entries.size() > few;
+  plan.sampled_single = scene.faces || scene.index || scene.profile || plan.near || plan.rank_k ||
+                        request.entries.size() > few;
   plan.paths_per_batch = paths_per_batch(scene, plan);
   return plan;
 }
@@ -149,6 +149,9 @@ std::string Plan::describe() const {
       break;
     case Phase::tabulated:
       text << "tabulated amplitude";
+      break;
+    case Phase::isotropic_in_space:
+      text << "isotropic scattering in space";
       break;
     case Phase::space:
       text << "phase function in space";

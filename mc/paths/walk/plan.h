@@ -20,6 +20,7 @@ struct Plan {
     isotropic,
     henyey_greenstein,
     tabulated,
+    isotropic_in_space,
     space,
     henyey_greenstein_in_space,
     tabulated_in_space,

@@ -51,6 +51,8 @@ void with_scattering(const Scene& scene, Plan::Phase phase, F f) {
       return f(HenyeyGreensteinScattering{{scene.scatterer.g}});
     case Plan::Phase::tabulated:
       return f(TabulatedScattering(scene.medium, scene.k));
+    case Plan::Phase::isotropic_in_space:
+      return f(IsotropicInSpace{});
     case Plan::Phase::space:
       return f(SpaceScattering(scene.medium.space_phase));
     case Plan::Phase::henyey_greenstein_in_space:

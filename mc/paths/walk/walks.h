@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "flatland/scene/scene.h"
 #include "mc/paths/endpoint_factors/endpoint_factors.h"
@@ -17,12 +18,19 @@ namespace flatspeckle::mc {
 class PathWalks {
  public:
   PathWalks(const Scene& scene, const Plan& plan, std::uint64_t seed)
-      : scene_(scene), plan_(plan), seed_(seed) {}
+      : scene_(scene),
+        plan_(plan),
+        seed_(seed),
+        lights_(light_endpoints(scene)),
+        views_(view_endpoints(scene)) {}
   PathWalks(const PathWalks&) = delete;
   virtual ~PathWalks() = default;
 
   const Scene& scene() const { return scene_; }
   const Plan& plan() const { return plan_; }
+  /// Endpoints of the lights and views of scene().
+  const std::vector<Endpoint>& lights() const { return lights_; }
+  const std::vector<Endpoint>& views() const { return views_; }
   virtual void batch(std::uint64_t number, PathScorer& scorer) const = 0;
 
   /// Returns the scattering amplitude A (conventions, C14) of a scatterer at x divided by
@@ -40,6 +48,7 @@ class PathWalks {
   const Scene scene_;
   const Plan plan_;
   const std::uint64_t seed_;
+  const std::vector<Endpoint> lights_, views_;
 };
 
 /// Makes the walks of a scene; returns null if nothing scatters. Throws InputError as

@@ -161,7 +161,7 @@ Matrix associated_legendre(const Eigen::VectorXd& angle, int m, int last) {
 
 }  // namespace
 
-Scene in_space(Scene slab, const ScattererValues& values) {
+Scene in_space(Scene scene, const ScattererValues& values) {
   const auto convert = [&](BulkMedium& medium, const Scatterer& scatterer, double k) {
     medium.dimension = 3;
     if (scatterer.kind == Scatterer::Kind::mie)
@@ -171,23 +171,17 @@ Scene in_space(Scene slab, const ScattererValues& values) {
     else
       set_phase(medium, scatterer, values);
   };
-  const auto* layers = dynamic_cast<const Layers*>(slab.profile.get());
-  if (layers == nullptr) {
-    convert(slab.medium, slab.scatterer, slab.k);
-    return slab;
+  if (!scene.profile) {
+    convert(scene.medium, scene.scatterer, scene.k);
+    return scene;
   }
-  auto materials = layers->materials();
-  std::vector<double> thicknesses;
-  for (std::size_t l = 0; l < materials.size(); ++l) {
-    const double k = slab.faces ? slab.k * (materials[l].index / slab.faces->inside) : slab.k;
-    convert(materials[l].medium, materials[l].scatterer, k);
-    thicknesses.push_back(layers->thickness(l));
-  }
-  const auto in_space = std::make_shared<const Layers>(std::move(materials), thicknesses);
-  slab.profile = in_space;
-  slab.medium = in_space->mean();
-  slab.medium.dimension = 3;
-  return slab;
+  auto materials = scene.profile->materials();
+  for (auto& [scatterer, medium, motion, index] : materials)
+    convert(medium, scatterer, scene.faces ? scene.k * (index / scene.faces->inside) : scene.k);
+  scene.profile = scene.profile->with(std::move(materials));
+  scene.medium = scene.profile->mean();
+  scene.medium.dimension = 3;
+  return scene;
 }
 
 SpaceLaw SpaceGeometry::law(const Scene& scene, double delay) {

@@ -20,7 +20,7 @@ namespace flatspeckle::mc {
 /// `dimension` is 3. Throws InputError for phase functions that exist only in the plane. For mie
 /// the albedo follows from the spheres, and so does the
 /// extinction if the scene gives their density; the phase function includes the structure factor.
-Scene in_space(Scene slab, const ScattererValues& values);
+Scene in_space(Scene scene, const ScattererValues& values);
 
 /// Scattering of field pairs in space, with scalar amplitudes A = sqrt(p). The Legendre moments of
 /// the phase function p are defined by
