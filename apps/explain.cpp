@@ -37,9 +37,15 @@ struct Drawing {
 
 /// Returns the plot scripts; those that draw several kinds of results have an entry for each.
 std::vector<Drawing> all_drawings() {
-  return {{"contrast", {"squared_contrast"}},
+  return {{"camera_field", {"camera_x", "field"}},
+          {"camera_intensity", {"camera_x", "intensity"}},
+          {"contrast", {"squared_contrast"}},
+          {"contrast_map", {"contrast_map"}},
+          {"confocal_scan", {"field", "light_x", "image_x"}},
           {"dws", {"delay", "field_correlation"}, "tilt_q"},
+          {"focus_matrix", {"field", "light_x", "sensor_x"}},
           {"frequency", {"frequency_shift", "frequency_correlation"}},
+          {"recovered_picture", {"agreement", "phased_picture"}},
           {"validation", {"deviation", "mc/intensity"}},
           {"validation", {"deviation", "mc/covariance"}},
           {"validation", {"intensity_ratio"}},
@@ -48,6 +54,7 @@ std::vector<Drawing> all_drawings() {
           {"memory_effect", {"translation_range"}},
           {"memory_effect", {"mc/translation_range"}},
           {"tilt_shift", {"tilt_q", "shift", "field_correlation"}},
+          {"tracked_motion", {"field", "delay", "image_x"}},
           {"sources", {"source_x", "singular_value"}},
           {"image", {"camera_place", "frame"}},
           {"fit", {"estimate"}},
@@ -181,12 +188,9 @@ void note_pictures(const ResultReader& file, const std::string& group,
   if (shape.size() == 2 && shape[0] * shape[1] > 1) scripts.push_back({"render"});
 }
 
-/// Adds the plot scripts for fields in more than one detection direction, and for cameras in space.
+/// Adds the plot script for results of `field` with more than one detection direction.
 void note_fields(const ResultReader& file, std::vector<PlotCommand>& scripts) {
-  const bool camera = file.has("camera_x");
-  if (camera && file.has("field")) scripts.push_back({"camera_field"});
-  if (camera && file.has("intensity")) scripts.push_back({"camera_intensity"});
-  if (camera || !file.has("field")) return;
+  if (!file.has("field")) return;
   const auto shape = file.shape("field");
   if (shape.size() == 3 && shape[2] > 1) scripts.push_back({"speckle_field"});
 }

@@ -53,7 +53,9 @@ def picture(result):
     field, mean = result.dataset("field"), result.values("intensity")
     mean = np.where(mean > 0, mean, 1)
     if field.shape[1] > 1:
-        return np.abs(field[0])**2 / mean, np.sin(result.values("light_angle")), r"$\sin i$"
+        name, values = result.scale("field", 1)
+        y, label = (np.sin(values), r"$\sin i$") if name == "light_angle" else (values, name.replace("_", " "))
+        return np.abs(field[0])**2 / mean, y, label
     rows = min(len(field), MOST_ROWS)
     return np.abs(field[:rows, 0])**2 / mean, np.arange(rows, dtype=float), "realization"
 

@@ -17,6 +17,7 @@ std::unique_ptr<Call> sweep(const std::string& of);
 std::unique_ptr<Call> merge(const std::string& of);
 std::unique_ptr<Call> optimise(const std::string& of);
 std::unique_ptr<Call> recover(const std::string& of);
+std::unique_ptr<Call> contrast(const std::string& of);
 std::unique_ptr<Call> fit(const std::string& of);
 std::unique_ptr<Call> design(const std::string& of);
 std::unique_ptr<Call> bench(const std::string& of);
@@ -52,6 +53,7 @@ std::span<const SubcommandEntry> subcommands() {
        "autocorrelation of each image",
        image_experiment},
       {"recover", "recover points from the autocorrelation of measured frames", recover},
+      {"contrast", "maps of speckle contrast and of decay rates from frames of a camera", contrast},
       {"fit", "estimate medium parameters, with errors, from measured curves and fluxes", fit},
       {"trace", "rays in a gradient-index field, and the curved rays that connect two points",
        nullptr, "Rays in a gradient-index field, and the curved rays that connect two points",

@@ -70,7 +70,7 @@ class CovarianceExperiment : public Experiment {
     const auto reversed =
         method_ == "wave" ? mc::ReversedPaths::no : reversed_paths(keys, methods_);
     if (method_ == "wave") keys.read(methods_.wave_tolerance);
-    if (method_ != "wave") keys.read(spec_.dimension);
+    keys.read(spec_.dimension);
     read_extras(keys, extras_, spec_, method_);
     take_q_depths(keys, q_depths_, spec_);
     choose_tilts(keys, tilt_count_, spec_, method_, run_, seed());

@@ -34,6 +34,9 @@ void add_map_keys(Keys& keys, MapSettings& settings) {
       .exactly(2, "two whole numbers nx nz from 1 to 100000")
       .from(1, 100'000)
       .only_of("a map");
+  keys.add("map_y", settings.map_y, "y of the plane of the map (default 0)")
+      .unit("length")
+      .only_of("maps with dimension = 3");
 }
 
 std::optional<wave::MapGrid> map_grid(const Keys& keys, const MapSettings& settings,

@@ -14,6 +14,7 @@ struct MapSettings {
   std::vector<double> map;  ///< bounds of the map: x0, x1, z0, z1; empty if there is no map
   /// Numbers of pixels nx, nz; if empty, ten pixels per wavelength.
   std::vector<std::int64_t> map_pixels;
+  std::optional<double> map_y;  ///< y of the plane of the map, in space
 };
 void add_map_keys(Keys& keys, MapSettings& settings);
 

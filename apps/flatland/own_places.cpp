@@ -15,6 +15,7 @@
 #include "flatland/scene/scene_density.h"
 #include "mc/theory/allowance.h"
 #include "mc/theory/moments_datasets.h"
+#include "wave_solver/solutions/space_solution.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::apps {
@@ -50,8 +51,8 @@ namespace {
 /// their covariances, and are not needed to resolve the speckle grains.
 constexpr std::size_t most_channels = 512;
 
-Placement read_places(const std::string& path, const Scatterer& scatterer) {
-  Placement placement = read_placement(path, scatterer);
+Placement read_places(const std::string& path, const Scatterer& scatterer, bool in_space) {
+  Placement placement = read_placement(path, scatterer, in_space);
   if (placement.empty()) throw InputError("placement", path, "must contain at least one scatterer");
   for (std::size_t row = 0; row < placement.size(); ++row)
     if (placement[row].scatterer != scatterer)
@@ -69,7 +70,8 @@ void require_in_box(const Placement& placement, const Domain& box, const std::st
     throw InputError("placement", path,
                      "row " + std::to_string(row + 1) + ", (" + number_text(at.x) + ", " +
                          number_text(at.z) +
-                         "), must lie inside the box |x| <= width / 2, 0 <= z <= depth");
+                         "), must lie inside the box |x| <= width / 2, 0 <= z <= depth" +
+                         (box.height > 0 ? ", |y| <= height / 2" : ""));
   }
 }
 
@@ -216,10 +218,10 @@ OwnPlaces::OwnPlaces(const Keys& keys, SceneSpec& spec, const MethodSettings& me
     throw InputError("domain", spec.domain, "must be box for a table of positions (placement)");
   refuse_numbers(spec);
   const std::optional<std::string> path = keys.read(spec.placement);
-  placement_ = read_places(*path, make_scatterer(keys, spec));
+  placement_ = read_places(*path, make_scatterer(keys, spec), spec.dimension == 3);
   spec.placement.reset();  // for Monte Carlo, the scene describes random placements
   spec.count = static_cast<std::int64_t>(placement_.size());
-  scene_ = make_scene(keys, spec);
+  scene_ = with_dimension(make_scene(keys, spec), spec);
   spec.placement = path;  // restores the given values of the keys
   spec.count.reset();
   require_simple(scene_);
@@ -236,19 +238,33 @@ OwnPlaces::OwnPlaces(const Keys& keys, SceneSpec& spec, const MethodSettings& me
 
 int OwnPlaces::compare(Session& session, mc::ReversedPaths reversed, const StopRule& stop) const {
   blas_single_thread();  // called here so that missing memory is reported before the slow work
-  const auto solution = wave::solve(placement_, scene_.k, scene_.request.lights.angles(),
-                                    {.tolerance = tolerance_, .sensors = {}});
-  const auto fields = solution.fields(scene_.request.views);
+  const CovarianceRequest& request = scene_.request;
+  const wave::SolveOptions options{.tolerance = tolerance_, .sensors = {}};
+  if (scene_.medium.dimension == 3) {
+    const auto solution = wave::solve_in_space(placement_, scene_.k, request.lights, options);
+    return compare(
+        session, reversed, stop, solution.method(), solution.fields(request.views),
+        [&](ResultFile& file) { wave::write_solution(file, solution, request.views, {}); });
+  }
+  const auto solution = wave::solve(placement_, scene_.k, request.lights.angles(), options);
+  return compare(session, reversed, stop, solution.method(), solution.fields(request.views),
+                 [&](ResultFile& file) {
+                   wave::write_solution(file, solution, column(request.views, &View::angle), {});
+                 });
+}
+
+int OwnPlaces::compare(Session& session, mc::ReversedPaths reversed, const StopRule& stop,
+                       const std::string& method, const std::vector<Complex>& fields,
+                       const std::function<void(ResultFile&)>& write_solution) const {
   const Estimation mc = mc_estimation(scene_, reversed, session.seed());
   return session.run(
-      mc.plan + "\nwave: " + solution.method(),
-      {{"mc", "mc", steered(mc.job, fields.size()), stop}},
+      mc.plan + "\nwave: " + method, {{"mc", "mc", steered(mc.job, fields.size()), stop}},
       inputs_text(scene_) + places_text(placement_), [&](ResultFile& file) {
         const Estimate triangle = field_moments(mc.job, session.sums("mc")).covariance;
         const Pattern pattern = pattern_of(scene_, fields, triangle);
         print(pattern, scene_, placement_.size());
         write_medium(file, scene_);
-        wave::write_solution(file, solution, column(scene_.request.views, &View::angle), {});
+        write_solution(file);
         bind_units(file, scene_);
         ResultGroup(file, mc::intensity_table, "mc")
             .put("intensity", intensities_of(triangle, fields.size()));

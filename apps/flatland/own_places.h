@@ -1,5 +1,9 @@
 #pragma once
 
+#include <functional>
+#include <string>
+#include <vector>
+
 #include "apps/results/estimation.h"
 #include "core/session/session.h"
 
@@ -25,6 +29,10 @@ class OwnPlaces {
   int compare(Session& session, mc::ReversedPaths reversed, const StopRule& stop) const;
 
  private:
+  int compare(Session& session, mc::ReversedPaths reversed, const StopRule& stop,
+              const std::string& method, const std::vector<Complex>& fields,
+              const std::function<void(ResultFile&)>& write_solution) const;
+
   Placement placement_;
   Scene scene_;
   double tolerance_;

@@ -35,7 +35,8 @@ namespace {
 using Kind = PlacementRule::Kind;
 
 struct PlaceKeys {
-  std::optional<double> width, depth, packing_fraction, min_gap;
+  std::int64_t dimension = 2;
+  std::optional<double> width, depth, height, packing_fraction, min_gap;
   std::vector<double> radii, fractions;
   std::optional<std::int64_t> count;
   std::optional<std::string> placement;
@@ -48,7 +49,13 @@ void add_keys(Keys& keys, PlaceKeys& values) {
   keys.group("Placement");
   keys.add("width", values.width, "Width of the box: |x| <= width/2").positive().unit("length");
   keys.add("depth", values.depth, "Depth of the box: 0 <= z <= depth").positive().unit("length");
-  keys.add("radii", values.radii, "Radius of each species of disks (default: points)")
+  keys.add("dimension", values.dimension, "2: disks and points of the plane; 3: spheres and points")
+      .from(2, 3);
+  keys.add("height", values.height, "Height of the box: |y| <= height/2")
+      .positive()
+      .unit("length")
+      .only_of("dimension = 3");
+  keys.add("radii", values.radii, "Radius of each species of disks or spheres (default: points)")
       .positive()
       .unit("length");
   keys.add("fractions", values.fractions,
@@ -56,13 +63,15 @@ void add_keys(Keys& keys, PlaceKeys& values) {
       .positive()
       .only_of("disks (radii)");
   keys.add("count", values.count, "Number of scatterers").from(1, most_scatterers);
-  keys.add("packing_fraction", values.packing_fraction,
-           "Fraction of the box's area covered by disks, instead of count")
+  keys.add(
+          "packing_fraction", values.packing_fraction,
+          "Fraction of the box's area (in space of its volume) that disks or spheres fill, instead "
+          "of count")
       .positive()
-      .only_of("disks");
+      .only_of("disks and spheres");
   keys.add("placement", values.placement,
            "poisson for points; for disks hard_disk (random sequential addition) or equilibrium "
-           "(hard-disk fluid)")
+           "(hard-disk fluid); for spheres hard_disk")
       .one_of(placement_words);
   keys.add("min_gap", values.min_gap,
            "Smallest distance between the rims of disks (default: 1e-3 of the smallest radius)")
@@ -88,10 +97,14 @@ struct PlacementDraw {
   std::size_t count = 0;
   double min_gap = 0;
 
+  bool in_space() const { return box.height > 0; }
   double packing(double gap) const {
-    double area = 0;
-    for (double radius : radii) area += std::numbers::pi * std::pow(radius + gap / 2, 2);
-    return area / box.content();
+    double content = 0;
+    for (double radius : radii) content += content_of(radius + gap / 2);
+    return content / box.content();
+  }
+  double content_of(double radius) const {
+    return Scatterer{.radius = radius}.content(in_space() ? 3 : 2);
   }
   bool equal_disks() const {
     return !radii.empty() &&
@@ -112,17 +125,17 @@ std::vector<double> shares(const Keys& keys, const PlaceKeys& values) {
 }
 
 /// Returns the number of scatterers: the key `count`, or computed from packing_fraction and the
-/// mean area of a disk.
-std::size_t number_of(const PlaceKeys& values, const Domain& box, double mean_area) {
-  if (values.packing_fraction && mean_area == 0)
+/// mean area of a disk or volume of a sphere.
+std::size_t number_of(const PlaceKeys& values, const Domain& box, double mean_content) {
+  if (values.packing_fraction && mean_content == 0)
     throw InputError("packing_fraction", *values.packing_fraction,
-                     "requires disks (radii); give count for points");
+                     "requires disks or spheres (radii); give count for points");
   if (values.count.has_value() == values.packing_fraction.has_value())
     throw InputError(values.count
                          ? "count, packing_fraction: give only one of them"
                          : "count is not given: give count or, for disks, packing_fraction");
   if (values.count) return static_cast<std::size_t>(*values.count);
-  const double number = *values.packing_fraction * box.content() / mean_area;
+  const double number = *values.packing_fraction * box.content() / mean_content;
   if (!(std::llround(number) >= 1 && number <= most_scatterers))
     throw InputError("packing_fraction", *values.packing_fraction,
                      "must result in 1 to 10000000 scatterers");
@@ -132,15 +145,16 @@ std::size_t number_of(const PlaceKeys& values, const Domain& box, double mean_ar
 PlacementDraw make_drawing(const Keys& keys, const PlaceKeys& values) {
   PlacementDraw drawing;
   drawing.box = {Domain::Kind::box, keys.required(values.width), keys.required(values.depth)};
+  if (keys.read(values.dimension) == 3) drawing.box.height = keys.required(values.height);
   const auto& radii = keys.read(values.radii);
   const bool disks = !radii.empty();
   drawing.kind = placement_kind(keys.read(values.placement), disks);
   keys.read(values.count);
-  double mean_area = 0, total = 0;
+  double mean_content = 0, total = 0;
   const auto share = disks ? shares(keys, values) : std::vector<double>{};
   for (std::size_t i = 0; i < share.size(); ++i)
-    mean_area += share[i] * std::numbers::pi * radii[i] * radii[i];
-  drawing.count = number_of(values, drawing.box, mean_area);
+    mean_content += share[i] * drawing.content_of(radii[i]);
+  drawing.count = number_of(values, drawing.box, mean_content);
   if (!disks) return drawing;
   keys.read(values.packing_fraction);
   // Cumulative numbers are rounded, so that the numbers of disks of all species add up to the total
@@ -170,18 +184,23 @@ Placement draw(const PlacementDraw& drawing, std::uint64_t seed, std::uint64_t r
 
 std::string csv_text(const PlacementDraw& drawing, const Placement& placement,
                      const std::string& command_line) {
-  const bool disks = !drawing.radii.empty();
+  const bool disks = !drawing.radii.empty(), space = drawing.in_space();
   std::ostringstream text;
   text << "# flatspeckle " << version() << " (" << git_commit() << "): " << command_line << "\n# "
-       << placement_word(drawing.kind) << ": " << drawing.count << (disks ? " disks" : " points")
+       << placement_word(drawing.kind) << ": " << drawing.count
+       << (!disks  ? " points"
+           : space ? " spheres"
+                   : " disks")
        << " in a box of width " << number_text(drawing.box.width) << ", depth "
        << number_text(drawing.box.depth);
+  if (space) text << ", height " << number_text(drawing.box.height);
   if (disks)
     text << "; packing fraction " << drawing.packing(0) << ", min_gap "
          << number_text(drawing.min_gap);
-  text << (disks ? "\nx,z,radius\n" : "\nx,z\n");
+  text << "\nx,z" << (space ? ",y" : "") << (disks ? ",radius\n" : "\n");
   for (const auto& [position, scatterer] : placement)
     text << number_text(position.x) << ',' << number_text(position.z)
+         << (space ? ',' + number_text(position.y) : "")
          << (disks ? ',' + number_text(scatterer.radius) : "") << '\n';
   return text.str();
 }
@@ -256,6 +275,8 @@ int draw_one(const Subcommand& command, PlaceKeys& values) {
                         Session::Out::other);
   const PlacementDraw drawing = make_drawing(keys, values);
   if (!keys.read(values.structure).empty()) keys.read(values.realizations);
+  if (!values.structure.empty() && drawing.in_space())
+    throw InputError("structure", values.structure, "requires dimension = 2");
   if (!command.settle()) return ExitStatus::done;
   std::optional<OutputLock> of_structure;
   if (!values.structure.empty()) {

@@ -8,8 +8,10 @@
 
 #include "apps/command/subcommands.h"
 #include "core/error.h"
-#include "core/keys/csv.h"
+#include "core/frames/frame_corrections.h"
+#include "core/frames/frames.h"
 #include "core/session/session.h"
+#include "mc/imaging/retrieval/picture_datasets.h"
 #include "mc/imaging/recovery/phase_retrieval.h"
 #include "mc/imaging/recovery/recovery.h"
 #include "mc/imaging/recovery/recovery_datasets.h"
@@ -22,20 +24,27 @@ namespace {
 /// Values of the keys of the subcommand `recover`.
 struct RecoverKeys {
   std::string frames, reference;
+  FrameFormat format;
+  FrameCorrections corrections;
   std::optional<std::int64_t> points;
   std::optional<double> longest, memory_range;
   double resolution = 1;
   std::int64_t average = 1;
   mc::CameraNoise noise;
   mc::DeconvolutionKeys deconvolution;
-  std::string recovery = "search";
+  std::string recovery = "auto";
   mc::PhaseTask phases;
   RunSettings run;
 };
 
 void add_keys(Keys& keys, RecoverKeys& values) {
-  keys.add("frames", values.frames, "CSV file with one column per frame and one line per pixel")
+  keys.add("frames", values.frames,
+           "Frames of a camera: PNG, TIFF, NPY, HDF5 or CSV. A table with column names has frames "
+           "of "
+           "one line, one in each column")
       .file();
+  add_frame_keys(keys, values.format);
+  add_correction_keys(keys, values.corrections);
   keys.add("points", values.points,
            "Number of points to recover (required, except that with recovery = sources the default "
            "follows from the singular values of the frames)")
@@ -54,8 +63,9 @@ void add_keys(Keys& keys, RecoverKeys& values) {
   keys.add("recovery", values.recovery,
            "search: recover points; phases: also retrieve a picture that has the frame's "
            "autocorrelation, by hybrid input-output and error reduction; sources: locate blinking "
-           "points from all frames of one medium, by non-negative factorisation")
-      .one_of({"search", "phases", "sources"});
+           "points from all frames of one medium, by non-negative factorisation; auto: search for "
+           "frames of one line, phases for pictures")
+      .one_of({"auto", "search", "phases", "sources"});
   keys.add("starts", values.phases.starts,
            "recovery = phases: number of random starts of phase retrieval; the best result is used")
       .from(1, 10000);
@@ -68,10 +78,11 @@ void add_keys(Keys& keys, RecoverKeys& values) {
       .from(0, 1);
   add_camera_keys(keys, values.noise);
   keys.add("reference", values.reference,
-           "CSV file with the frame of a reference point: one column for all frames, or one for "
-           "each frame; frames are divided (deconvolved) by it")
+           "File with the frame of a reference point: one frame for all frames, or one for each; "
+           "frames are divided (deconvolved) by it")
       .file();
   add_keys(keys, values.deconvolution);
+  add_thread_key(keys, values.run);
   add_output_key(keys, values.run);
 }
 
@@ -100,35 +111,47 @@ mc::RecoveryTask task_of(const Keys& keys, const RecoverKeys& values, std::size_
 }
 
 mc::SeparationTask separation_task(const Keys& keys, const RecoverKeys& values,
-                                   const Table& table) {
+                                   const Frames& frames) {
   mc::SeparationTask task;
   task.sources = static_cast<std::size_t>(keys.read(values.points).value_or(0));
   task.resolution_grains = keys.read(values.resolution);
   read_camera_keys(keys, values.noise, task.noise);
-  task.lags = lags_of(keys, values, table.rows());
-  if (const std::size_t frames = table.names().size(); frames < 2)
+  task.lags = lags_of(keys, values, frames.columns);
+  if (frames.count() < 2)
     throw InputError("frames: recovery = sources requires at least 2 columns, one for each frame");
+  return task;
+}
+
+mc::PhaseTask phase_settings(const Keys& keys, const mc::PhaseTask& phases) {
+  mc::PhaseTask task;
+  task.starts = keys.read(phases.starts);
+  task.iterations = keys.read(phases.iterations);
+  task.sparsity = keys.read(phases.sparsity);
   return task;
 }
 
 /// Returns the task of phase retrieval; nullopt unless recovery = phases.
 std::optional<mc::PhaseTask> phase_task(const Keys& keys, const RecoverKeys& values) {
-  if (keys.read(values.recovery) == "search") return std::nullopt;
-  mc::PhaseTask task;
-  task.starts = keys.read(values.phases.starts);
-  task.iterations = keys.read(values.phases.iterations);
-  task.sparsity = keys.read(values.phases.sparsity);
-  return task;
+  if (keys.read(values.recovery) != "phases") return std::nullopt;
+  return phase_settings(keys, values.phases);
 }
 
-/// Returns the frames: each column of the table is one frame.
-std::vector<std::vector<double>> frames_of(const Table& table) {
-  std::vector<std::vector<double>> frames;
-  for (const std::string& name : table.names()) {
-    const auto column = table.column(name);
-    frames.emplace_back(column.begin(), column.end());
+/// Returns the frames as lists of pixels.
+std::vector<std::vector<double>> lists_of(const Frames& frames) {
+  std::vector<std::vector<double>> lists;
+  for (std::size_t number = 0; number < frames.count(); ++number) {
+    const auto frame = frames.frame(number);
+    lists.emplace_back(frame.begin(), frame.end());
   }
-  return frames;
+  return lists;
+}
+
+/// Returns the names of the frames; their numbers if they have no names.
+std::vector<std::string> names_of(const Frames& frames) {
+  std::vector<std::string> names = frames.names;
+  for (std::size_t number = names.size(); number < frames.count(); ++number)
+    names.push_back(std::to_string(number));
+  return names;
 }
 
 std::size_t average_of(const Keys& keys, const RecoverKeys& values, std::size_t frames) {
@@ -146,21 +169,21 @@ struct References {
   mc::DeconvolutionTask task;
 };
 
-References references_of(const Keys& keys, const RecoverKeys& values, const Table& frames) {
+References references_of(const Keys& keys, const RecoverKeys& values, const Frames& frames) {
   References references;
   if (keys.read(values.reference).empty()) return references;
   references.task = deconvolution_task(keys, values.deconvolution);
-  const Table table = read_key_table("reference", values.reference);
-  const std::size_t columns = table.names().size(), count = frames.names().size();
-  if (table.rows() != frames.rows())
-    throw InputError("reference: has " + std::to_string(table.rows()) +
-                     " pixels, the frames have " + std::to_string(frames.rows()));
-  if (columns != 1 && columns != count)
-    throw InputError("reference: has " + std::to_string(columns) + " columns, must have one, or " +
-                     std::to_string(count) + " as the frames");
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto column = table.column(table.names()[columns == 1 ? 0 : i]);
-    references.of_frame.emplace_back(column.begin(), column.end());
+  const Frames read = read_frames("reference", values.reference, values.format);
+  if (read.pixels() != frames.columns)
+    throw InputError("reference: has " + std::to_string(read.pixels()) +
+                     " pixels, the frames have " + std::to_string(frames.columns));
+  if (read.count() != 1 && read.count() != frames.count())
+    throw InputError("reference: has " + std::to_string(read.count()) +
+                     " columns, must have one, or " + std::to_string(frames.count()) +
+                     " as the frames");
+  for (std::size_t i = 0; i < frames.count(); ++i) {
+    const auto frame = read.frame(read.count() == 1 ? 0 : i);
+    references.of_frame.emplace_back(frame.begin(), frame.end());
   }
   return references;
 }
@@ -188,17 +211,18 @@ using Make = std::function<Made(ResultFile&)>;
 
 /// Returns the function that recovers the points of the object from each frame, and pictures if
 /// requested, and writes the result.
-Make search_of(const Keys& keys, const RecoverKeys& values, const Table& table) {
-  const mc::RecoveryTask task = task_of(keys, values, table.rows());
-  const std::size_t average = average_of(keys, values, table.names().size());
-  const References references = references_of(keys, values, table);
+Make search_of(const Keys& keys, const RecoverKeys& values, const Frames& read) {
+  const mc::RecoveryTask task = task_of(keys, values, read.columns);
+  const std::size_t average = average_of(keys, values, read.count());
+  const References references = references_of(keys, values, read);
   const auto phases = phase_task(keys, values);
   return [=](ResultFile& file) {
     std::vector<mc::Recovered> all;
     std::vector<mc::Deconvolved> pictures;
     std::vector<mc::PhasedPicture> phased;
     std::vector<std::string> names;
-    const auto frames = frames_of(table);
+    const auto frames = lists_of(read);
+    const auto all_names = names_of(read);
     for (std::size_t i = 0; i < frames.size(); i += average) {
       if (!references.of_frame.empty())
         pictures.push_back(
@@ -206,7 +230,7 @@ Make search_of(const Keys& keys, const RecoverKeys& values, const Table& table) 
       all.push_back(mc::recovered(std::span(frames).subspan(i, average), task));
       if (phases)
         phased.push_back(mc::retrieved_phases(all.back().statistics.autocorrelation, *phases));
-      names.push_back(table.names()[i]);
+      names.push_back(all_names[i]);
     }
     mc::write_recovery(file, names, task, all);
     if (!pictures.empty()) mc::write_deconvolved(file, task, pictures);
@@ -218,24 +242,67 @@ Make search_of(const Keys& keys, const RecoverKeys& values, const Table& table) 
 
 /// Returns the function that separates the frames into the contributions of blinking sources and
 /// writes the result.
-Make sources_of(const Keys& keys, const RecoverKeys& values, const Table& table) {
-  const mc::SeparationTask task = separation_task(keys, values, table);
+Make sources_of(const Keys& keys, const RecoverKeys& values, const Frames& read) {
+  const mc::SeparationTask task = separation_task(keys, values, read);
   return [=](ResultFile& file) {
-    const auto frames = frames_of(table);
+    const auto frames = lists_of(read);
     const mc::SeparatedSources found = mc::separated_sources(frames, task);
-    mc::write_separation(file, table.names(), found);
+    mc::write_separation(file, names_of(read), found);
     print_sources(found);
     return Made{"non-negative factors of all frames, correlations of patterns",
                 static_cast<double>(frames.size())};
   };
 }
 
+void print_pictures(const std::vector<mc::RecoveredPicture>& all) {
+  std::printf("%-8s %-9s %-8s %-10s %-9s %s\n", "frame", "contrast", "grain", "noise", "residual",
+              "agreement of starts");
+  for (std::size_t i = 0; i < all.size(); ++i)
+    std::printf("%-8zu %-9.3f %-8.2f %-10.2g %-9.3f %.3f\n", i, all[i].statistics.contrast,
+                all[i].statistics.grain, all[i].statistics.noise, all[i].retrieved.residual.back(),
+                all[i].retrieved.agreement);
+}
+
+/// Returns the function that retrieves a picture from each frame, and writes the result.
+Make pictures_of(const Keys& keys, const RecoverKeys& values, const Frames& frames) {
+  if (keys.read(values.recovery) != "auto" && values.recovery != "phases")
+    throw InputError("recovery", values.recovery,
+                     "requires frames of one line; pictures take phases");
+  const std::size_t pixels = std::min(frames.rows, frames.columns);
+  mc::CameraNoise noise;
+  read_camera_keys(keys, values.noise, noise);
+  const std::size_t lags = lags_of(keys, values, pixels),
+                    average = average_of(keys, values, frames.count());
+  const mc::PhaseTask task = phase_settings(keys, values.phases);
+  return [=](ResultFile& file) {
+    std::vector<mc::RecoveredPicture> all;
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < frames.count(); i += average) {
+      auto statistics = mc::picture_statistics(frames, i, average, lags, noise);
+      auto retrieved = mc::retrieved_picture(statistics.autocorrelation, lags, task);
+      all.push_back({std::move(statistics), std::move(retrieved)});
+      names.push_back(names_of(frames)[i]);
+    }
+    mc::write_pictures(file, names, lags, all);
+    print_pictures(all);
+    return Made{"autocorrelation of each frame, phase retrieval", static_cast<double>(all.size())};
+  };
+}
+
+Make make_of(const Keys& keys, const RecoverKeys& values, const Frames& frames) {
+  if (frames.rows > 1) return pictures_of(keys, values, frames);
+  return keys.read(values.recovery) == "sources" ? sources_of(keys, values, frames)
+                                                 : search_of(keys, values, frames);
+}
+
 int recover_points(const Subcommand& command, RecoverKeys& values) {
   const Keys& keys = command.keys();
   const Session session(command.text(), keys, values.run, command.only_prints());
-  const Table table = read_key_table("frames", keys.required(values.frames));
-  const Make make = keys.read(values.recovery) == "sources" ? sources_of(keys, values, table)
-                                                            : search_of(keys, values, table);
+  const std::string& path = keys.required(values.frames);
+  read_frame_keys(keys, values.format, path);
+  const Frames frames = corrected(keys, values.corrections, values.format,
+                                  read_frames("frames", path, values.format));
+  const Make make = make_of(keys, values, frames);
   if (!command.settle()) return ExitStatus::done;
   return session.once(ResultFile(session.out()), make);
 }
@@ -244,7 +311,8 @@ int recover_points(const Subcommand& command, RecoverKeys& values) {
 
 std::unique_ptr<Call> recover(const std::string&) {
   return call_with<RecoverKeys>(
-      "recover", "Recovers points from the autocorrelation of measured frames", recover_points);
+      "recover", "Recovers points or pictures from the autocorrelation of measured frames",
+      recover_points);
 }
 
 }  // namespace flatspeckle::apps

@@ -12,6 +12,7 @@
 #include "apps/command/experiment.h"
 #include "apps/flatland/map_settings.h"
 #include "apps/flatland/own_places.h"
+#include "apps/flatland/space_solve.h"
 #include "apps/results/wavelengths.h"
 #include "core/error.h"
 #include "core/keys/csv.h"
@@ -58,12 +59,11 @@ void add_solve_keys(Keys& keys, SolveKeys& values) {
   add_faces_keys(keys, values.spec);
   keys.remove("placement");
   keys.add("placement", values.spec.placement,
-           "CSV file with columns x, z [, radius [, index_re, index_im]]; or poisson, hard_disk or "
-           "equilibrium, to draw one; with cluster: CSV file with columns x, z [, angle]");
+           "CSV file with columns x, z [, radius [, index_re, index_im]], in space also y; or "
+           "poisson, hard_disk or equilibrium, to draw one; with cluster: CSV file with columns x, "
+           "z [, angle]");
   add_view_keys(keys, values.spec);
-  keys.add("near_sources", values.spec.near_sources,
-           "CSV file with columns x, z: point sources instead of plane waves")
-      .only_of("media with an index_field");
+  add_space_solve_keys(keys, values.spec);
   add_map_keys(keys, values.map);
   add_spectrum_keys(keys, values.spectrum);
   keys.group("Solver");
@@ -86,7 +86,8 @@ void add_solve_keys(Keys& keys, SolveKeys& values) {
 
 [[noreturn]] void refuse_bulk(const SceneSpec& spec) {
   throw InputError("scatterer", spec.scatterer,
-                   "is a bulk phase function; must be point, soft, hard, tm or te");
+                   std::string("is a bulk phase function; must be point, soft, hard") +
+                       (spec.dimension == 3 ? " or penetrable" : ", tm or te"));
 }
 
 /// Reads a placement from the file that `placement` names. Throws InputError if keys are given that
@@ -100,7 +101,7 @@ Placement placement_of_file(const Keys& keys, const SceneSpec& spec) {
   } catch (const InputError& error) {
     throw InputError(std::string(error.what()) + " (the placement comes from " + path + ')');
   }
-  Placement placement = read_placement(path, scatterer);
+  Placement placement = read_placement(path, scatterer, spec.dimension == 3);
   const Table table = read_csv(path);
   if (table.has("radius")) {
     keys.disregard(spec.radius);
@@ -114,6 +115,7 @@ Placement drawn_placement(const SceneSpec& spec, const Scene& scene, std::uint64
   if (scene.domain.kind == Domain::Kind::slab)
     throw InputError("domain", spec.domain, "must be box for the exact solver");
   if (!scene.medium.has_scatterers) refuse_bulk(spec);
+  if (spec.dimension == 3) require_uniform_space(scene);
   RandomStream random(seed, static_cast<std::uint64_t>(Stream::placement), 0);
   return draw_placement(scene, random);
 }
@@ -259,6 +261,7 @@ class SolveExperiment : public OneShot {
     keys.read(run_.seed);
     // the seed has no effect, because the placement is not random
     if (has_own_places(values_.spec)) keys.disregard(run_.seed);
+    if (keys.read(values_.spec.dimension) == 3) return read_space(keys);
     if (keys.read(values_.spec.index_field) != "homogeneous") return read_graded(keys);
     if (keys.read(values_.spec.medium_index)) return read_layered(keys);
     keys.read(values_.tolerance);
@@ -266,7 +269,8 @@ class SolveExperiment : public OneShot {
     if (!values_.spec.near_sources.empty())
       throw InputError(
           "near_sources", values_.spec.near_sources,
-          "requires an index_field (covariance --method wave accepts near_sources without one)");
+          "requires an index_field or dimension = 3 (covariance --method wave accepts near_sources "
+          "without them)");
     sensors_ = sensors_of(keys, values_.spec);
     if (values_.cluster.empty())
       read_placement_and_work(keys);
@@ -305,6 +309,19 @@ class SolveExperiment : public OneShot {
       require_phase("near_sensors", sensor, 2 * std::numbers::pi / shortest);
     }
     if (wavelengths_->index) require_index_from_table(spec, placement_);
+  }
+
+  void read_space(const Keys& keys) {
+    keys.read(values_.tolerance);
+    keys.read(values_.solver);
+    SceneSpec& spec = values_.spec;
+    space_ = space_request(keys, spec);
+    grid_ = map_grid(keys, values_.map, keys.read(spec.wavelength));
+    space_->map = grid_;
+    if (grid_) space_->map_y = keys.read(values_.map.map_y).value_or(0);
+    if (!has_own_places(spec)) scene_ = make_scene(keys, spec);
+    placement_ = scene_ ? drawn_placement(spec, *scene_, seed()) : placement_of_file(keys, spec);
+    for (const View& sensor : space_->near_sensors) require_outside(placement_, sensor.point);
   }
 
   void read_graded(const Keys& keys) {
@@ -365,10 +382,20 @@ class SolveExperiment : public OneShot {
 
   Made make(ResultFile& file, bool prints) const override {
     blas_single_thread();  // called here so that missing memory is reported before the slow work
+    if (space_) return make_space(file, prints);
     if (graded_) return make_graded(file, prints);
     if (layered_) return make_layered(file, prints);
     if (cluster_) return make_clusters(file, prints);
     return wavelengths_->values.empty() ? make_fields(file, prints) : make_spectrum(file, prints);
+  }
+
+  Made make_space(ResultFile& file, bool prints) const {
+    wave::SolveOptions options{.tolerance = values_.tolerance, .sensors = {}};
+    options.method = solvers.at(values_.solver);
+    const std::string plan = write_space_solution(
+        file, placement_, 2 * std::numbers::pi / values_.spec.wavelength, *space_, options, prints);
+    write_scene(file);
+    return Made{plan, 1};
   }
 
   Made make_graded(ResultFile& file, bool prints) const {
@@ -442,10 +469,10 @@ class SolveExperiment : public OneShot {
   }
 
   void write_scene(ResultFile& file) const {
-    if (scene_)
-      write_medium(file, *scene_);
-    else
-      ResultGroup(file, scene_table).attribute("wavelength", values_.spec.wavelength);
+    if (scene_) return write_medium(file, *scene_);
+    const ResultGroup root(file, scene_table);
+    if (space_) root.attribute("dimension", std::uint64_t{3});
+    root.attribute("wavelength", values_.spec.wavelength);
   }
 
   SolveKeys values_;
@@ -456,6 +483,7 @@ class SolveExperiment : public OneShot {
   Placement placement_;
   std::optional<wave::KeptCluster> cluster_;
   std::vector<wave::ClusterPlace> places_;
+  std::optional<SpaceRequest> space_;
   std::optional<GradedWork> graded_;
   std::optional<wave::LayerFields> layered_;
 };

@@ -39,6 +39,8 @@ struct Comparison {
   bool correlations = false;
   /// 1 for each value that is not expected to agree, for a known reason; empty if there are none.
   std::vector<std::uint64_t> apart = {};
+  /// Magnitude below which `bias` is relative to this magnitude instead of the value.
+  double least_scale = 0;
 
   /// Returns the combined standard error of both methods, but at least the rounding error.
   double error(std::size_t e) const {
@@ -63,7 +65,9 @@ struct Comparison {
   bool within_errors(std::size_t e) const { return deviation(e) <= 4; }
   bool within_bias(std::size_t e) const { return difference(e) <= bias * scale(e); }
   /// Returns the magnitude to which `bias` is relative.
-  double scale(std::size_t e) const { return correlations ? 1 : std::abs(reference.value[e]); }
+  double scale(std::size_t e) const {
+    return correlations ? 1 : std::max(least_scale, std::abs(reference.value[e]));
+  }
 
   /// Summary of all values except those marked in `apart`: RMS difference and RMS combined error,
   /// both relative to the RMS of the reference, and fraction of the values that agree within errors
@@ -203,6 +207,7 @@ std::string allowance_text(const Scene& scene) {
       "interference of waves that the faces reflect, k depth =", scene.k * scene.domain.depth);
   add(part.guided, "guiding by the box, depth / width =", scene.domain.depth / scene.domain.width);
   add(part.correlations, "correlated positions, packing", packing);
+  add(part.fixed_number, "fixed number of scatterers,", scene.placement.mean_count);
   return text;
 }
 
@@ -237,6 +242,19 @@ std::vector<std::uint64_t> forward_entries(const Scene& scene) {
   return column(scene.request.entries, [&](const Entry& entry) {
     return std::uint64_t{mc::lacks_fluctuation(scene, entry)};
   });
+}
+
+/// Returns the mean intensity of the entries that are intensities and not in the forward lobe, by
+/// the reference method. In space the deviations of Monte Carlo were measured relative to this
+/// mean, because weak views deviate more.
+double mean_intensity(const CovarianceRequest& request, const Comparison& comparison) {
+  double sum = 0, count = 0;
+  for (std::size_t e = 0; e < request.entries.size(); ++e) {
+    if (request.entries[e].a != request.entries[e].b || comparison.is_apart(e)) continue;
+    sum += comparison.reference.value[e].real();
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
 }
 
 void write_comparison(ResultFile& file, const Comparison& comparison) {
@@ -332,6 +350,7 @@ int compare_methods(const Subcommand& command, ValidateKeys& values) {
   const Keys& keys = command.keys();
   Session session(command.text(), keys, run, command.only_prints());
   take_q_depths(keys, q_depths, spec);
+  keys.read(spec.dimension);
   const bool slab = spec.domain == "slab";
   const StopRule stop = with_share(stop_rule(keys, run), slab ? 1 : mc_share);
   const auto reversed = reversed_paths(keys, methods);
@@ -342,7 +361,6 @@ int compare_methods(const Subcommand& command, ValidateKeys& values) {
   }
   const auto refer = slab ? by_transport(keys, methods, spec, run, reversed)
                           : by_waves(keys, methods, run, session.seed());
-  if (slab) keys.read(spec.dimension);
   const mc::FrequencyShifts all_shifts = frequency_shifts(keys, shift_texts, spec);
   const Shifts& shifts = all_shifts.relative;
   const Scene given = make_scene(keys, spec);
@@ -372,6 +390,8 @@ int compare_methods(const Subcommand& command, ValidateKeys& values) {
         Comparison comparison{name, reference_moments.covariance, mc_moments.covariance,
                               chosen.bias};
         if (name == "wave") comparison.apart = forward_entries(scene);
+        if (scene.medium.dimension == 3 && name == "wave")
+          comparison.least_scale = mean_intensity(scene.request, comparison);
         print_agreement(scene, comparison, entry_names(scene.request),
                         shown_entries(scene.request));
         print_errors(scene.request, mc_moments.covariance);

@@ -13,15 +13,16 @@ extern const DatasetTable provenance_table, scene_table, layers_table, density_t
     beams_table, trace_table, structure_factor_table, state_table;
 
 namespace wave {
-extern const DatasetTable solution_table, spectrum_table, cluster_table, cluster_solution_table,
-    graded_table, map_table;
+extern const DatasetTable solution_table, space_solution_table, spectrum_table, cluster_table,
+    cluster_solution_table, graded_table, map_table;
 }
 
 namespace mc {
 extern const DatasetTable diffusion_table, mean_table, intensity_table, full_table, pairs_table,
     moves_table, reflection_theory_table, gradient_table, delays_table, contrast_table,
     frequency_table, numerical_table, flux_table, field_table, imaging_table, picture_table,
-    blinking_table, recovery_table, separation_table, fit_table, plan_table;
+    blinking_table, recovery_table, recovered_picture_table, contrast_map_table, separation_table,
+    fit_table, plan_table;
 }
 
 namespace grin {
@@ -116,6 +117,7 @@ std::vector<const DatasetTable*> all_tables() {
                                              &validate_table,
                                              &own_places_table,
                                              &wave::solution_table,
+                                             &wave::space_solution_table,
                                              &wave::spectrum_table,
                                              &wave::cluster_table,
                                              &wave::cluster_solution_table,
@@ -127,7 +129,9 @@ std::vector<const DatasetTable*> all_tables() {
                                              &mc::picture_table,
                                              &mc::blinking_table,
                                              &mc::recovery_table,
+                                             &mc::recovered_picture_table,
                                              &mc::separation_table,
+                                             &mc::contrast_map_table,
                                              &mc::fit_table,
                                              &mc::plan_table,
                                              &sweep_axes_table,

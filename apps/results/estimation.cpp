@@ -214,7 +214,8 @@ Estimation transport_estimation(const Scene& scene, mc::ReversedPaths reversed, 
 std::string wave_plan(const Scene& scene, double tolerance) {
   std::ostringstream plan;
   const char* method = scene.faces ? "Foldy-Lax solutions with the Green function of the layer"
-                                   : "dense T-matrix solutions";
+                       : scene.medium.dimension == 3 ? "T-matrix solutions in space"
+                                                     : "dense T-matrix solutions";
   plan << "wave: " << method << " of " << placement_word(scene.placement.kind)
        << " placements, tolerance " << tolerance << "; sample mean removed";
   return plan.str();

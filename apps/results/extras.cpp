@@ -175,13 +175,12 @@ Estimation with_frequency_shifts(const Scene& scene, const Extras& extras,
           }};
 }
 
-/// Returns the scene's unit of length in metres; nullopt if it is not given.
+}  // namespace
+
 std::optional<double> length_unit(const Keys& keys) {
   const Key* const key = keys.find("length_unit");
   return key != nullptr && !key->value().empty() ? read_number(key->value().front()) : std::nullopt;
 }
-
-}  // namespace
 
 void add_frequency_key(Keys& keys, std::vector<std::string>& shifts) {
   keys.group("Methods");

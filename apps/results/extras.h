@@ -34,6 +34,8 @@ void add_extra_keys(Keys& keys, Extras& extras);
 /// optional results that exclude each other.
 void read_extras(const Keys& keys, Extras& extras, const SceneSpec& spec,
                  const std::string& method);
+/// Returns the scene's unit of length in metres; nullopt if it is not given.
+std::optional<double> length_unit(const Keys& keys);
 /// Returns the frequency shifts that the key gives. Reads the key.
 mc::FrequencyShifts frequency_shifts(const Keys& keys, const std::vector<std::string>& texts,
                                      const SceneSpec& spec);

@@ -18,13 +18,33 @@ std::string shown_value(Complex value) {
   return text;
 }
 
+namespace {
+
+/// Whether some direction is not in the plane of x and z, so that azimuths are shown.
+bool has_azimuths(const CovarianceRequest& request) {
+  const auto turned = [](const auto& one) { return one.azimuth != 0; };
+  return std::ranges::any_of(request.lights, turned) || std::ranges::any_of(request.views, turned);
+}
+
+/// Writes an angle or, if `both`, angle and azimuth.
+template <std::size_t size>
+void show_direction(char (&text)[size], double angle, double azimuth, bool both) {
+  if (both)
+    std::snprintf(text, size, "(%.5g, %.5g)", angle, azimuth);
+  else
+    std::snprintf(text, size, "%8.6g", angle);
+}
+
+}  // namespace
+
 std::string shown_channel(const CovarianceRequest& request, std::uint32_t channel) {
-  char light_text[24], view_text[24];
+  char light_text[40], view_text[40];
+  const bool azimuths = has_azimuths(request);
   const auto [light, view] = request.channels[channel];
   const Light& lit = request.lights[light];
   const View& seen = request.views[view];
   if (lit.kind == Light::Kind::plane)
-    std::snprintf(light_text, sizeof light_text, "%8.6g", lit.angle);
+    show_direction(light_text, lit.angle, lit.azimuth, azimuths);
   else
     std::snprintf(light_text, sizeof light_text, "light %-3u", light);
   if (seen.near && request.has_reference())
@@ -32,7 +52,7 @@ std::string shown_channel(const CovarianceRequest& request, std::uint32_t channe
   else if (seen.near)
     std::snprintf(view_text, sizeof view_text, "sensor %-3u", view);
   else
-    std::snprintf(view_text, sizeof view_text, "%8.6g", seen.angle);
+    show_direction(view_text, seen.angle, seen.azimuth, azimuths);
   return std::string(light_text) + ' ' + view_text;
 }
 

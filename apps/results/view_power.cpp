@@ -20,6 +20,7 @@
 #include "mc/slab/slab_flux.h"
 #include "mc/slab/slab_jobs.h"
 #include "wave_solver/solutions/ensemble.h"
+#include "wave_solver/solutions/space_checks.h"
 
 namespace flatspeckle::apps {
 
@@ -195,8 +196,37 @@ std::optional<Invariant> transport_power(const Scene& slab, double tolerance) {
                    (std::abs(fine.value - coarse.value) + fine.error + error) / left + rounding};
 }
 
-/// Checks the optical theorem (C9) for the exact fields of two placements, with views over the full
-/// circle. The mean intensity is computed from covariance and mean field, by the estimators for
+/// Directions and weights of an integral over all directions, in the plane or in space. The first
+/// view is forward, along the light; its weight in space is 0.
+struct AllViews {
+  std::vector<View> views;
+  std::vector<double> weights;
+};
+
+AllViews all_views(const Scene& scene) {
+  const Domain& box = scene.domain;
+  const double size =
+      scene.k * (std::hypot(box.width, box.depth, box.height) / 2 + scene.scatterer.disk_radius());
+  const Light light = seen_from(scene, {far_view(0)}).request.lights.front();
+  if (scene.medium.dimension == 3) {
+    const wave::SphereRule rule = wave::sphere_rule(size);
+    AllViews all{{far_view(light.angle, light.azimuth)}, {0}};
+    all.views.insert(all.views.end(), rule.views.begin(), rule.views.end());
+    all.weights.insert(all.weights.end(), rule.weights.begin(), rule.weights.end());
+    return all;
+  }
+  const int count = 2 * static_cast<int>(size + 10 * std::cbrt(size) + 20);
+  AllViews all;
+  for (int i = 0; i < count; ++i) {
+    all.views.push_back(far_view(
+        std::remainder(light.angle + 2 * std::numbers::pi * i / count, 2 * std::numbers::pi)));
+    all.weights.push_back(2 * std::numbers::pi / count);
+  }
+  return all;
+}
+
+/// Checks the optical theorem (C9, C57) for the exact fields of two placements, with views over all
+/// directions. The mean intensity is computed from covariance and mean field, by the estimators for
 /// many placements. The limit follows from the tolerance of the fields. Returns nullopt if
 /// scatterers absorb, if there are many scatterers in a large box, if the index varies in space,
 /// or if the faces reflect, because the layer then guides a part of the power.
@@ -205,25 +235,21 @@ std::optional<Invariant> waves_power(const Scene& scene, double tolerance, std::
   const bool is_graded = scene.index && scene.index->is_around();
   if (scene.medium.mu_s == 0 || scene.medium.albedo < 1 || is_graded || scene.faces)
     return std::nullopt;
-  const double size = scene.k * (std::hypot(scene.domain.width, scene.domain.depth) / 2 +
-                                 scene.scatterer.disk_radius());
-  const int count = 2 * static_cast<int>(size + 10 * std::cbrt(size) + 20);
-  if (scene.placement.mean_count * count > most) return std::nullopt;
-  std::vector<double> angles;
-  const double forward = seen_from(scene, {far_view(0)}).request.lights.angles().front();
-  for (int i = 0; i < count; ++i)
-    angles.push_back(
-        std::remainder(forward + 2 * std::numbers::pi * i / count, 2 * std::numbers::pi));
-  const FieldJob job = wave::wave_job(seen_from(scene, far_views(angles)), seed, tolerance);
+  const AllViews all = all_views(scene);
+  if (scene.placement.mean_count * static_cast<double>(all.views.size()) > most)
+    return std::nullopt;
+  const FieldJob job = wave::wave_job(seen_from(scene, all.views), seed, tolerance);
   const GroupedSums sums = sums_of(job.batches, placements);
   const auto mean = job.mean(placements, sums.total());
   const auto covariance = job.covariance(placements, sums.total());
   double scattered = 0;
-  for (std::size_t i = 0; i < angles.size(); ++i)
-    scattered += (covariance[i].real() * (placements - 1) / placements + std::norm(mean[i])) * 2 *
-                 std::numbers::pi / count;
-  const Complex extinction =
-      -std::sqrt(8 * std::numbers::pi / scene.k) * std::polar(1.0, std::numbers::pi / 4) * mean[0];
+  for (std::size_t i = 0; i < all.views.size(); ++i)
+    scattered += all.weights[i] *
+                 (covariance[i].real() * (placements - 1) / placements + std::norm(mean[i]));
+  const Complex extinction = scene.medium.dimension == 3
+                                 ? Complex(0, -4 * std::numbers::pi / scene.k) * mean[0]
+                                 : -std::sqrt(8 * std::numbers::pi / scene.k) *
+                                       std::polar(1.0, std::numbers::pi / 4) * mean[0];
   if (scattered == 0) return std::nullopt;
   return Invariant{std::abs(extinction.real() / scattered - 1),
                    tolerance * (1 + std::abs(extinction) / scattered) + rounding};

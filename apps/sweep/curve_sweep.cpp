@@ -96,10 +96,8 @@ void CurveSweep::check() {
   for (StopRule* stop : {&mc_stop_, &wave_stop_})
     if (!stop->samples && !stop->target_error) stop->target_error = default_target_error;
   if (method_ != "wave") reversed_ = reversed_paths(keys, methods);
-  if (has("wave"))
-    keys.read(methods.wave_tolerance);
-  else
-    keys.read(base.dimension);
+  if (has("wave")) keys.read(methods.wave_tolerance);
+  keys.read(base.dimension);
   points_ = sweep_points(keys, lists_);
   check_points();
   disregard_unused(keys, base, method_words);

@@ -22,7 +22,7 @@ ErrorReference stored_reference(const std::string& name);
 /// Error curves of the speckle covariance in the boxes box_points, box_points_absorbing and
 /// box_cylinders (data/scenes) and of such boxes in space: memory effect over seven tilts in
 /// transmission and reflection. The methods are exact ensembles by the dense and the fast solver
-/// (in the plane), and Monte Carlo.
+/// (in space only the dense one, for a small box), and Monte Carlo.
 std::vector<ErrorRun> box_error_runs();
 std::vector<LongRun> box_long_runs();
 

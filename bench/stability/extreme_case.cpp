@@ -19,6 +19,7 @@ std::vector<ExtremeCase> extreme_cases() {
                             {"flatland", flatland_extremes},
                             {"wave_solver", wave_extremes},
                             {"wave_solver", wave_point_extremes},
+                            {"wave_solver", wave_space_extremes},
                             {"mc", mc_theory_extremes},
                             {"mc", mc_slab_extremes},
                             {"mc", mc_transport_extremes},

@@ -75,6 +75,7 @@ void function_extremes(ExtremeRows& rows);
 void flatland_extremes(ExtremeRows& rows);
 void wave_extremes(ExtremeRows& rows);
 void wave_point_extremes(ExtremeRows& rows);
+void wave_space_extremes(ExtremeRows& rows);
 void mc_theory_extremes(ExtremeRows& rows);
 void mc_slab_extremes(ExtremeRows& rows);
 void mc_transport_extremes(ExtremeRows& rows);

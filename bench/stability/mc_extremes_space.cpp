@@ -187,8 +187,9 @@ Finding turned_slab(double angle, double turn) {
       spec.g = 0.7;
       return spec;
     }());
-    scene.request = memory_effect_request(
-        k, plane_wave(angle, by), {far_view(0.4, 2 + by), far_view(2.5, -1 + by)}, {0, 1e-3}, 1 + by);
+    scene.request =
+        memory_effect_request(k, plane_wave(angle, by),
+                              {far_view(0.4, 2 + by), far_view(2.5, -1 + by)}, {0, 1e-3}, 1 + by);
     return mc::slab_covariance(scene, false, {1e-6}).value;
   };
   return {relative_difference(at(turn), at(0)), 1e-6};

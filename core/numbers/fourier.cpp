@@ -46,6 +46,41 @@ void LineTransform::operator()(Complex* line) const {
   fftw_execute_dft(plan_->plan, native(line), native(line));
 }
 
+struct PlaneTransform::Plans {
+  fftw_plan forward = nullptr, backward = nullptr;
+
+  Plans(int rows, int columns, double* picture, Complex* spectrum) {
+    const std::lock_guard lock(fourier_planning());
+    // Preserves the picture: forward() may not change it.
+    forward = fftw_plan_dft_r2c_2d(rows, columns, picture, native(spectrum),
+                                   FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
+    backward = fftw_plan_dft_c2r_2d(rows, columns, native(spectrum), picture, FFTW_ESTIMATE);
+  }
+  Plans(const Plans&) = delete;
+  Plans& operator=(const Plans&) = delete;
+  ~Plans() {
+    const std::lock_guard lock(fourier_planning());
+    fftw_destroy_plan(forward);
+    fftw_destroy_plan(backward);
+  }
+};
+
+PlaneTransform::PlaneTransform(std::size_t rows, std::size_t columns)
+    : rows_(rows), columns_(columns) {
+  std::vector<double> picture(rows * columns);
+  std::vector<Complex> spectrum(spectrum_size());
+  plans_ = std::make_shared<const Plans>(static_cast<int>(rows), static_cast<int>(columns),
+                                         picture.data(), spectrum.data());
+}
+
+void PlaneTransform::forward(const double* picture, Complex* spectrum) const {
+  fftw_execute_dft_r2c(plans_->forward, const_cast<double*>(picture), native(spectrum));
+}
+
+void PlaneTransform::backward(Complex* spectrum, double* picture) const {
+  fftw_execute_dft_c2r(plans_->backward, native(spectrum), picture);
+}
+
 void transform_even(std::vector<Complex>& values, std::size_t rows, std::size_t columns) {
   const int sizes[] = {static_cast<int>(rows / 2 + 1), static_cast<int>(columns / 2 + 1)};
   const fftw_r2r_kind kinds[] = {FFTW_REDFT00, FFTW_REDFT00};

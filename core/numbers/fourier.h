@@ -27,6 +27,29 @@ class LineTransform {
   std::shared_ptr<const Plan> plan_;
 };
 
+/// Fourier transforms of real pictures of rows x columns numbers, row by row, without a normalising
+/// factor. The spectrum has rows x (columns / 2 + 1) numbers; the others follow from symmetry.
+/// Construction and use are thread-safe.
+class PlaneTransform {
+ public:
+  PlaneTransform(std::size_t rows, std::size_t columns);
+
+  std::size_t rows() const { return rows_; }
+  std::size_t columns() const { return columns_; }
+  std::size_t spectrum_columns() const { return columns_ / 2 + 1; }
+  std::size_t spectrum_size() const { return rows_ * spectrum_columns(); }
+
+  /// picture: rows() x columns() numbers; spectrum: spectrum_size() numbers.
+  void forward(const double* picture, Complex* spectrum) const;
+  /// Computes the picture times rows() x columns(). Overwrites the spectrum.
+  void backward(Complex* spectrum, double* picture) const;
+
+ private:
+  struct Plans;
+  std::size_t rows_, columns_;
+  std::shared_ptr<const Plans> plans_;
+};
+
 /// Computes the Fourier transform of a function on a periodic grid of rows x columns that is even
 /// in both coordinates. Function and transform are stored on the first (rows / 2 + 1) x (columns /
 /// 2 + 1) points of the grid.

@@ -16,8 +16,8 @@ namespace flatspeckle {
 namespace {
 
 Vec uniform_in(const Domain& box, RandomStream& random) {
-  const double x = (random.uniform() - 0.5) * box.width;
-  return {x, random.uniform() * box.depth};
+  const double x = (random.uniform() - 0.5) * box.width, z = random.uniform() * box.depth;
+  return {x, z, box.height > 0 ? (random.uniform() - 0.5) * box.height : 0};
 }
 
 /// Draws a Poisson-distributed number: the number of arrivals of a unit-rate process up to the time
@@ -30,16 +30,16 @@ std::uint64_t poisson_number(double mean, RandomStream& random) {
   return number;
 }
 
-/// Places disks by random sequential addition. Radii include half the gap.
+/// Places disks or spheres by random sequential addition. Radii include half the gap.
 std::vector<Vec> add_disks(const Domain& box, std::span<const double> radii, RandomStream& random) {
   CellGrid grid(2 * *std::max_element(radii.begin(), radii.end()));
   std::vector<Vec> centres;
   constexpr std::uint64_t most_tries = 100'000'000;
   for (std::uint64_t tries = 0; centres.size() < radii.size(); ++tries) {
     if (tries == most_tries)
-      throw InputError("the disks cannot be packed: random sequential addition of " +
+      throw InputError("the scatterers cannot be packed: random sequential addition of " +
                        std::to_string(radii.size()) +
-                       " disks does not end; lower the density or min_gap");
+                       " of them does not end; lower the density or min_gap");
     const Vec position = uniform_in(box, random);
     const double radius = radii[centres.size()];
     const bool taken = grid.any_near(position, [&](Vec other, std::size_t number) {
@@ -116,7 +116,7 @@ std::vector<Vec> draw_disks(const Domain& box, std::span<const double> radii,
   double packing = 0;
   for (std::size_t disk : order) {
     reaches.push_back(radii[disk] + min_gap / 2);
-    packing += std::numbers::pi * reaches.back() * reaches.back() / box.content();
+    packing += Scatterer{.radius = reaches.back()}.content(box.height > 0 ? 3 : 2) / box.content();
   }
   check_packing(box, kind, packing, 2 * reaches.front());
   const auto drawn = kind == PlacementRule::Kind::equilibrium
@@ -127,8 +127,26 @@ std::vector<Vec> draw_disks(const Domain& box, std::span<const double> radii,
   return centres;
 }
 
+namespace {
+
+/// Throws InputError for spheres that are packed too densely. Random sequential addition of spheres
+/// jams at 0.38.
+void check_sphere_packing(PlacementRule::Kind kind, double packing) {
+  if (kind == PlacementRule::Kind::equilibrium)
+    throw InputError("placement", "equilibrium",
+                     "requires dimension = 2; spheres are placed by hard_disk, random sequential "
+                     "addition");
+  if (packing > 1.003 * 0.33)
+    throw InputError("packing fraction (with min_gap)", packing,
+                     "must be at most 0.33 for spheres placed by random sequential addition; lower "
+                     "the density, the radius or min_gap");
+}
+
+}  // namespace
+
 void check_packing(const Domain& box, PlacementRule::Kind kind, double packing, double largest) {
   const bool equilibrium = kind == PlacementRule::Kind::equilibrium;
+  if (box.height > 0) return check_sphere_packing(kind, packing);
   // The default gap raises the packing fraction slightly: the slack of 0.2 % accepts disks that
   // would be exactly at the limit without it.
   if (packing > 1.002 * (equilibrium ? 0.69 : 0.5))
@@ -149,9 +167,10 @@ void check_packing(const Domain& box, PlacementRule::Kind kind, double packing, 
               std::to_string(largest));
 }
 
-Placement read_placement(const std::string& path, const Scatterer& scatterer) {
-  const Table table =
-      read_key_table("placement", path, {"x", "z", "radius", "index_re", "index_im"}, true);
+Placement read_placement(const std::string& path, const Scatterer& scatterer, bool in_space) {
+  std::vector<std::string> columns{"x", "z", "radius", "index_re", "index_im"};
+  if (in_space) columns.emplace_back("y");
+  const Table table = read_key_table("placement", path, columns, true);
   for (const char* name : {"x", "z"})
     if (!table.has(name))
       throw InputError("placement", path, std::string("column ") + name + " is missing");
@@ -161,7 +180,8 @@ Placement read_placement(const std::string& path, const Scatterer& scatterer) {
     throw InputError(path + ": column radius is missing, and the key radius is not given");
   Placement placement;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const Vec position{table.column("x")[row], table.column("z")[row]};
+    const Vec position{table.column("x")[row], table.column("z")[row],
+                       table.has("y") ? table.column("y")[row] : 0};
     placement.push_back({position, row_scatterer(table, row, scatterer, path)});
   }
   check_no_overlap(placement);
@@ -173,7 +193,8 @@ void require_outside(const Placement& placement, Vec sensor) {
     const double distance = length(sensor - position);
     if (scatterer.is_disk() ? distance >= scatterer.radius : distance > 0) continue;
     throw InputError("near_sensors",
-                     "(" + std::to_string(sensor.x) + ", " + std::to_string(sensor.z) + ")",
+                     "(" + std::to_string(sensor.x) + ", " + std::to_string(sensor.z) +
+                         (sensor.y == 0 ? "" : ", y " + std::to_string(sensor.y)) + ")",
                      "must lie outside every scatterer; use a map for the field inside");
   }
 }

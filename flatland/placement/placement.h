@@ -21,9 +21,9 @@ struct PlacedScatterer {
 using Placement = std::vector<PlacedScatterer>;
 
 /// Rule by which realizations are drawn (C12). Points are placed by poisson, disks by hard_disk or
-/// equilibrium. hard_disk is random sequential addition, which places one disk after the other
-/// where it fits. equilibrium draws the fluid of hard disks (draw_equilibrium_disks), which can be
-/// packed more densely.
+/// equilibrium, spheres by hard_disk. hard_disk is random sequential addition, which places one
+/// disk or sphere after the other where it fits. equilibrium draws the fluid of hard disks
+/// (draw_equilibrium_disks), which can be packed more densely.
 struct PlacementRule {
   enum class Kind { poisson, hard_disk, equilibrium };
   Kind kind = Kind::poisson;
@@ -53,25 +53,29 @@ void require_placeable(const PlacementRule& rule);
 Placement draw_placement(const Domain& box, const Scatterer& scatterer, const PlacementRule& rule,
                          RandomStream& random);
 
-/// Draws the centres of disks with the given radii by hard_disk or equilibrium; the largest are
-/// placed first. Throws InputError under the conditions of check_packing().
+/// Draws the centres of disks, in space of spheres, with the given radii by hard_disk or
+/// equilibrium; the largest are placed first. Throws InputError under the conditions of
+/// check_packing().
 std::vector<Vec> draw_disks(const Domain& box, std::span<const double> radii,
                             PlacementRule::Kind kind, double min_gap, RandomStream& random);
 
 /// Throws InputError if the packing fraction is too high for the rule. Random sequential addition
 /// jams at 0.547 and becomes far too slow well below; the equilibrium fluid freezes at 0.70. For
-/// equilibrium, also throws if the largest diameter is too large for the box. packing and largest:
-/// packing fraction and largest diameter of the disks, with half the gap included in their radii.
+/// equilibrium, also throws if the largest diameter is too large for the box. Spheres have the
+/// limit 0.33. packing and largest: packing fraction and largest diameter of the disks, with half
+/// the gap included in their radii.
 void check_packing(const Domain& box, PlacementRule::Kind kind, double packing, double largest);
 
 /// Default of the least gap between disks, in radii. Without it some of many random disks would
 /// nearly touch, which the exact solver does not accept.
 inline constexpr double default_gap = 1e-3;
 
-/// Reads a CSV file with columns x, z [, radius [, index_re, index_im]], named in its first line.
+/// Reads a CSV file with columns x, z, in space also y (0 if it is missing), [, radius [, index_re,
+/// index_im]], named in its first line.
 /// Values that have no column come from `scatterer`. Throws InputError if anything is missing,
 /// malformed or not finite, and if two scatterers overlap.
-Placement read_placement(const std::string& path, const Scatterer& scatterer);
+Placement read_placement(const std::string& path, const Scatterer& scatterer,
+                         bool in_space = false);
 
 /// Throws InputError if a near sensor lies inside a disk or on a point.
 void require_outside(const Placement& placement, Vec sensor);

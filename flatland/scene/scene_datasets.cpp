@@ -86,8 +86,10 @@ const DatasetTable axes_table{
              {"tilt", Data::scale, "", "rad", "rotation of the light"},
              {"tilt_q", Data::real, "tilt", "1/length", "transverse wavenumber of the tilt"},
              {"shift", Data::scale, "", "SHIFT", "change of k sin(view), or translation along x"}},
+    .attributes = {{"tilt_q", "azimuth", "float64",
+                    "azimuth of the tilts, from x towards y, if they are not in the plane y = 0"}},
     .roles = {{"LIGHT", {"light_angle", "light"}},
-              {"VIEW", {"view_angle", "sensor", "camera_y camera_x"}},
+              {"VIEW", {"view_angle", "sensor", "camera_y camera_x", "image_y image_x"}},
               {"LIGHT_2", {"light_angle_2", "light_2"}},
               {"VIEW_2", {"view_angle_2", "sensor_2"}},
               {"SHIFT", {"1/length", "length"}},
@@ -137,6 +139,7 @@ void write_move_axes(ResultFile& file, const CovarianceRequest& request) {
   if (!request.tilts.empty()) {
     root.put("tilt", request.tilts);
     root.put("tilt_q", request.tilt_q);
+    if (request.tilt_azimuth != 0) root.attribute("tilt_q", "azimuth", request.tilt_azimuth);
   }
   const bool far = request.kind == Kind::tilt_shift && !request.views.front().near;
   file.bind("SHIFT", {far ? "1/length" : "length"});

@@ -90,12 +90,13 @@ void add_medium_keys(Keys& keys, SceneSpec& spec) {
       .unit("length");
   keys.add("placement", spec.placement,
            "poisson for points; for disks hard_disk (default, random sequential addition) or "
-           "equilibrium (the fluid of hard disks)")
+           "equilibrium (the fluid of hard disks); for spheres hard_disk")
       .one_of(placement_words);
-  keys.add("min_gap", spec.min_gap, "Least gap between the rims of disks (default 1e-3 radius)")
+  keys.add("min_gap", spec.min_gap,
+           "Least gap between the rims of disks or spheres (default 1e-3 radius)")
       .not_negative()
       .unit("length")
-      .only_of("disks");
+      .only_of("disks and spheres");
 }
 
 void add_space_keys(Keys& keys, SceneSpec& spec) {

@@ -17,6 +17,19 @@ void add_keys(Keys& keys, DynamicsValues& values) {
            "has a unit or temperature is given; otherwise plain numbers k^2 D tau, or those in the "
            "unit of time of diffusion")
       .only_of("method = mc or transport");
+  add_motion_keys(keys, values);
+  keys.add("exposures", values.exposures,
+           "Also estimate the squared speckle contrast K^2 for these exposure times, in the unit "
+           "of the delays, up to the longest delay")
+      .only_of("delays");
+  keys.add("beta", values.beta,
+           "Coherence factor: squared speckle contrast K^2 of static scatterers, and g2 - 1 at "
+           "delay 0")
+      .positive_to(1)
+      .only_of("delays with covariance = intensity");
+}
+
+void add_motion_keys(Keys& keys, DynamicsValues& values) {
   keys.add("diffusion", values.diffusion,
            "Diffusion constant D of the scatterers, such as \"4.3e-13 m^2/s\"; or, as a plain "
            "number, k^2 D per unit of delay (default: 1)")
@@ -43,15 +56,6 @@ void add_keys(Keys& keys, DynamicsValues& values) {
       .only_of("delays by method = mc");
   keys.add("shear", values.shear, "Velocity gradient: increase of v_x per unit of depth")
       .only_of("delays by method = mc");
-  keys.add("exposures", values.exposures,
-           "Also estimate the squared speckle contrast K^2 for these exposure times, in the unit "
-           "of the delays, up to the longest delay")
-      .only_of("delays");
-  keys.add("beta", values.beta,
-           "Coherence factor: squared speckle contrast K^2 of static scatterers, and g2 - 1 at "
-           "delay 0")
-      .positive_to(1)
-      .only_of("delays with covariance = intensity");
 }
 
 double stokes_einstein(double temperature, double viscosity, double radius) {

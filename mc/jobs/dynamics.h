@@ -21,6 +21,8 @@ struct DynamicsValues {
   double beta = 1;
 };
 void add_keys(Keys& keys, DynamicsValues& values);
+/// Adds only the keys of the motion during delays.
+void add_motion_keys(Keys& keys, DynamicsValues& values);
 
 /// Delays between the two fields of a covariance, and the motion of the scatterers during them.
 struct Dynamics {

@@ -10,15 +10,17 @@ namespace flatspeckle::mc {
 
 /// Whether a far view lies in the forward lobe of a plane wave or beam that crosses a box
 /// undeflected, or in that of the specular reflection if the faces reflect. The lobe is the central
-/// diffraction lobe of an aperture as wide as the box; it contains the coherent field.
+/// diffraction lobe of an aperture as wide (and, in space, as high) as the box; it contains the
+/// coherent field.
 inline bool in_forward_lobe(const Scene& scene, const Channel& channel) {
   const View& view = scene.request.views[channel.view];
   const Light& light = scene.request.lights[channel.light];
   if (scene.domain.kind != Domain::Kind::box || view.near || light.kind == Light::Kind::point ||
       (std::cos(view.angle) <= 0 && !scene.faces))
     return false;
-  const double q = scene.outside_k() * (std::sin(view.angle) - std::sin(light.angle));
-  return std::abs(q) < 2 * std::numbers::pi / scene.domain.width;
+  const Vec q = scene.outside_k() * (view.direction() - light.direction());
+  return std::abs(q.x) < 2 * std::numbers::pi / scene.domain.width &&
+         std::abs(q.y) * scene.domain.height <= 2 * std::numbers::pi;
 }
 
 /// Whether all placements of scatterers in a box have the same number of them: always for disks,
@@ -88,10 +90,14 @@ struct Allowance {
   ///
   /// correlations: correlations of the positions of the scatterers. Their effect is of the order of
   /// the packing fraction if they are not modelled, and of the order of its square if they are
-  /// (C16).
+  /// (C16). In space it reaches 8 times the packing fraction near the forward direction, where the
+  /// structure factor of hard spheres is 1 - 8 packing.
+  ///
+  /// fixed_number: effect in space of a fixed number N of scatterers outside the forward lobe. Each
+  /// scatterer is surrounded by N - 1 others, which changes each order of scattering by about 1/N.
   ///
   /// faces: interference between waves that reflecting faces return (face_interference()).
-  double crossed_paths, k_shift, guided, correlations, faces;
+  double crossed_paths, k_shift, guided, correlations, faces, fixed_number;
   /// Fraction of free flights shorter than k a^2, where a is the radius of the disks. It is (k a)^2
   /// / (k mean free path). At such distances the far field of a disk does not hold. bias_map.csv
   /// was measured at k a = 1, so crossed_paths includes the value at k a = 1, which is subtracted
@@ -100,7 +106,10 @@ struct Allowance {
 
   explicit Allowance(const Scene& scene)
       : crossed_paths(2 / (scene.k * scene.medium.mean_free_path() * least_square(scene))),
-        faces(face_interference(scene)) {
+        faces(face_interference(scene)),
+        fixed_number(scene.medium.dimension == 3 && has_fixed_number(scene)
+                         ? 1 / std::max(1.0, scene.placement.mean_count)
+                         : 0) {
     const double shift = std::abs(scene.medium.k_shift) / scene.k, depth = scene.domain.depth,
                  phase = std::min(1.0, scene.k * shift * depth),
                  across = std::min(1.0, std::sqrt(2 * shift) * depth / scene.domain.width);
@@ -108,12 +117,14 @@ struct Allowance {
     const bool refracted = scene.index && !scene.index->is_around(),
                guides = scene.domain.kind == Domain::Kind::box && !refracted;
     guided = guides ? 0.35 * phase * across : 0;
-    const double packing = scene.medium.packing_fraction;
+    const double packing = (scene.medium.dimension == 3 ? 8 : 1) * scene.medium.packing_fraction;
     correlations = scene.medium.structure.independent() ? packing : packing * packing;
     const double size = scene.scatterer.is_disk() ? scene.k * scene.scatterer.radius : 0;
     near_zone = std::max(0.0, size * size - 1) / (scene.k * scene.medium.mean_free_path());
   }
-  double total() const { return crossed_paths + k_shift + guided + correlations + faces; }
+  double total() const {
+    return crossed_paths + k_shift + guided + correlations + faces + fixed_number;
+  }
 };
 
 }  // namespace flatspeckle::mc

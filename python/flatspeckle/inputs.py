@@ -18,6 +18,7 @@ COLUMNS = re.compile(r"columns (\w+\b(?! [a-z])(?:(?:, | \[, )\w+\b(?! [a-z]))*)
 DATASET = re.compile(r"HDF5 (?:file )?with (?:its dataset )?(\w+)\b(?!/)")
 TABLE = re.compile(r"\bCSV\b|\btables\b")
 PICTURES = "Files of numbers"
+FRAMES = ("frames", "reference", "dark", "flat")
 FILES = re.compile(r"\bCSV\b|^Files|or a file|results of fits")
 WORDS_OR_FILES = ("placement", "structure")
 
@@ -97,14 +98,26 @@ def names_of_columns(key):
     return re.findall(r"\w+", found[1]) if found else []
 
 
+def frames_file(key, values):
+    """Returns the path of a file of frames: lines of pixels as CSV, pictures as NPY."""
+    array = numbers(key.name, values)
+    is_list = isinstance(values, (list, tuple))
+    if key.name in ("dark", "flat"):
+        if array.ndim not in (2, 3):
+            refuse(key.name, array, "must have two axes (rows, columns) or three (frames, rows, columns)")
+    elif array.ndim == 1 or (array.ndim == 2 and is_list):
+        lines = np.atleast_2d(array)
+        return kept(csv(key.name, {f"frame_{number}": line for number, line in enumerate(lines)}), ".csv")
+    elif array.ndim != 3:
+        refuse(key.name, array, "must be a list of frames (lines of pixels, or pictures), one line of pixels, or have "
+                                "three axes (frames, rows, columns)")
+    buffer = io.BytesIO()
+    np.save(buffer, np.ascontiguousarray(array))
+    return kept(buffer.getvalue(), ".npy")
+
+
 def named_columns(key, values):
-    """Returns {name: column} for an array [row, column], or for a list of frames."""
-    if key.name in ("frames", "reference"):  # each column, or each item of a list, is one frame
-        array = numbers(key.name, values)
-        frames = array[None] if array.ndim == 1 else array if isinstance(values, (list, tuple)) else array.T
-        if frames.ndim != 2:
-            refuse(key.name, array, "must have two axes, pixels and frames, or be a list of frames")
-        return {f"frame_{number}": frame for number, frame in enumerate(frames)}
+    """Returns {name: column} for an array [row, column]."""
     names, values = names_of_columns(key), numbers(key.name, values)
     if values.ndim == 1:
         values = values[:, None] if len(names) == 1 else values[None, :]
@@ -138,6 +151,8 @@ def file_of(key, value):
     if isinstance(value, xarray.Dataset):
         return source_of_dataset(key, value)
     helps = " ".join(key.helps)
+    if key.name in FRAMES and not (isinstance(value, dict) or hasattr(value, "columns")):
+        return frames_file(key, value)
     if key.words:
         refuse(key.name, value, f"takes no table{elsewhere(key)}; {key.accepted}")
     if helps.startswith(PICTURES):

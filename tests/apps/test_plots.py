@@ -57,13 +57,26 @@ KINDS = {
     "fields": ("field", {**BOX, "view_angles": [0.1, 0.2, 0.3], "light_angles": [0, 0.01, 0.2],
                          "fields": 4, "threads": 1}),
     "camera": ("field", {**SPACE_BOX, "tilts": [0, 0.02], "fields": 2, "threads": 1}),
+    "foci": ("field", {**BOX, "dimension": 3, "height": 20, "beam_waist": 2, "beam_positions": [-2, 0, 2],
+                       "near_sensors": "line.csv", "fields": 3, "paths_per_field": 50, "threads": 1}),
+    "scan": ("field", {**SPACE_BOX, "beam_waist": 2, "beam_positions": [-2, 2], "camera_focus": 5, "fields": 2,
+                       "paths_per_field": 50, "threads": 1}),
+    "moved": ("field", {**SPACE_BOX, "camera_focus": 5, "delays": [0, 1], "diffusion": 0, "velocity": [1, 0], "fields": 2,
+                        "paths_per_field": 50, "threads": 1}),
     "cone": ("covariance", {**SPACE_BOX, "view_angles": 3.14159, **FEW}),
+    "boils": ("field", {**BOX, "dimension": 3, "height": 8, "view_angles": 0, "camera_pixels": 8, "camera_aperture": 0.2, "fields": 2,
+                        "delays": [0, 0.1], "threads": 1}),
+    "focused": ("field", {**BOX, "dimension": 3, "height": 8, "view_angles": 0, "camera_pixels": 8, "camera_aperture": 0.2,
+                          "camera_focus": 5, "fields": 2, "threads": 1}),
     "frames": ("image", {**BOX, "count": None, "scatterer": "hg", "optical_depth": 1,
                          "object_x": [0, 3], "object_depth": -30, "camera": [-0.5, 0.5], "pixels": 512, "repeats": 2, "threads": 1}),
     "blinks": ("image", {**BOX, "count": None, "scatterer": "hg", "optical_depth": 1, "blinking": "subsets",
                          "object_x": [0, 3], "object_depth": -30, "camera": [-0.5, 0.5], "pixels": 512, "repeats": 2, "threads": 1}),
     "unlit": ("image", {**BOX, "count": None, "scatterer": "hg", "optical_depth": 1, "object_x": [0, 3], "object_depth": -30,
                         "camera": [-0.5, 0.5], "pixels": 512, "repeats": 0, "prediction_paths": 500, "threads": 1}),
+    "recovered": ("recover", {"frames": "picture.csv", "frame_axes": "picture", "longest": 12, "starts": 2,
+                              "phase_iterations": 8}),
+    "contrasts": ("contrast", {"frames": "picture.csv", "frame_axes": "picture", "window": 5, "exposure": 1}),
     "separated": ("recover", {"frames": "frames.csv", "recovery": "sources"}),
     "pictures": ("sweep", {**BOX, "count": None, "optical_depth": None, "of": "image", "scatterer": "hg", "vary": "optical_depth=1,2",
                            "object_x": [0, 3], "object_depth": -30, "camera": [-0.5, 0.5], "pixels": 512, "repeats": 2}),
@@ -96,8 +109,9 @@ OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}
        "dws": {"delays", "exposed"}, "contrast": {"exposed"}, "layer_range": {"layers"}, "graded_range": {"graded"},
        "refraction": {"curve", "layers", "graded"},
        "frequency": {"frequencies"}, "validation": {"both", "own_places"}, "speckle_field": {"fields", "grains"},
-       "camera_field": {"camera"}, "camera_intensity": {"camera", "cone"},
-       "image_success": {"pictures"}, "image": {"frames", "blinks"}, "sources": {"blinks", "separated"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
+       "camera_field": {"camera", "boils", "focused", "scan", "moved"}, "focus_matrix": {"foci"},
+       "confocal_scan": {"scan"}, "tracked_motion": {"moved"}, "camera_intensity": {"camera", "cone"},
+       "recovered_picture": {"recovered"}, "contrast_map": {"contrasts"}, "image_success": {"pictures"}, "image": {"frames", "blinks"}, "sources": {"blinks", "separated"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
        "design": {"lens", "display", "core"}, "design_methods": {"lens", "display", "core"},
        "render": {"picture", "pulse", "mixed"}, "render_time": {"pulse"},
        "light_map": {"light"}, "ring_profile": {"rings", "mixed"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
@@ -139,6 +153,9 @@ class Plots(ProgramTest):
         cls.addClassCleanup(cls.maker.doCleanups)
         cls.maker.write("asked.csv", "1,2,3,4\n" * 4)
         cls.maker.write("frames.csv", "a,b\n" + "".join(f"{1 + i * i % 7},{1 + i * i % 11}\n" for i in range(80)))
+        cls.maker.write("picture.csv", "".join(",".join(str(1 + (i * i + 3 * j * i) % 11) for i in range(64)) + "\n"
+                                               for j in range(64)))
+        cls.maker.write("line.csv", "x,z\n-2,14\n0,14\n2,14\n")
         cls.maker.write("three.csv", "x,z\n0,1\n3,4\n-5,9\n")
         cls.maker.write("points.csv", "g,optical_depth\n0,1\n0.5,3\n")
         cls.maker.write("rows.csv", "thickness,optical_depth\n4,1\n6,2\n")

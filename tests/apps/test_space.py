@@ -1,6 +1,10 @@
 """dimension = 3: slabs in 3D, known numbers and contents of files."""
 
+import csv
+import math
+import os
 import unittest
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -63,6 +67,21 @@ class Space(ProgramTest):
         with h5py.File(self.folder / "x.h5") as file:
             found = file["complex_correlation"][:].squeeze()
         np.testing.assert_allclose(found, np.exp(-2j * np.pi * np.array([0.01, 0.03]) * turn), atol=1e-12)
+
+    def test_out_of_plane_tilts_show_their_direction(self):
+        said = self.call("covariance", dimension=3, domain="box", width=20, height=20, depth=10, scatterer="hg", optical_depth=1,
+                         light_angles=0.2, light_azimuths=0.5, view_angles=0.3, view_azimuths=-1, covariance="memory_effect",
+                         tilts=[0, 0.02], tilt_azimuth=1, samples=2000, out="x.h5").stdout
+        self.assertIn("(0.2, 0.5)", said)
+        self.assertIn("(0.3, -1)", said)
+        with h5py.File(self.folder / "x.h5") as file:
+            self.assertAlmostEqual(file["tilt_q"].attrs["azimuth"], 1.5)
+
+    def test_the_contrast_of_few_images_is_not_biased(self):
+        self.call("field", dimension=3, domain="box", width=40, height=40, depth=10, scatterer="hg", optical_depth=2, view_angles=0,
+                  camera_pixels=32, camera_aperture=0.3, camera_focus=10, fields=3, out="x.h5")
+        with h5py.File(self.folder / "x.h5") as file:
+            self.assertLess(abs(file["mean_contrast"][()] - 1), 0.15)
 
     def test_validate(self):
         keys = {key: value for key, value in SPACE.items() if key != "method"}
@@ -169,6 +188,47 @@ class Space(ProgramTest):
             self.assertAlmostEqual(space["memory_effect_range"][:].flat[0], 1.395, delta=2e-3)
             self.assertNotEqual(space["diffusion_range"][:].flat[0],
                                 plane["diffusion_range"][:].flat[0])
+
+    def test_exact_fields_of_a_table(self):
+        """The reference placement of ten resonant points (data/reference/README.md)."""
+        folder = Path(os.environ["FLATSPECKLE_DATA"]) / "reference" / "space"
+        def rows(name):
+            with open(folder / f"points_{name}.csv") as file:
+                return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)
+                        if row["case"] == "0"]
+        def angles(row):
+            return math.atan2(math.hypot(row["x"], row["y"]), row["z"]), math.atan2(row["y"], row["x"])
+        self.write("points.csv", "x,z,y\n" + "".join(f"{p['x']!r},{p['z']!r},{p['y']!r}\n" for p in rows("placements")))
+        light = rows("lights")[0]
+        far = [row for row in rows("fields") if row["light"] == 0 and row["near"] == 0]
+        keys = {"dimension": 3, "placement": "points.csv", "light_angles": angles(light)[0],
+                "light_azimuths": angles(light)[1], "view_angles": [angles(row)[0] for row in far],
+                "view_azimuths": [angles(row)[1] for row in far]}
+        self.call("solve", **keys, out="x.h5")
+        with h5py.File(self.folder / "x.h5") as file:
+            self.assertEqual(file.attrs["dimension"], 3)
+            for found, row in zip(file["far_field"][0], far):
+                self.assertAlmostEqual(found, complex(row["re"], row["im"]), delta=1e-12)
+            self.assertEqual(list(file["placement/y"][:]), [p["y"] for p in rows("placements")])
+
+    def test_exact_ensembles(self):
+        box = {"dimension": 3, "width": 4, "height": 4, "depth": 3, "count": 20, "light_angles": 0.3,
+               "view_angles": [0.7, 2.4], "view_azimuths": [0.5, 1]}
+        self.call("validate", **box, seed=1, samples=20000, wave_samples=2000, out="x.h5")
+        with h5py.File(self.folder / "x.h5") as file:
+            self.assertGreater(file["share_within"][()], 0.99)
+            self.assertLess(file["invariants/power"][()] if "invariants/power" in file else 0, 1e-6)
+            intensity = file["wave/intensity"][:]
+        self.call("covariance", **box, method="wave", seed=1, samples=2000, out="y.h5")
+        with h5py.File(self.folder / "y.h5") as file:
+            self.assertEqual(file["intensity"][:].tolist(), intensity.tolist())
+        self.call("place", dimension=3, width=4, height=4, depth=3, radii=0.2, packing_fraction=0.1, seed=1,
+                  out="spheres.csv")
+        self.call("solve", dimension=3, placement="spheres.csv", scatterer="penetrable", index=1.2, tolerance=1e-3,
+                  out="z.h5")
+        with h5py.File(self.folder / "z.h5") as file:
+            self.assertEqual(len(file["placement/x"]), 143)
+            self.assertLess(file["solve/residual"][()], 1e-12)
 
 
 if __name__ == "__main__":

@@ -126,4 +126,41 @@ TEST_CASE("placement file: invalid columns, radii and overlaps are rejected") {
   CHECK_NOTHROW(CsvFile("x,z\n1,2\n1,2.001\n").read({}));
 }
 
+TEST_CASE("placement in space: points are uniform in the box and spheres keep their gap") {
+  const Domain cuboid{Domain::Kind::box, 6, 4, 8};
+  RandomStream random(7, 1, 0);
+  const auto points = draw_placement(cuboid, {}, {.mean_count = 40000, .count = 40000}, random);
+  double y = 0, y2 = 0;
+  for (const auto& placed : points) {
+    REQUIRE(cuboid.contains(placed.position));
+    y += placed.position.y;
+    y2 += placed.position.y * placed.position.y;
+  }
+  const double count = static_cast<double>(points.size()), sigma = 8 / std::sqrt(12.0);
+  CHECK(std::abs(y / count) < 4 * sigma / std::sqrt(count));
+  CHECK(std::abs(y2 / count / (sigma * sigma) - 1) < 4 * std::sqrt(0.8 / count));
+  const Scatterer sphere{.kind = Scatterer::Kind::soft, .radius = 0.3};
+  const PlacementRule rule{PlacementRule::Kind::hard_disk, 400, 400, 0.02};  // packing 0.24
+  const auto spheres = draw_placement(cuboid, sphere, rule, random);
+  CHECK(spheres.size() == 400);
+  check_no_overlap(spheres);
+  double least = 1;
+  for (std::size_t i = 0; i < spheres.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      least = std::min(least, length(spheres[i].position - spheres[j].position) - 0.6);
+  CHECK(least >= 0.02);
+  CHECK(std::abs(smallest_gap(spheres, 0.5) - least) < 1e-15);
+  const PlacementRule dense{PlacementRule::Kind::hard_disk, 600, 600, 0.02};
+  CHECK_THROWS_AS(draw_placement(cuboid, sphere, dense, random), InputError);
+  const PlacementRule fluid{PlacementRule::Kind::equilibrium, 10, 10, 0.02};
+  CHECK_THROWS_AS(draw_placement(cuboid, sphere, fluid, random), InputError);
+}
+
+TEST_CASE("placement in space: a table has the column y") {
+  const CsvFile file("x,z,y,radius\n1,2,3,0.5\n1,2,4.1,0.5\n");
+  const auto placement = read_placement(file.path.string(), disk(1), true);
+  CHECK(placement[1].position == Vec{1, 2, 4.1});
+  CHECK_THROWS_AS(file.read(disk(1)), InputError);
+}
+
 }  // namespace flatspeckle::test_placement

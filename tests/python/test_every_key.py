@@ -10,7 +10,7 @@ from package import WHOLE, PackageTest, fs
 
 from flatspeckle import functions, keys, scene
 
-NUMBERS = [1, 0.5, 0, 2, 1e-7, 10, 100, -1]
+NUMBERS = [1, 0.5, 0, 2, 1e-7, 10, 100, 300, -1]
 LENGTHS = (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12)
 # Rejections that mean: the value is valid, but this scene does not use it, or the table is that of another key.
 UNUSED = re.compile("requires? |is not used here|leave it out|is (a key )?of |column \"g\"")

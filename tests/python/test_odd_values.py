@@ -56,7 +56,8 @@ class Odd(PackageTest):
         self.refused("trace", "ball_spline", {"a": index})
         self.refused("design", "pictures", [np.ones(4)])
         self.refused("design", "pictures", [np.ma.masked_array(np.ones((4, 4)), np.eye(4))])
-        self.refused("recover", "frames", np.ones((2, 8, 8)))
+        self.assertIn("list of frames", self.refused("recover", "frames", np.ones((8, 8))))
+        self.refused("recover", "frames", np.ones((1, 2, 8, 8)))
         self.refused("recover", "frames", [np.ones(8), np.ones(9)])
         self.refused("sweep", "vary", {"g": [None]}, SLAB, of="flux")
         self.refused("sweep", "vary", {}, SLAB, of="flux")
@@ -103,6 +104,14 @@ class Meant(PackageTest):
     def test_frames_in_a_list_are_columns(self):
         values = functions.all_values("recover", fs.Scene(frames=[np.arange(9), np.ones(9)]))["frames"]
         np.testing.assert_array_equal(np.loadtxt(values, delimiter=",", skiprows=1), np.stack([np.arange(9), np.ones(9)], 1))
+
+    def test_pictures_are_frames_of_three_axes(self):
+        pictures = np.arange(2 * 70 * 80.0).reshape(2, 70, 80)
+        for given in (pictures, list(pictures), np.asfortranarray(pictures)):
+            path = functions.all_values("recover", fs.Scene(frames=given))["frames"]
+            np.testing.assert_array_equal(np.load(path), pictures)
+        path = functions.all_values("recover", fs.Scene(frames=pictures, dark=pictures[0]))["dark"]
+        np.testing.assert_array_equal(np.load(path), pictures[0])
 
     def test_the_same_call_at_once(self):
         """All threads get the result of the one that makes it."""

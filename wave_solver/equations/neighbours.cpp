@@ -59,8 +59,15 @@ std::vector<std::vector<Neighbour>> neighbours(const Placement& placement, std::
   for (const auto& placed : placement)
     largest_radius = std::max(largest_radius, placed.scatterer.disk_radius());
   const Rectangle box = bounds_of(placement, &PlacedScatterer::position);
-  const double width = std::max(box.width(), box.depth());
-  const double spacing = width / std::sqrt(static_cast<double>(placement.size()));
+  double low = 0, high = 0;  // of y, relative to the first scatterer
+  for (const auto& placed : placement) {
+    const double y = placed.position.y - placement.front().position.y;
+    low = std::min(low, y);
+    high = std::max(high, y);
+  }
+  const double height = high - low, width = std::max({box.width(), box.depth(), height});
+  const auto count = static_cast<double>(placement.size());
+  const double spacing = width / (height > 0 ? std::cbrt(count) : std::sqrt(count));
   for (double cell = std::max({spacing, 2.5 * largest_radius, 1e-300}); !left.empty(); cell *= 2) {
     CellGrid grid(cell);
     for (std::size_t l = 0; l < placement.size(); ++l) grid.insert(placement[l].position, l);

@@ -79,14 +79,15 @@ void field_inside(const TMatrixSystem& system, std::size_t disk, std::span<const
   }
 }
 
-std::vector<RimWave> rim_waves(const Scatterer& cylinder, double k, int order) {
+std::vector<RimWave> rim_waves(const Scatterer& cylinder, double k, int order, Radial kind) {
   const double x = k * cylinder.radius;
   const ExtendedComplex m(cylinder.index), mx = m * static_cast<long double>(x);
   const ExtendedComplex q = cylinder.kind == Scatterer::Kind::tm ? m : 1.0L / m;
-  const auto t = scaled_t_matrix(cylinder, k, order);
-  const auto h = scaled_hankel(order + 1, x);
-  const auto ratios = bessel_ratios(order, mx);
-  const ScaledComplex wronskian(ExtendedComplex(0, -2 / (std::numbers::pi_v<long double> * x)));
+  const auto t = scaled_t_matrix(cylinder, k, order, kind);
+  const auto h = scaled_hankel(order + 1, x, kind);
+  const auto ratios = bessel_ratios(order, mx, kind);
+  const long double size = kind == Radial::spherical ? x : std::numbers::pi_v<long double> / 2;
+  const ScaledComplex wronskian(ExtendedComplex(0, -1 / (size * x)));
   std::vector<RimWave> waves(order + 1);
   for (int n = 0; n <= order; ++n) {
     if (t[n].value() == 0.0L) continue;

@@ -17,10 +17,12 @@ struct RimWave {
   ExtendedComplex derivative;
 };
 
-/// Returns the rim waves of orders n = 0 .. order of a disk of kind tm or te. From the continuity
+/// Returns the rim waves of orders n = 0 .. order of a disk of kind tm or te, or of a penetrable
+/// sphere (whose Wronskian is -i / x^2 instead of -2i / (pi x)). From the continuity
 /// of u and of the derivative (C7), u = (sigma / T_n) (-2i / (pi x)) / (q D H_n(x) - H_n'(x)) with
 /// sigma = sqrt|T_n|, x = k radius, D = J_n'(mx) / J_n(mx), and m, q and H_n of C7.
-std::vector<RimWave> rim_waves(const Scatterer& cylinder, double k, int order);
+std::vector<RimWave> rim_waves(const Scatterer& scatterer, double k, int order,
+                               Radial kind = Radial::cylindrical);
 
 /// Whether a scatterer has no effect at all: every T_n is 0 (index 1).
 bool is_transparent(const TMatrixSystem& system, std::size_t scatterer);

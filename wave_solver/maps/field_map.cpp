@@ -78,7 +78,7 @@ const DatasetTable map_table{
     .name = "map",
     .rows = {{"map_z", Data::scale, "", "length", "depth of the pixels"},
              {"map_x", Data::scale, "", "length", "transverse position of the pixels"},
-             {"total_field", Data::complex, "light_angle map_z map_x", "1",
+             {"total_field", Data::complex, "LIGHT map_z map_x", "1",
               "total field, also inside disks; 0 in soft and hard disks; at a point "
               "scatterer the field that excites it"}},
     .attributes = {{"total_field", "wavelength", "float64",
@@ -98,18 +98,25 @@ std::vector<double> pixel_centres(const MapGrid& grid, std::size_t count, bool a
 std::string write_map(ResultFile& file, const WaveSolution& solution, const MapGrid& grid,
                       double tolerance) {
   FieldMap map(solution, grid, tolerance);
+  write_tiles(file, grid, solution.system().k(), solution.light_angles().size(), map.tiles(),
+              [&](const MapTile& tile) { return map.field(tile); });
+  return map.method();
+}
+
+void write_tiles(ResultFile& file, const MapGrid& grid, double k, std::size_t lights,
+                 const std::vector<MapTile>& tiles,
+                 const std::function<std::vector<Complex>(const MapTile&)>& field) {
   const ResultGroup root(file, map_table);
   root.put("map_z", pixel_centres(grid, grid.nz, true));
   root.put("map_x", pixel_centres(grid, grid.nx, false));
   root.begin("total_field", {1, map_chunk, map_chunk});
-  root.attribute("total_field", "wavelength", 2 * std::numbers::pi / solution.system().k());
+  root.attribute("total_field", "wavelength", 2 * std::numbers::pi / k);
   const double all = static_cast<double>(grid.nx) * static_cast<double>(grid.nz);
   Progress progress("map", "pixels");
   const Stopwatch clock;
   Progress::Figures figures;
-  for (const MapTile& tile : map.tiles()) {
-    file.write_block("total_field", map.field(tile), {0, tile.iz, tile.ix},
-                     {solution.light_angles().size(), tile.nz, tile.nx});
+  for (const MapTile& tile : tiles) {
+    file.write_block("total_field", field(tile), {0, tile.iz, tile.ix}, {lights, tile.nz, tile.nx});
     stop_if_interrupted();
     const double wall = clock.seconds();
     figures.samples += static_cast<double>(tile.pixels());
@@ -118,7 +125,6 @@ std::string write_map(ResultFile& file, const WaveSolution& solution, const MapG
     progress.update(wall, figures);
   }
   progress.finish(clock.seconds(), figures);
-  return map.method();
 }
 
 namespace {

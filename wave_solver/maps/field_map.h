@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -99,6 +100,13 @@ class FieldMap {
 std::vector<Vec> map_sensors(const MapGrid& grid, const Placement& placement);
 
 extern const DatasetTable map_table;
+
+/// Writes total_field [light, map_z, map_x] tile by tile, with progress on standard error. field:
+/// returns the field of a tile, [light][z][x]. The axis of lights must have been written. Throws
+/// Interrupted after a signal (catch_interrupts).
+void write_tiles(ResultFile& file, const MapGrid& grid, double k, std::size_t lights,
+                 const std::vector<MapTile>& tiles,
+                 const std::function<std::vector<Complex>(const MapTile&)>& field);
 
 /// Writes total_field [light_angle, map_z, map_x] tile by tile, with progress on standard error,
 /// and returns FieldMap::method(). The axis of lights must have been written. Throws Interrupted

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <omp.h>
@@ -16,10 +17,15 @@
 #include "wave_solver/equations/wave_equations.h"
 #include "wave_solver/graded/graded_fields.h"
 #include "wave_solver/layered/layer_fields.h"
+#include "wave_solver/solutions/space_solution.h"
 
 namespace flatspeckle::wave {
 
 namespace {
+
+bool is_in_space(const Scene& scene) {
+  return scene.domain.height > 0;
+}
 
 SolveOptions batch_options(const Scene& scene, double tolerance, Method method) {
   SolveOptions options{.tolerance = tolerance, .sensors = {}, .diagnose = false, .method = method};
@@ -31,6 +37,7 @@ SolveOptions batch_options(const Scene& scene, double tolerance, Method method) 
 }
 
 FieldPlan field_plan(const Scene& scene, double tolerance) {
+  if (is_in_space(scene)) return {};
   const Domain& box = scene.domain;
   const double radius = std::hypot(box.width, box.depth) / 2 + scene.scatterer.disk_radius();
   return make_field_plan(scene.request.lights, scene.request.views, scene.k,
@@ -44,12 +51,14 @@ struct PlacementFields {
   SolveOptions options;
   std::optional<GradedFields> graded;  // set if the refractive index varies in space
   std::optional<LayerFields> layered;  // set if the faces of the medium reflect
+  std::optional<SpaceFields> space;    // set in space
 
   PlacementFields(const Scene& of, double tolerance, Method method)
       : scene(of), plan(field_plan(of, tolerance)), options(batch_options(of, tolerance, method)) {
     if (scene.index && scene.index->is_around()) graded = graded_fields(scene);
     refuse_unpolarised(scene);
     if (scene.faces) layered = layer_fields(scene);
+    if (is_in_space(scene)) space.emplace(scene, options);
   }
 
   // Returns the fields of a placement in every channel of the request.
@@ -57,6 +66,7 @@ struct PlacementFields {
     const CovarianceRequest& request = scene.request;
     const auto fields = graded    ? graded->of(placement)
                         : layered ? layered->of(placement)
+                        : space   ? space->of(placement)
                                   : scattered_fields(placement, scene.k, plan, options);
     std::vector<Complex> channels;
     channels.reserve(request.channels.size());
@@ -136,17 +146,31 @@ class Ensemble {
   std::vector<PlacementFields> others_;
 };
 
-// Throws InputError if a disk may cover the point. The centre of a disk may be anywhere in the box.
+// Throws InputError if a disk or sphere may cover the point. Its centre may be anywhere in the box.
 // A point less than one radius outside the box can therefore still be covered.
 void require_uncovered(const Scene& scene, const std::string& key, Vec point) {
   const Domain& box = scene.domain;
   const Vec beyond{std::max(0.0, std::abs(point.x) - box.width / 2),
-                   std::max({0.0, -point.z, point.z - box.depth})};
+                   std::max({0.0, -point.z, point.z - box.depth}),
+                   std::max(0.0, std::abs(point.y) - box.height / 2)};
   const double radius = scene.scatterer.disk_radius();
   if (length(beyond) < radius)
     throw InputError(key, "(" + number_text(point.x) + ", " + number_text(point.z) + ")",
                      "must be at least a radius (" + number_text(radius) +
-                         ") outside the box for the exact solver, because a cylinder may cover it");
+                         ") outside the box for the exact solver, because a " +
+                         (is_in_space(scene) ? "sphere" : "cylinder") + " may cover it");
+}
+
+void require_solvable_in_space(const Scene& scene) {
+  if (scene.profile || scene.index || scene.faces)
+    throw InputError("dimension", 3,
+                     "the exact solver requires a medium without layers, index_field and "
+                     "medium_index");
+  if (!scene.scatterer.is_disk()) return;
+  const Scatterer reach{.radius = scene.scatterer.radius + scene.placement.min_gap / 2};
+  check_packing(scene.domain, scene.placement.kind,
+                std::round(scene.placement.mean_count) * reach.content(3) / scene.domain.content(),
+                2 * reach.radius);
 }
 
 void require_solvable(const Scene& scene, double tolerance) {
@@ -156,7 +180,10 @@ void require_solvable(const Scene& scene, double tolerance) {
     throw InputError("placement", "equilibrium",
                      "requires a medium without layers or density maps; use hard_disk");
   if (scene.scatterer.is_bulk())
-    throw InputError("scatterer", "hg", "the wave solver requires point, soft, hard, tm or te");
+    throw InputError("scatterer", "hg",
+                     is_in_space(scene) ? "the wave solver requires point, soft, hard or penetrable"
+                                        : "the wave solver requires point, soft, hard, tm or te");
+  if (is_in_space(scene)) require_solvable_in_space(scene);
   if (scene.faces && tolerance < LayerGreen::accuracy)
     throw InputError(
         "wave_tolerance", tolerance,
@@ -170,11 +197,15 @@ void require_solvable(const Scene& scene, double tolerance) {
 // Throws InputError if the memory is certainly insufficient. The estimate is a lower bound: it uses
 // the basis orders of isolated disks, and neighbours may require higher orders.
 void require_memory(const Scene& scene, double tolerance) {
-  const bool disk = scene.scatterer.is_disk();
-  const int order = disk ? isolated_order(scene.scatterer, scene.k, tolerance) : 0;
-  const auto unknowns = static_cast<std::size_t>(scene.placement.mean_count * (2 * order + 1));
+  const bool disk = scene.scatterer.is_disk(), space = is_in_space(scene);
+  const int order = disk ? isolated_order(scene.scatterer, scene.k, tolerance,
+                                          space ? Radial::spherical : Radial::cylindrical)
+                         : 0;
+  const int waves = space ? (order + 1) * (order + 1) : 2 * order + 1;
+  const auto unknowns = static_cast<std::size_t>(scene.placement.mean_count * waves);
   const bool around = scene.index && scene.index->is_around();
-  if (around || scene.faces || method_for(unknowns, tolerance) == Method::dense)
+  const Method method = space ? method_in_space(unknowns, !disk) : method_for(unknowns, tolerance);
+  if (around || scene.faces || method == Method::dense)
     require_dense_memory(unknowns, omp_get_max_threads());
 }
 

@@ -8,12 +8,14 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/contract.h"
 #include "core/error.h"
 #include "core/numbers/bessel.h"
 #include "core/numbers/random.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/skeletons/fast_direct.h"
+#include "wave_solver/spheres/sphere_equations.h"
 #include "wave_solver/sums/block_krylov.h"
 #include "wave_solver/sums/fast_product.h"
 
@@ -201,7 +203,8 @@ EquationSolver solver_of(const WaveEquations& equations, const SolveOptions& opt
   const Method method = options.method == Method::automatic
                             ? method_for(equations.unknowns(), options.tolerance)
                             : options.method;
-  return {equations, method, options.sensors.empty() ? options.tolerance : options.tolerance / 10};
+  return {solvable(equations), method,
+          options.sensors.empty() ? options.tolerance : options.tolerance / 10};
 }
 
 namespace {
@@ -271,16 +274,50 @@ Method method_for(std::size_t unknowns, double tolerance) {
   return unknowns <= dense_limit ? Method::dense : Method::fast;
 }
 
-EquationSolver::EquationSolver(const WaveEquations& system, Method method, double tolerance)
-    : system_(system), tolerance_(std::max(tolerance, best_product)) {
-  if (method == Method::automatic) method = method_for(system.unknowns(), tolerance);
+Method method_in_space(std::size_t unknowns, bool only_points) {
+  return unknowns <= (only_points ? 3000 : 10000) ? Method::dense : Method::krylov;
+}
+
+SolvableEquations solvable(const WaveEquations& equations) {
+  const auto* const of = &equations;
+  return {equations.unknowns(), [of] { return of->matrix(); },
+          [of](double tolerance) -> BlockMap {
+            const auto product = std::make_shared<const FastProduct>(*of, tolerance);
+            return [product](std::span<const Complex> x) { return (*product)(x); };
+          },
+          [of](double tolerance) -> BlockMap {
+            const auto factor = std::make_shared<const FastDirect>(*of, tolerance);
+            return [factor](std::span<const Complex> x) {
+              std::vector<Complex> y(x.begin(), x.end());
+              factor->solve(y);
+              return y;
+            };
+          }};
+}
+
+SolvableEquations solvable(const SphereEquations& equations) {
+  const auto* const of = &equations;
+  return {equations.unknowns(), [of] { return of->matrix(); },
+          [of](double) -> BlockMap {
+            return [of](std::span<const Complex> x) { return of->apply(x); };
+          }};
+}
+
+EquationSolver::EquationSolver(const WaveEquations& equations, Method method, double tolerance)
+    : EquationSolver(
+          solvable(equations),
+          method == Method::automatic ? method_for(equations.unknowns(), tolerance) : method,
+          tolerance) {}
+
+EquationSolver::EquationSolver(const SolvableEquations& equations, Method method, double tolerance)
+    : unknowns_(equations.unknowns), tolerance_(std::max(tolerance, best_product)) {
+  FS_EXPECT(method != Method::automatic);
   if (method == Method::dense) {
-    dense_ = std::make_unique<DenseFactor>(system.matrix(), system.unknowns());
+    dense_ = std::make_unique<DenseFactor>(equations.matrix(), unknowns_);
     return;
   }
-  product_ = std::make_unique<FastProduct>(system, std::max(tolerance_ / 10, best_product));
-  if (method == Method::fast)
-    fast_ = std::make_unique<FastDirect>(system, std::max(tolerance_ / 10, rough_factor));
+  product_ = equations.product(std::max(tolerance_ / 10, best_product));
+  if (method == Method::fast) fast_ = equations.inverse(std::max(tolerance_ / 10, rough_factor));
 }
 
 EquationSolver::~EquationSolver() = default;
@@ -296,21 +333,18 @@ std::vector<Complex> EquationSolver::solve(const std::vector<Complex>& rhs, bool
 }
 
 std::vector<Complex> EquationSolver::solve_roughly(std::vector<Complex> rhs) {
-  if (!fast_) return solve(rhs);
-  fast_->solve(rhs);
-  return rhs;
+  return fast_ ? fast_(rhs) : solve(rhs);
 }
 
 // Solves with FastDirect and iterative refinement; nullopt if refinement does not converge.
 // Right-hand sides are scaled to norm 1, so that none is negligible compared with others.
 std::optional<std::vector<Complex>> EquationSolver::refined(std::vector<Complex> rhs) {
-  const std::size_t n = system_.unknowns();
+  const std::size_t n = unknowns_;
   auto norms = column_norms(rhs, n);
   std::replace(norms.begin(), norms.end(), 0.0, 1.0);
   for (std::size_t i = 0; i < rhs.size(); ++i) rhs[i] /= norms[i / n];
   const auto sums = combinations(rhs, n);
-  auto x = rhs;
-  fast_->solve(x);
+  auto x = fast_(rhs);
   double before = std::numeric_limits<double>::infinity();
   for (int step = 0;; ++step) {
     combined_residual_ = subtracted(sums, combinations(x, n));
@@ -320,8 +354,7 @@ std::optional<std::vector<Complex>> EquationSolver::refined(std::vector<Complex>
     if (now <= tolerance_ / 2) break;
     if (!(now < before / 2)) return std::nullopt;
     before = now;
-    auto correction = subtracted(rhs, x);
-    fast_->solve(correction);
+    const auto correction = fast_(subtracted(rhs, x));
     for (std::size_t i = 0; i < x.size(); ++i) x[i] += correction[i];
   }
   for (std::size_t i = 0; i < x.size(); ++i) x[i] *= norms[i / n];
@@ -333,14 +366,8 @@ std::optional<std::vector<Complex>> EquationSolver::refined(std::vector<Complex>
 // Solves by GMRES. The preconditioner is FastDirect, if it was constructed (Method::fast).
 std::vector<Complex> EquationSolver::by_gmres(const std::vector<Complex>& rhs) {
   GmresOptions options{.tolerance = tolerance_};
-  if (fast_)
-    options.preconditioner = [this](std::span<const Complex> x) {
-      std::vector<Complex> y(x.begin(), x.end());
-      fast_->solve(y);
-      return y;
-    };
-  auto result = gmres([this](std::span<const Complex> x) { return (*product_)(x); },
-                      system_.unknowns(), rhs, options);
+  options.preconditioner = fast_;
+  auto result = gmres(product_, unknowns_, rhs, options);
   double worst = 0;
   for (double residual : result.residuals) worst = std::max(worst, residual);
   const int steps =
@@ -351,7 +378,7 @@ std::vector<Complex> EquationSolver::by_gmres(const std::vector<Complex>& rhs) {
     throw std::runtime_error("the multiple-scattering equations were not solved: " + description_ +
                              ", required " + scientific(tolerance_) +
                              (fast_ ? "" : "; use --solver fast, which is a direct method"));
-  const std::size_t n = system_.unknowns();
+  const std::size_t n = unknowns_;
   combined_residual_ = subtracted(combinations(rhs, n), combinations(result.x, n));
   return std::move(result.x);
 }
@@ -359,7 +386,7 @@ std::vector<Complex> EquationSolver::by_gmres(const std::vector<Complex>& rhs) {
 // Returns b - M x.
 std::vector<Complex> EquationSolver::subtracted(std::vector<Complex> b,
                                                 const std::vector<Complex>& x) const {
-  const auto y = (*product_)(x);
+  const auto y = product_(x);
   for (std::size_t i = 0; i < b.size(); ++i) b[i] -= y[i];
   return b;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,12 +14,12 @@
 #include "flatland/placement/placement.h"
 #include "flatland/request/light.h"
 #include "wave_solver/equations/wave_equations.h"
+#include "wave_solver/sums/block_krylov.h"
 
 namespace flatspeckle::wave {
 
 class DenseFactor;
-class FastDirect;
-class FastProduct;
+class SphereEquations;
 
 /// Method that solves the equations. `dense` factors the matrix. `fast` uses recursive
 /// skeletonization (FastDirect), refined with FastProduct. `krylov` uses GMRES with FastProduct
@@ -31,13 +32,32 @@ enum class Method { automatic, dense, fast, krylov };
 /// unknowns.
 Method method_for(std::size_t unknowns, double tolerance);
 
+/// Returns the same for scatterers in space, for which there is no fast method. The iterative
+/// method is quicker from about 3000 points on. For spheres, whose translations are expensive, it
+/// is used from 10000 unknowns on, because of the memory of the matrix.
+Method method_in_space(std::size_t unknowns, bool only_points);
+
+/// Equations M beta = r with a complex symmetric matrix, as EquationSolver uses them. The functions
+/// refer to the equations from which they were made.
+struct SolvableEquations {
+  std::size_t unknowns = 0;
+  std::function<Entries()> matrix;
+  /// Returns the product with M, whose error is below `tolerance` times ||M x||.
+  std::function<BlockMap(double tolerance)> product;
+  /// Returns approximately M^-1; null if there is no fast direct method.
+  std::function<BlockMap(double tolerance)> inverse = nullptr;
+};
+SolvableEquations solvable(const WaveEquations& equations);
+SolvableEquations solvable(const SphereEquations& equations);
+
 /// Solver of M beta = r, factored once for many right-hand sides.
 class EquationSolver {
  public:
-  /// Keeps a reference to the system. tolerance: required residual of the methods fast and krylov,
-  /// at least 1e-12. The residual of the method dense is always at the level of rounding. Throws
-  /// InputError if memory does not suffice.
-  EquationSolver(const WaveEquations& system, Method method, double tolerance);
+  /// tolerance: required residual of the methods fast and krylov, at least 1e-12. The residual of
+  /// the method dense is always at the level of rounding. Throws InputError if memory does not
+  /// suffice.
+  EquationSolver(const SolvableEquations& equations, Method method, double tolerance);
+  EquationSolver(const WaveEquations& equations, Method method, double tolerance);
   ~EquationSolver();
 
   /// Solves for right-hand sides rhs, [column][unknown]. condition: whether to estimate the
@@ -62,11 +82,10 @@ class EquationSolver {
   std::vector<Complex> by_gmres(const std::vector<Complex>& rhs);
   std::vector<Complex> subtracted(std::vector<Complex> b, const std::vector<Complex>& x) const;
 
-  const WaveEquations& system_;
+  std::size_t unknowns_;
   double tolerance_;
   std::unique_ptr<DenseFactor> dense_;
-  std::unique_ptr<FastDirect> fast_;
-  std::unique_ptr<FastProduct> product_;
+  BlockMap fast_ = nullptr, product_ = nullptr;
   std::vector<Complex> combined_residual_;
   std::string description_;
 };

@@ -31,6 +31,10 @@ double grain_of(double band) {
   return 1 + 2 * sum;
 }
 
+double mean_of(std::span<const double> values) {
+  return std::reduce(values.begin(), values.end()) / static_cast<double>(values.size());
+}
+
 namespace {
 
 /// Fit of speckle_peak() to an autocorrelation, from which its mean beside the main lobe is first
@@ -148,10 +152,6 @@ double mean_noise(std::span<const double> envelope, double mean, const CameraNoi
   double sum = 0;
   for (const double value : envelope) sum += noise_variance(noise, value / mean);
   return sum / static_cast<double>(envelope.size());
-}
-
-double mean_of(std::span<const double> values) {
-  return std::reduce(values.begin(), values.end()) / static_cast<double>(values.size());
 }
 
 std::vector<double> positive_envelope(std::span<const double> frame, double width) {

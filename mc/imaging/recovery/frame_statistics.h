@@ -8,6 +8,8 @@
 
 namespace flatspeckle::mc {
 
+double mean_of(std::span<const double> values);
+
 /// Speckle of light from a uniform band of directions has the autocorrelation sinc^2(band lag). Its
 /// power spectrum is a triangle that ends at `band` cycles per pixel.
 

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numbers/address_space.h"
 #include "core/numbers/blas.h"
 #include "core/result/result_group.h"
 #include "core/run/runner.h"
 #include "flatland/request/request.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/paths/estimators/covariance_estimator.h"
+#include "mc/paths/speckle/camera_resolution.h"
 #include "mc/paths/speckle/field_statistics.h"
 #include "mc/paths/speckle/speckle_field.h"
 
@@ -27,6 +29,14 @@ constexpr std::uint64_t siegert_paths = 20000;
 /// covariance.
 constexpr std::uint64_t covariance_batches = 128, most_per_batch = 100000;
 
+/// Returns the number of fields of a realization, and the number of views of each.
+std::size_t fields_of(const Scene& scene, const DrawnFields& drawn) {
+  return drawn.changes.count() * scene.request.lights.size();
+}
+std::size_t pixels_of(const Scene& scene, const DrawnFields& drawn) {
+  return drawn.image ? drawn.image->pixels * drawn.image->pixels : scene.request.views.size();
+}
+
 /// Performs the runs of draw_fields() (survey, covariance, fields) one after another, and adds up
 /// their times.
 class FieldDrawing {
@@ -36,16 +46,23 @@ class FieldDrawing {
 
   DrawnFields draw(const FieldDemand& demand,
                    const std::function<void(const DrawingPlan&)>& planned) {
-    const Scene surveyed = scene_.request.camera ? on_coarse_camera(scene_) : scene_;
-    const RunState survey =
-        run("survey", survey_job(surveyed, plan_, settings_.seed), survey_paths);
+    drawn_.changes = demand.changes;
+    drawn_.image = demand.image;
+    const bool camera = scene_.request.camera.has_value();
+    if (camera) blas_single_thread();  // must come before threads request memory from BLAS
+    const Scene surveyed = camera && !demand.image ? on_coarse_camera(scene_) : scene_;
+    const RunState survey = run("survey", survey_job(surveyed, plan_, settings_.seed, demand.image),
+                                demand.image ? image_survey_paths : survey_paths);
     drawn_.plan = make_field_plan(scene_, read_survey(survey.sums), demand);
     const bool by_paths = drawn_.plan.method == FieldMethod::paths;
-    if (by_paths && scene_.request.camera) choose_camera(surveyed, demand.camera_tolerance);
+    if (by_paths && camera) choose_camera(demand.camera_tolerance);
     planned(drawn_.plan);
-    const auto source = drawn_.plan.camera ? on_camera()
-                        : by_paths         ? directly()
-                                           : from_covariance();
+    auto source = drawn_.plan.camera ? on_camera() : by_paths ? directly() : from_covariance();
+    if (demand.image) {
+      const FarCamera& pupil = scene_.request.camera.value();
+      source = images_of(std::move(source), LensImage(pupil, *demand.image, scene_.k),
+                         fields_of(scene_, drawn_), pupil.pixels * pupil.pixels);
+    }
     const RunState fields = run("fields", field_job(source, demand.fields), demand.fields);
     if (by_paths) drawn_.intensity = jackknife(fields.sums, sample_mean);
     if (by_paths && siegert_applies()) covariance({scene_.request.lights.front()}, siegert_paths);
@@ -62,25 +79,30 @@ class FieldDrawing {
     return state;
   }
 
-  /// Uses a CameraSum if it can be accurate enough.
-  void choose_camera(const Scene& coarse, double tolerance) {
-    blas_single_thread();  // must come before several threads request memory from BLAS
-    const auto walks = path_walks(coarse, plan_, settings_.seed);
-    if (!walks || coarse.profile || coarse.faces) return;
-    const CameraResolution found = camera_resolution(*walks, tolerance);
-    if (found.error <= tolerance) drawn_.plan.camera = found;
+  /// Uses a CameraSum if it can be accurate enough and fits into memory.
+  void choose_camera(double tolerance) {
+    if (scene_.profile || scene_.faces || scene_.medium.mu_s == 0) return;
+    const CameraResolution found = camera_resolution(scene_, plan_, settings_.seed, tolerance,
+                                                     drawn_.changes.largest_moves(scene_));
+    const double memory = usable_memory() / (2.0 * settings_.threads *
+                                             static_cast<double>(fields_of(scene_, drawn_)));
+    if (found.error > tolerance || found.bytes >= memory) return;
+    drawn_.plan.camera = found;
+    drawn_.plan.has_own_mean = plan_.reversed;
   }
 
   FieldDraw directly() const {
-    return fields_by_paths(scene_, plan_, settings_.seed, drawn_.plan.paths_per_field);
+    return fields_by_paths(scene_, plan_, settings_.seed, drawn_.plan.paths_per_field,
+                           drawn_.changes);
   }
   FieldDraw on_camera() const {
     return fields_on_camera(scene_, plan_, settings_.seed, drawn_.plan.paths_per_field,
-                            *drawn_.plan.camera);
+                            *drawn_.plan.camera, drawn_.changes);
   }
 
   bool siegert_applies() const {
-    return equal_step(scene_.request.views) && scene_.request.views.size() <= most_siegert_views;
+    return !scene_.request.camera && equal_step(scene_.request.views) &&
+           scene_.request.views.size() <= most_siegert_views;
   }
 
   /// Estimates the covariance of all views under `lights`. The first one must be the first light of
@@ -113,7 +135,7 @@ class FieldDrawing {
   /// Makes a job in which every batch draws a field. The sums are the intensities with which the
   /// fields are drawn (FieldDraw).
   BatchJob field_job(const FieldDraw& draw, std::uint64_t fields) {
-    const std::size_t channels = scene_.request.channels.size();
+    const std::size_t channels = fields_of(scene_, drawn_) * pixels_of(scene_, drawn_);
     drawn_.field.resize(fields * channels);
     BatchJob job;
     job.size = channels;
@@ -144,11 +166,16 @@ const DatasetTable field_table{
     .rows = {{"realization", Data::numbers, "", "1", "index of the field"},
              {"tilt", Data::real, "light_angle", "rad", "rotation of the light"},
              {"tilt_q", Data::real, "light_angle", "1/length", "transverse wavenumber of the tilt"},
-             {"field", Data::complex, "realization light_angle VIEW", "FIELD",
+             {"delay", Data::scale, "", "DELAY", "time of the field"},
+             {"frequency_shift", Data::scale, "", "1",
+              "change of the frequency of the field, relative to it"},
+             {"image_x", Data::scale, "", "length", "x of a column of pixels of an image"},
+             {"image_y", Data::scale, "", "length", "y of a row of pixels of an image"},
+             {"field", Data::complex, "realization MEMBER VIEW", "FIELD",
               "speckle field without its mean"},
-             {"intensity", Data::estimate, "light_angle VIEW", "COVARIANCE",
-              "variance of the field"},
-             {"contrast", Data::estimate, "light_angle VIEW", "1",
+             {"intensity", Data::estimate, "MEMBER VIEW", "COVARIANCE",
+              "variance of the drawn fields"},
+             {"contrast", Data::estimate, "MEMBER VIEW", "1",
               "standard deviation over mean of the intensity"},
              {"mean_contrast", Data::estimate, "", "1", "contrast of I / <I> over all channels"},
              {"circularity", Data::complex_estimate, "", "1", "<u u> / <I> over all channels"},
@@ -174,13 +201,18 @@ const DatasetTable field_table{
           "relative rms error of the sums over pixels, if paths are summed on a camera"},
          {"field", "camera_nodes", "uint64",
           "interpolation nodes along each side of the camera, if paths are summed on one"},
+         {"tilt_q", "azimuth", "float64",
+          "azimuth of the tilts, from x towards y, if they are not in the plane y = 0"},
+         {"image_x", "focus", "float64", "depth of the plane that is in focus"},
          {"field", "covariance_paths", "uint64", "light paths of the covariance, if drawn from it"},
          {"field", "paths_cost", "float64",
           "cost of drawing all fields from paths, in complex multiply-adds"},
          {"field", "covariance_cost", "float64",
           "cost of drawing all fields from the covariance, in complex multiply-adds, if it fits "
           "into memory"}},
-    .roles = {{"LAG", {"1", "length"}}}};
+    .roles = {{"LAG", {"1", "length"}},
+              {"MEMBER", {"light_angle", "light", "delay", "frequency_shift"}},
+              {"DELAY", {"1", "s"}}}};
 
 namespace {
 
@@ -190,32 +222,66 @@ std::vector<double> steps(std::size_t count, double step) {
   return values;
 }
 
-void write_field_axes(ResultFile& file, const Scene& scene) {
+/// Writes the axis of the fields of a realization.
+void write_members(ResultFile& file, const Scene& scene, const FieldChanges& changes) {
   const ResultGroup root(file, field_table);
-  write_light_axis(file, scene.request.lights);
-  write_view_axis(file, scene.request.views, scene.request.camera);
-  bind_units(file, scene);
+  file.bind("MEMBER", file.bound("LIGHT"));
+  if (!changes.delays.empty()) {
+    file.bind("MEMBER", {"delay"});
+    file.bind("DELAY", {changes.in_seconds ? "s" : "1"});
+    return root.put("delay", changes.delays);
+  }
+  if (!changes.shifts.empty()) {
+    file.bind("MEMBER", {"frequency_shift"});
+    root.put("frequency_shift", changes.shifts);
+  }
   if (scene.request.tilts.empty()) return;
   root.put("tilt", scene.request.tilts);
   root.put("tilt_q", scene.request.tilt_q);
+  if (const double azimuth = scene.request.tilt_azimuth; azimuth != 0)
+    root.attribute("tilt_q", "azimuth", azimuth);
+}
+
+void write_image_axes(ResultFile& file, const LensPlane& image) {
+  const ResultGroup root(file, field_table);
+  file.bind("VIEW", {"image_y", "image_x"});
+  file.bind("FIELD", {"1"});
+  file.bind("COVARIANCE", {"1"});
+  std::vector<double> at;
+  for (std::size_t i = 0; i < image.pixels; ++i) at.push_back(image.coordinate(i));
+  root.put("image_x", at);
+  root.put("image_y", at);
+  root.attribute("image_x", "focus", image.focus);
+}
+
+void write_field_axes(ResultFile& file, const Scene& scene, const DrawnFields& drawn) {
+  write_light_axis(file, scene.request.lights);
+  bind_units(file, scene);
+  if (drawn.image)
+    write_image_axes(file, *drawn.image);
+  else
+    write_view_axis(file, scene.request.views, scene.request.camera);
+  write_members(file, scene, drawn.changes);
 }
 
 /// Writes the fields in chunks of about a mebibyte.
 void write_field(ResultFile& file, const Scene& scene, const DrawnFields& drawn) {
-  const std::size_t lights = scene.request.lights.size(), views = scene.request.views.size(),
+  const std::size_t lights = fields_of(scene, drawn), views = pixels_of(scene, drawn),
                     channels = lights * views, realizations = drawn.field.size() / channels;
   constexpr std::size_t chunk_values = std::size_t{1} << 16;
   const std::size_t at_once = std::clamp<std::size_t>(chunk_values / channels, 1, realizations),
                     chunk_lights = std::clamp<std::size_t>(chunk_values / views, 1, lights);
   const ResultGroup root(file, field_table);
   root.number("realization", realizations);
-  const auto& camera = scene.request.camera;
+  const bool camera = scene.request.camera.has_value();
   const auto with_views = [&](std::vector<std::size_t> extents, std::size_t rows, std::size_t all) {
     if (camera) extents.push_back(rows);
     extents.push_back(all);
     return extents;
   };
-  const std::size_t columns = camera ? camera->pixels : views;
+  const std::size_t columns = drawn.image ? drawn.image->pixels
+                              : camera    ? scene.request.camera->pixels
+                                          : views;
   root.begin("field", with_views({at_once, chunk_lights},
                                  std::clamp<std::size_t>(chunk_values / columns, 1, columns),
                                  std::min(columns, chunk_values)));
@@ -261,13 +327,16 @@ void write_histogram(const ResultGroup& root, const FieldStatistics& statistics)
 
 FieldSummary write_fields(ResultFile& file, const Scene& scene, const DrawnFields& drawn) {
   const auto& views = scene.request.views;
-  const std::size_t channels = scene.request.channels.size();
-  const auto step = equal_step(views);
-  FieldStatistics statistics(real_parts(drawn.intensity.value), views.size(), step.has_value());
+  const std::size_t pixels = pixels_of(scene, drawn), channels = fields_of(scene, drawn) * pixels;
+  const auto step = scene.request.camera ? std::nullopt : equal_step(views);
+  const auto realizations = static_cast<double>(drawn.field.size() / channels);
+  const bool own_mean = drawn.image || drawn.plan.has_own_mean;
+  FieldStatistics statistics(real_parts(drawn.intensity.value), pixels, step.has_value(),
+                             own_mean ? 1 + 1 / realizations : 1);
   for (std::size_t first = 0; first < drawn.field.size(); first += channels)
     statistics.add(std::span(drawn.field).subspan(first, channels));
 
-  write_field_axes(file, scene);
+  write_field_axes(file, scene, drawn);
   write_field(file, scene, drawn);
   const ResultGroup root(file, field_table);
   write_plan(root, drawn.plan);

@@ -13,9 +13,12 @@
 
 namespace flatspeckle::mc {
 
-/// Sampled speckle fields, [realization][light][view], and reference values for their statistics.
+/// Sampled speckle fields, [realization][change or light][view], and reference values for their
+/// statistics.
 struct DrawnFields {
   DrawingPlan plan;
+  FieldChanges changes;
+  std::optional<LensPlane> image;  ///< set if the views are the pixels of an image
   std::vector<Complex> field;
   /// E|u|^2 of the field u in each channel, estimated from light paths and so without the noise of
   /// speckle

@@ -19,6 +19,7 @@ namespace {
 /// field, so that the pilot run shares no random numbers with other uses of the seed.
 constexpr std::uint64_t first_survey_batch = std::uint64_t{1} << 62;
 constexpr std::uint64_t survey_paths_per_batch = 64;
+constexpr std::size_t surveyed_pixels = 8;  ///< along each side of an image
 
 /// Sums over the contributions of a batch, for each channel: of their intensities, and of their
 /// squared intensities.
@@ -50,6 +51,27 @@ class SurveyAccumulator : public Accumulator {
  private:
   std::vector<double> intensity_, squares_;
   double contributions_ = 0;
+};
+
+/// Passes the images of fields on a pupil to another accumulator.
+class ImagedAccumulator : public Accumulator {
+ public:
+  ImagedAccumulator(const LensImage& lens, std::size_t lights, std::size_t channels,
+                    Accumulator& images)
+      : lens_(lens), lights_(lights), image_(channels), images_(images) {}
+
+  void add(double weight, std::span<const Complex> field) override {
+    const std::size_t views = field.size() / lights_, pixels = image_.size() / lights_;
+    for (std::size_t i = 0; i < lights_; ++i)
+      lens_.form(field.subspan(i * views, views), std::span(image_).subspan(i * pixels, pixels));
+    images_.add(weight, image_);
+  }
+
+ private:
+  const LensImage& lens_;
+  std::size_t lights_;
+  std::vector<Complex> image_;
+  Accumulator& images_;
 };
 
 double largest_magnitude(const std::vector<double>& values) {
@@ -93,17 +115,30 @@ void set_costs(DrawingPlan& plan, const Scene& scene, double contributions, doub
 
 }  // namespace
 
-BatchJob survey_job(const Scene& scene, const Plan& general, std::uint64_t seed) {
+BatchJob survey_job(const Scene& scene, const Plan& general, std::uint64_t seed,
+                    const std::optional<LensPlane>& image) {
   Plan plan = plan_for_fields(general);
   plan.paths_per_batch = survey_paths_per_batch;
-  const std::size_t channels = scene.request.channels.size();
+  std::optional<LensImage> lens;
+  std::size_t channels = scene.request.channels.size();
+  if (image) {
+    LensPlane few = *image;
+    few.pixels = std::min(image->pixels, surveyed_pixels);
+    lens.emplace(scene.request.camera.value(), few, scene.k);
+    channels = scene.request.lights.size() * few.pixels * few.pixels;
+  }
   BatchJob job;
   job.size = 2 * channels + 1;
   job.samples_per_batch = static_cast<double>(survey_paths_per_batch);
-  job.run = [batches = path_batches(scene, plan, seed), channels](std::uint64_t number,
-                                                                  std::span<Complex> sums) {
+  job.run = [batches = path_batches(scene, plan, seed), channels, lens,
+             lights = scene.request.lights.size()](std::uint64_t number, std::span<Complex> sums) {
     SurveyAccumulator accumulator(channels);
-    batches(first_survey_batch + number, accumulator);
+    if (lens) {
+      ImagedAccumulator imaged(*lens, lights, channels, accumulator);
+      batches(first_survey_batch + number, imaged);
+    } else {
+      batches(first_survey_batch + number, accumulator);
+    }
     accumulator.finish(sums);
   };
   return job;
@@ -150,8 +185,9 @@ DrawingPlan make_field_plan(const Scene& scene, const PathSurvey& survey,
   set_costs(plan, scene, survey.contributions, static_cast<double>(demand.fields));
   plan.method = demand.method;
   if (plan.method == FieldMethod::automatic)
-    plan.method =
-        plan.covariance_cost < plan.paths_cost ? FieldMethod::covariance : FieldMethod::paths;
+    plan.method = plan.covariance_cost < plan.paths_cost && !demand.requires_paths()
+                      ? FieldMethod::covariance
+                      : FieldMethod::paths;
   if (plan.method == FieldMethod::covariance && required_paths > most_paths)
     throw InputError("target_error", demand.covariance_error,
                      "requires " + number_text(required_paths) + " paths, above the limit of " +

@@ -7,7 +7,9 @@
 
 #include "core/run/runner.h"
 #include "flatland/scene/scene.h"
-#include "mc/paths/speckle/camera_sum.h"
+#include "mc/paths/speckle/camera_sides.h"
+#include "mc/paths/speckle/field_changes.h"
+#include "mc/paths/speckle/lens_image.h"
 #include "mc/paths/walk/plan.h"
 
 namespace flatspeckle::mc {
@@ -27,9 +29,12 @@ struct PathSurvey {
   std::vector<double> excess;
 };
 
-/// Makes the job of the pilot run (the survey), which is run for survey_paths samples.
-BatchJob survey_job(const Scene& scene, const Plan& plan, std::uint64_t seed);
-inline constexpr std::uint64_t survey_paths = 16384;
+/// Makes the job of the pilot run (the survey), which is run for survey_paths samples. image: if
+/// set, the channels are a few pixels of the image of this plane, and the camera of the scene is
+/// the pupil.
+BatchJob survey_job(const Scene& scene, const Plan& plan, std::uint64_t seed,
+                    const std::optional<LensPlane>& image = {});
+inline constexpr std::uint64_t survey_paths = 16384, image_survey_paths = 4096;
 PathSurvey read_survey(const GroupedSums& sums);
 
 enum class FieldMethod { automatic, paths, covariance };
@@ -43,6 +48,12 @@ struct FieldDemand {
   std::optional<std::uint64_t> paths_per_field = std::nullopt;
   double covariance_error = 0.01;  ///< relative error of the diagonal of the covariance
   double camera_tolerance = 0.01;  ///< largest relative rms error of a CameraSum
+  FieldChanges changes{};          ///< fields of each realization
+  /// Plane of which a lens makes an image; the camera of the scene is then its pupil (pupil_of())
+  std::optional<LensPlane> image{};
+
+  /// Whether fields can only be drawn from paths.
+  bool requires_paths() const { return !changes.none() || image; }
 };
 
 /// Plan for drawing the fields of a scene.
@@ -55,6 +66,8 @@ struct DrawingPlan {
   /// covariance_cost is infinite if the covariance does not fit into memory.
   double paths_cost = 0, covariance_cost = 0;
   std::optional<CameraResolution> camera{};  ///< set if paths are summed on a camera
+  /// Whether the intensity is the mean of |u|^2 over the fields themselves.
+  bool has_own_mean = false;
 
   std::string describe() const;
 };

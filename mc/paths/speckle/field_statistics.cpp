@@ -26,10 +26,10 @@ double ratio(double a, double b) {
 }
 
 /// Returns std / mean from the number of values, their sum (real part) and sum of squares
-/// (imaginary part).
-double contrast_of(double number, Complex moments) {
+/// (imaginary part), which is first multiplied by `squares`.
+double contrast_of(double number, Complex moments, double squares) {
   const double mean = ratio(moments.real(), number);
-  const double variance = ratio(moments.imag(), number) - mean * mean;
+  const double variance = squares * ratio(moments.imag(), number) - mean * mean;
   return ratio(std::sqrt(std::max(variance, 0.0)), mean);
 }
 
@@ -106,8 +106,8 @@ std::vector<double> Autocorrelation::operator()(std::span<const double> x) const
 }
 
 FieldStatistics::FieldStatistics(std::vector<double> intensity, std::size_t views,
-                                 bool autocorrelated)
-    : intensity_(std::move(intensity)), views_(autocorrelated ? views : 0) {
+                                 bool autocorrelated, double squares)
+    : intensity_(std::move(intensity)), views_(autocorrelated ? views : 0), squares_(squares) {
   if (autocorrelated) autocorrelation_.emplace(views);
   sums_ = GroupedSums(lags_at + views_ + intensity_.size());
 }
@@ -135,8 +135,8 @@ void FieldStatistics::add(std::span<const Complex> field) {
 }
 
 Estimate FieldStatistics::mean_contrast() const {
-  return jackknife(sums_, [](double, std::span<const Complex> sums) {
-    return std::vector<Complex>{contrast_of(sums[number_at].real(), sums[moments_at])};
+  return jackknife(sums_, [this](double, std::span<const Complex> sums) {
+    return std::vector<Complex>{contrast_of(sums[number_at].real(), sums[moments_at], squares_)};
   });
 }
 
@@ -144,7 +144,7 @@ Estimate FieldStatistics::contrast() const {
   return jackknife(sums_, [this](double fields, std::span<const Complex> sums) {
     std::vector<Complex> contrast;
     for (const Complex moments : sums.last(intensity_.size()))
-      contrast.emplace_back(contrast_of(fields, moments));
+      contrast.emplace_back(contrast_of(fields, moments, squares_));
     return contrast;
   });
 }

@@ -37,8 +37,11 @@ class Autocorrelation {
 class FieldStatistics {
  public:
   /// intensity: E|u|^2 of the channels [light][view]. autocorrelated: whether to compute the
-  /// autocorrelation over the views of the first light.
-  FieldStatistics(std::vector<double> intensity, std::size_t views, bool autocorrelated);
+  /// autocorrelation over the views of the first light. squares: factor of the mean of x^2 in the
+  /// contrast; (N + 1)/N if the intensity is the mean of |u|^2 over the same N fields, whose mean
+  /// of x^2 is then 2 N/(N + 1) for Gaussian fields.
+  FieldStatistics(std::vector<double> intensity, std::size_t views, bool autocorrelated,
+                  double squares = 1);
 
   void add(std::span<const Complex> field);
 
@@ -64,6 +67,7 @@ class FieldStatistics {
  private:
   std::vector<double> intensity_;
   std::size_t views_;
+  double squares_;
   std::optional<Autocorrelation> autocorrelation_;
   GroupedSums sums_;
 };

@@ -10,7 +10,8 @@
 #include "core/numbers/random.h"
 #include "flatland/scene/scene.h"
 #include "mc/paths/estimators/covariance_estimator.h"
-#include "mc/paths/speckle/camera_sum.h"
+#include "mc/paths/speckle/camera_sides.h"
+#include "mc/paths/speckle/field_changes.h"
 #include "mc/paths/walk/accumulator.h"
 #include "mc/paths/walk/plan.h"
 
@@ -58,14 +59,16 @@ CovarianceRequest field_request(Lights lights, std::vector<View> views);
 Plan plan_for_fields(Plan plan);
 
 /// Draws each field from `paths` separate light paths. The covariance of the fields is exact for
-/// any number of paths; their distribution becomes Gaussian for many paths (field_plan.h).
+/// any number of paths; their distribution becomes Gaussian for many paths (field_plan.h). The
+/// fields after the changes have the order [change][light][view].
 FieldDraw fields_by_paths(const Scene& scene, const Plan& plan, std::uint64_t seed,
-                          std::uint64_t paths);
+                          std::uint64_t paths, const FieldChanges& changes = {});
 
-/// Draws fields by paths on the camera of a box in space, by a CameraSum. The intensity of
-/// FieldDraw is |u|^2, with the noise of speckle.
+/// Draws fields by paths on the camera of a box in space, by a CameraSum. If reversed paths are
+/// included, the intensity of FieldDraw is |u|^2, with the noise of speckle.
 FieldDraw fields_on_camera(const Scene& scene, const Plan& plan, std::uint64_t seed,
-                           std::uint64_t paths, const CameraResolution& resolution);
+                           std::uint64_t paths, const CameraResolution& resolution,
+                           const FieldChanges& changes = {});
 
 /// Factorisation F F^H of a Hermitian, positive semidefinite matrix, in which F has as many columns
 /// as the rank of the matrix (to rounding). It is computed by Cholesky factorisation with complete

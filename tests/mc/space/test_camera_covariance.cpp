@@ -4,7 +4,7 @@
 
 #include <doctest/doctest.h>
 
-#include "mc/paths/speckle/camera_sum.h"
+#include "mc/paths/speckle/camera_resolution.h"
 #include "mc/paths/speckle/speckle_field.h"
 #include "tests/mc/space/scenes_in_space.h"
 
@@ -57,7 +57,7 @@ void check_camera(Vec axis, int fields, std::uint64_t paths, std::uint64_t covar
   const auto expected = tests::run(few, ReversedPaths::automatic, covariance_paths, 7).entries();
 
   const auto draw =
-      fields_on_camera(scene, plan, 8, paths, camera_resolution(*path_walks(scene, plan, 1), 1e-3));
+      fields_on_camera(scene, plan, 8, paths, camera_resolution(scene, plan, 1, 1e-3));
   const std::size_t size = few.request.entries.size();
   std::vector<Complex> field(scene.request.channels.size()), mean(size);
   std::vector<double> intensity(field.size()), square(size);

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/result/result_group.h"
+#include "mc/imaging/retrieval/picture_retrieval.h"
+#include "mc/imaging/retrieval/picture_statistics.h"
+
+namespace flatspeckle::mc {
+
+extern const DatasetTable recovered_picture_table;
+
+/// Result of `recover` for one frame, or for several frames of one object.
+struct RecoveredPicture {
+  PictureStatistics statistics;
+  RetrievedPicture retrieved;
+};
+
+void write_pictures(ResultFile& file, const std::vector<std::string>& names, std::size_t lags,
+                    const std::vector<RecoveredPicture>& all);
+
+}  // namespace flatspeckle::mc

@@ -1,0 +1,87 @@
+"""Maps of speckle contrast from frames of known contrast."""
+
+import unittest
+
+import numpy as np
+
+from frame_files import speckle, write_tiff
+from program import ProgramTest, datasets
+from refusing import RefusingTest
+
+PATTERNS = (2, 10)  # independent patterns in the left and the right half: K^2 is 1 over their number
+
+
+def frames(count, pixels, random, photons=None):
+    """Frames of sums of independent speckle patterns, brighter in the right half."""
+    made = []
+    for _ in range(count):
+        left, right = (sum(speckle(pixels, 3, random) for _ in range(number)) for number in PATTERNS)
+        light = np.where(np.arange(pixels) < pixels // 2, left / left.mean(), 2 * right / right.mean())
+        made.append(light if photons is None else random.poisson(photons * light))
+    return np.array(made)
+
+
+def halves(values, columns, pixels, margin):
+    return [values[:, columns < pixels // 2 - margin], values[:, columns > pixels // 2 + margin]]
+
+
+class Contrast(ProgramTest):
+    def map(self, made, **keys):
+        np.save(self.folder / "frames.npy", made)
+        self.call("contrast", frames="frames.npy", **keys, out="c.h5")
+        return datasets(self.folder / "c.h5")
+
+    def check(self, found, pixels, window, largest_error):
+        """K^2 and its errors in both halves; windows that touch are independent."""
+        for number, square, error in zip(PATTERNS, *(halves(found[name], found["map_column"], pixels, window)
+                                                     for name in ("contrast_map", "contrast_map_error"))):
+            apart = square[::window, ::window], error[::window, ::window]
+            mean = square.mean()
+            spread = np.std(apart[0]) / np.sqrt(apart[0].size)
+            self.assertLess(abs(mean * number - 1), 4 * spread * number + 0.02)
+            self.assertLess(spread * number, largest_error)
+            claimed = np.sqrt((apart[1]**2).mean())
+            self.assertLess(abs(np.std(apart[0]) / claimed - 1), 0.35)
+
+    def test_contrast_over_space(self):
+        pixels, random = 256, np.random.default_rng(1)
+        made = frames(12, pixels, random)
+        for window in (7, 15):
+            found = self.map(made, window=window)
+            self.assertEqual(found["contrast_map"].shape, (pixels - window + 1, pixels - window + 1))
+            self.check(found, pixels, window, 0.03)
+            self.assertLess(found["invariants/variance"], 1e-9)
+
+    def test_shot_noise_is_subtracted(self):
+        pixels, random = 256, np.random.default_rng(2)
+        made = 4.0 * frames(12, pixels, random, photons=10)
+        self.check(self.map(made, window=9, counts_per_photon=4), pixels, 9, 0.04)
+        noisy = self.map(made, window=9)
+        self.assertGreater(np.median(noisy["contrast_map"][:, -100:]) * PATTERNS[1], 1.3)
+
+    def test_contrast_over_time(self):
+        pixels, random = 96, np.random.default_rng(3)
+        self.check(self.map(frames(60, pixels, random), window=3, contrast_over="time"), pixels, 3, 0.05)
+
+    def test_decay_rates_solve_the_equation_of_the_contrast(self):
+        found = self.map(frames(12, 128, np.random.default_rng(4)), window=15, exposure=0.01, beta=0.8)
+        known = found["decay_rate_known"] == 1
+        x = found["decay_rate"][known] * 0.01
+        square = found["contrast_map"][known]
+        expected = np.where(x > 0, 0.8 * (np.expm1(-2 * x) + 2 * x) / (2 * np.maximum(x, 1e-9)**2), 0.8)
+        np.testing.assert_allclose(np.minimum(square, 0.8), expected, rtol=1e-6)
+
+
+class Refused(RefusingTest):
+    def test_keys(self):
+        write_tiff(self.folder / "one.tif", [np.arange(64 * 64, dtype=np.uint16).reshape(64, 64)])
+        self.write("lines.csv", "a,b\n" + "1,2\n" * 64)
+        for words, keys in ((["window = 17", "quarter"], {"window": 17}), (["window = 1"], {"window": 1}),
+                            (["contrast_over = time", "2 frames"], {"contrast_over": "time"}), (["beta"], {"beta": 0.5}),
+                            (["exposure"], {"exposure": 0}), (["window"], {"frames": "lines.csv"})):
+            with self.subTest(**keys):
+                self.assert_refused(words, "contrast", **{"frames": "one.tif", **keys})
+
+
+if __name__ == "__main__":
+    unittest.main()
