@@ -74,10 +74,8 @@ mc::ContrastTask task_of(const Keys& keys, const ContrastKeys& values, const Fra
 int map_contrast(const Subcommand& command, ContrastKeys& values) {
   const Keys& keys = command.keys();
   const Session session(command.text(), keys, values.run, command.only_prints());
-  const std::string& path = keys.required(values.frames);
-  read_frame_keys(keys, values.format, path);
-  const Frames frames = corrected(keys, values.corrections, values.format,
-                                  read_frames("frames", path, values.format));
+  const Frames frames =
+      corrected_frames(keys, values.corrections, values.format, keys.required(values.frames));
   const mc::ContrastTask task = task_of(keys, values, frames);
   std::optional<mc::ExposureOfFrames> exposure;
   if (const auto& given = keys.read(values.exposure)) exposure = {*given, keys.read(values.beta)};

@@ -11,10 +11,10 @@
 #include "core/frames/frame_corrections.h"
 #include "core/frames/frames.h"
 #include "core/session/session.h"
-#include "mc/imaging/retrieval/picture_datasets.h"
 #include "mc/imaging/recovery/phase_retrieval.h"
 #include "mc/imaging/recovery/recovery.h"
 #include "mc/imaging/recovery/recovery_datasets.h"
+#include "mc/imaging/retrieval/picture_datasets.h"
 #include "mc/imaging/separation/separation.h"
 
 namespace flatspeckle::apps {
@@ -298,10 +298,8 @@ Make make_of(const Keys& keys, const RecoverKeys& values, const Frames& frames) 
 int recover_points(const Subcommand& command, RecoverKeys& values) {
   const Keys& keys = command.keys();
   const Session session(command.text(), keys, values.run, command.only_prints());
-  const std::string& path = keys.required(values.frames);
-  read_frame_keys(keys, values.format, path);
-  const Frames frames = corrected(keys, values.corrections, values.format,
-                                  read_frames("frames", path, values.format));
+  const Frames frames =
+      corrected_frames(keys, values.corrections, values.format, keys.required(values.frames));
   const Make make = make_of(keys, values, frames);
   if (!command.settle()) return ExitStatus::done;
   return session.once(ResultFile(session.out()), make);

@@ -84,17 +84,19 @@ void add_correction_keys(Keys& keys, FrameCorrections& corrections) {
       .positive();
 }
 
-Frames corrected(const Keys& keys, const FrameCorrections& corrections, const FrameFormat& format,
-                 Frames frames) {
+Frames corrected_frames(const Keys& keys, const FrameCorrections& corrections,
+                        const FrameFormat& format, const std::string& path) {
+  read_frame_keys(keys, format, path);
+  Frames frames = read_frames("frames", path, format);
   note_saturation(frames);
   std::vector<double> dark;
-  if (const std::string& path = keys.read(corrections.dark); !path.empty()) {
-    dark = mean_frame("dark", path, format, frames);
+  if (const std::string& dark_path = keys.read(corrections.dark); !dark_path.empty()) {
+    dark = mean_frame("dark", dark_path, format, frames);
     for (std::size_t i = 0; i < frames.values.size(); ++i)
       frames.values[i] -= dark[i % dark.size()];
   }
-  if (const std::string& path = keys.read(corrections.flat); !path.empty())
-    divide_by(frames, path, mean_frame("flat", path, format, frames), dark);
+  if (const std::string& flat_path = keys.read(corrections.flat); !flat_path.empty())
+    divide_by(frames, flat_path, mean_frame("flat", flat_path, format, frames), dark);
   std::vector<std::size_t> part{0, 0, frames.columns, frames.rows};
   if (const auto& region = keys.read(corrections.region); !region.empty())
     part.assign(region.begin(), region.end());

@@ -19,9 +19,10 @@ struct FrameCorrections {
 /// Adds the keys dark, flat, region and binning.
 void add_correction_keys(Keys& keys, FrameCorrections& corrections);
 
-/// Reads the keys and corrects the frames. A dark or flat file holds one frame, or several, which
-/// are averaged. Prints a note if pixels are saturated. Throws InputError.
-Frames corrected(const Keys& keys, const FrameCorrections& corrections, const FrameFormat& format,
-                 Frames frames);
+/// Reads the keys and the file of the key `frames`, and corrects the frames. A dark or flat file
+/// holds one frame, or several, which are averaged. Prints a note if pixels are saturated. Throws
+/// InputError.
+Frames corrected_frames(const Keys& keys, const FrameCorrections& corrections,
+                        const FrameFormat& format, const std::string& path);
 
 }  // namespace flatspeckle

@@ -10,8 +10,8 @@ namespace flatspeckle {
 
 namespace {
 
-/// Picture that libpng decodes. libpng reports errors by longjmp(), so that decode() has no objects
-/// with destructors.
+/// Picture that libpng decodes. libpng reports errors by longjmp(), so that the functions that
+/// call setjmp() have no objects with destructors.
 struct Decoded {
   png_uint_32 width = 0, height = 0;
   int depth = 0, colour = 0;

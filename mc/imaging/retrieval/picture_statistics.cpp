@@ -169,13 +169,6 @@ std::pair<double, double> beyond_object(Correlation& correlation) {
 
 }  // namespace
 
-std::vector<double> without_envelope(std::span<const double> picture, std::size_t rows,
-                                     std::size_t columns, double width) {
-  auto rest = envelope_of(picture, rows, columns, width);
-  for (std::size_t p = 0; p < rest.size(); ++p) rest[p] = picture[p] / rest[p] - 1;
-  return rest;
-}
-
 PictureStatistics picture_statistics(const Frames& frames, std::size_t first, std::size_t count,
                                      std::size_t lags, const CameraNoise& noise) {
   const double share = 1 / static_cast<double>(count),

@@ -29,11 +29,6 @@ struct PictureStatistics {
   Invariant variance;
 };
 
-/// Returns a picture divided by its envelope, minus 1. The envelope is a Gaussian average with a
-/// standard deviation of `width` pixels. Throws InputError if the envelope is not positive.
-std::vector<double> without_envelope(std::span<const double> picture, std::size_t rows,
-                                     std::size_t columns, double width);
-
 /// Computes the statistics of frames of one object; their autocorrelations are averaged. lags:
 /// longest extent of the object in pixels; twice the lags must be less than rows and columns. If
 /// the number of photons is not known (noise.photons = 0), the camera's noise is the excess of the
