@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "apps/command/subcommands.h"
+#include "apps/results/exported_file.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
 #include "core/result/guarded_read.h"
@@ -211,12 +213,43 @@ ExportTable table_of(const ResultReader& file, const std::vector<std::string>& n
   return {file, names};
 }
 
-int export_datasets(const Subcommand&, Words& values) {
+struct ExportValues {
+  std::vector<std::string> words;
+  std::string to{};
+  std::int64_t nodes = 65;
+};
+
+void add_keys(Keys& keys, ExportValues& values) {
+  keys.add("to", values.to,
+           "File to write instead of CSV; its ending is the format. .npy: numbers of one dataset; "
+           ".pfm: a picture, 32-bit floats; .png: a picture for display; .vtk or .npy of "
+           "ball_spline, radial_spline or excess: the index of a designed field");
+  keys.add("nodes", values.nodes,
+           "Number of points along each axis at which the index of a designed field is written")
+      .from(2, 1025)
+      .only_of("to");
+}
+
+/// Writes one dataset to the file that the key `to` names.
+int export_to_file(const Subcommand& command, const ExportValues& values, const std::string& result,
+                   const std::vector<std::string>& names) {
+  const Keys& keys = command.keys();
+  const std::string& to = keys.read(values.to);
+  if (names.size() != 1) throw InputError("to", to, "requires the name of one dataset");
+  if (is_designed_field(names.front())) keys.read(values.nodes);
+  if (!command.settle()) return ExitStatus::done;
+  std::puts(export_file(result, names.front(), to, values.nodes).c_str());
+  return ExitStatus::done;
+}
+
+int export_datasets(const Subcommand& command, ExportValues& values) {
   if (values.words.empty()) throw InputError("export: must have a result file and its datasets");
   const std::string& path = values.words.front();
   const std::vector<std::string> names(values.words.begin() + 1, values.words.end());
   if (!std::filesystem::exists(path)) throw InputError("export", path, "no such file");
   read_in_child(path, [&] { table_of(ResultReader(path), names); });
+  if (!values.to.empty()) return export_to_file(command, values, path, names);
+  if (!command.settle()) return ExitStatus::done;
   const ResultReader file(path);
   table_of(file, names).write(std::cout);
   return ExitStatus::done;
@@ -225,9 +258,10 @@ int export_datasets(const Subcommand&, Words& values) {
 }  // namespace
 
 std::unique_ptr<Call> export_csv(const std::string&) {
-  return call_with<Words>("export",
-                          "Prints datasets of a result file as CSV: export FILE.h5 DATASET ...",
-                          export_datasets);
+  return call_with<ExportValues>("export",
+                                 "Prints datasets of a result file as CSV: export FILE.h5 DATASET "
+                                 "..., or writes one to a file",
+                                 export_datasets);
 }
 
 }  // namespace flatspeckle::apps

@@ -35,35 +35,56 @@ def draw_line(axis, x, y, label):
               label=label)
 
 
+def fitted(x, mean):
+    """Returns a in mean = a / x by least squares."""
+    return np.sum(mean / x) / np.sum(1 / x**2)
+
+
 def draw_points(axis, rows):
     for number, optical_depth in enumerate(np.unique(rows["optical_depth"])):
         chosen = rows[rows["optical_depth"] == optical_depth]
         draw_curve(axis, number, f"optical depth {optical_depth:g}", 1 / chosen["k_mean_free_path"], chosen)
-    x, mean = rows["k_mean_free_path"], rows["mean"]
-    slope = np.sum(mean / x) / np.sum(1 / x**2)
-    line = np.array([0, 1.05 / x.min()])
+    slope = fitted(rows["k_mean_free_path"], rows["mean"])
+    line = np.array([0, 1.05 / rows["k_mean_free_path"].min()])
     draw_line(axis, line, slope * line, rf"${slope:.2f}/(k \ell)$")
-    axis.set(xlabel=r"$1/(k \ell)$, $\ell$ the mean free path", title="resonant points")
+    axis.set(xlabel=r"$1/(k \ell)$, $\ell$ the mean free path")
 
 
-def draw_disks(axis, rows):
-    labels = {"none": "independent positions", "hard_disks": "structure factor of hard disks"}
-    for number, (structure, label) in enumerate(labels.items()):
-        chosen = rows[rows["structure"] == structure]
+def draw_others(axis, rows, family, number, label):
+    chosen = rows[rows["family"] == family]
+    draw_curve(axis, number, label, 1 / chosen["k_mean_free_path"], chosen)
+
+
+def draw_correlated(axis, rows, structure, kind):
+    for number, (name, label) in enumerate({"none": "independent positions",
+                                            structure: f"structure factor of hard {kind}"}.items()):
+        chosen = rows[rows["structure"] == name]
         draw_curve(axis, number + 2, label, chosen["packing_fraction"], chosen)
     draw_line(axis, chosen["packing_fraction"], -chosen["k_shift_over_k"], r"$-\Delta k/k$")
-    axis.set(xlabel=r"packing fraction $\phi$", title="cylinders, $ka = 1$, index 1.2")
+    axis.set(xlabel=r"packing fraction $\phi$")
 
 
 @script.plot(read=functools.partial(read_table, columns=COLUMNS), metavar="TABLE.csv", default=SHIPPED)
 def draw(rows):
-    figure, axes = plt.subplots(1, 2, figsize=(style.PAGE, 2.8))
-    for axis, family, draw_family in zip(axes, ("points", "disks"), (draw_points, draw_disks)):
-        draw_family(axis, rows[rows["family"] == family])
+    figure, axes = plt.subplots(2, 2, figsize=(style.PAGE, 5.2))
+    for axis, family, title in ((axes[0, 0], "points", "plane: resonant points"),
+                                (axes[1, 0], "space_points", "space: points and resonant spheres")):
+        draw_points(axis, rows[rows["family"] == family])
+        axis.set_title(title)
+    draw_others(axes[1, 0], rows, "space_shifted", 4, "points off resonance")
+    draw_others(axes[1, 0], rows, "space_resonant", 5, "spheres, $ka = 1$, index 3")
+    axes[1, 0].set_ylim(-16, 36)  # leaves space for the legend
+    for axis, family, structure, kind, title in (
+            (axes[0, 1], "disks", "hard_disks", "disks", "plane: cylinders, $ka = 1$, index 1.2"),
+            (axes[1, 1], "space_spheres", "hard_spheres", "spheres", "space: spheres, $ka = 1$, index 1.2")):
+        draw_correlated(axis, rows[rows["family"] == family], structure, kind)
+        axis.set_title(title)
+    for axis in axes.flat:
         axis.axhline(0, color="black", linewidth=0.5, zorder=0)
         axis.set_xlim(left=0)
         axis.legend(loc="upper left")
     page.legend_above(figure, [(plt.Line2D([], [], color="black", marker=marker, markerfacecolor=fill,
                                            linestyle="none"), label) for fill, marker, label in KINDS], 3)
-    axes[0].set_ylabel("(Monte Carlo $-$ exact) / exact, %")
+    for axis in axes[:, 0]:
+        axis.set_ylabel("(Monte Carlo $-$ exact) / exact, %")
     return figure

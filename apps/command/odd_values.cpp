@@ -56,7 +56,7 @@ void note_key(const Key& key) {
   if (name == "count" && key.shown() == "0") std::cerr << "note: count = 0: no scatterers\n";
   if ((name == "index" || name == "particle_index") && !key.is_list())
     note_index(key, {parse_complex(name, key.shown())});
-  if (name == "grid" || name == "index_grid") note_excess(key);
+  if (name == "index_grid") note_excess(key);
   const bool may_be_table = name == "placement" || name == "index_table" || name == "layers";
   if (!may_be_table || !std::filesystem::is_regular_file(key.shown())) return;
   const Table table = read_csv(key.shown());

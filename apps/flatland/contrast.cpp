@@ -61,9 +61,9 @@ mc::ContrastTask task_of(const Keys& keys, const ContrastKeys& values, const Fra
   constexpr std::size_t windows = 4;
   if (windows * task.window > std::min(frames.rows, frames.columns))
     throw InputError("window", window,
-                     "must be at most a quarter of the frames, which have " +
-                         std::to_string(frames.columns) + " x " + std::to_string(frames.rows) +
-                         " pixels");
+                     "must be at most a quarter of the frames of " + values.frames +
+                         ", which have " + std::to_string(frames.columns) + " x " +
+                         std::to_string(frames.rows) + " pixels");
   if (over_time && frames.count() < 2)
     throw InputError("contrast_over", values.over, "requires at least 2 frames");
   task.per_photon = keys.read(values.counts_per_photon);
@@ -81,7 +81,7 @@ int map_contrast(const Subcommand& command, ContrastKeys& values) {
   if (const auto& given = keys.read(values.exposure)) exposure = {*given, keys.read(values.beta)};
   if (!command.settle()) return ExitStatus::done;
   return session.once(ResultFile(session.out()), [&](ResultFile& file) {
-    const mc::ContrastMap map = mc::contrast_map(frames, task);
+    const auto map = naming_frames(values.frames, [&] { return mc::contrast_map(frames, task); });
     mc::write_contrast(file, map, task.window, exposure);
     auto squares = map.square;
     std::ranges::sort(squares);

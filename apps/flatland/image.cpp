@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "apps/command/experiment.h"
+#include "apps/flatland/image_keys.h"
+#include "apps/flatland/picture_image.h"
 #include "apps/results/estimation.h"
 #include "apps/results/view_power.h"
 #include "core/error.h"
@@ -21,157 +23,13 @@ namespace flatspeckle::apps {
 
 namespace {
 
-/// Values of the keys of the subcommand `image`.
-struct ImageKeys {
-  SceneSpec spec;
-  std::vector<double> object_x, object_brightness;
-  std::optional<double> object_depth, object_extent, camera_depth, reference_x, memory_range;
-  double object_scale = 1;
-  std::optional<std::int64_t> object_count;
-  std::vector<double> camera;
-  std::int64_t pixels = 4096, repeats = 16, average = 1;
-  std::optional<std::int64_t> points, paths_per_field;
-  double resolution = 1;
-  mc::CameraNoise noise;
-  mc::DeconvolutionKeys deconvolution;
-  std::string method = "paths";
-  std::int64_t prediction_paths = 20000;
-  std::string blinking = "none";
-  std::int64_t blinking_frames = 50, excitation_paths = 20000;
-  double lit = 0.5;
-  std::optional<double> excitation_wavelength, excitation_optical_depth;
-  std::optional<std::int64_t> sources;
-  MethodSettings estimation;
-};
-
-void add_object_keys(Keys& keys, ImageKeys& values) {
-  keys.group("Object and camera");
-  keys.add("object_x", values.object_x, "x of the object's points, which are mutually incoherent")
-      .unit("length");
-  keys.add("object_brightness", values.object_brightness, "Brightness of each point (default: 1)")
-      .positive();
-  keys.add("object_count", values.object_count,
-           "Number of object points used, in the order given (default: all)")
-      .positive();
-  keys.add("object_scale", values.object_scale, "Factor by which object_x is multiplied")
-      .positive();
-  keys.add("object_depth", values.object_depth,
-           "z of the line on which the object's points lie, outside the box")
-      .unit("length");
-  keys.add("camera_depth", values.camera_depth,
-           "z of the line on which the camera's pixels lie, outside the box (default: at infinity, "
-           "behind the box)")
-      .unit("length");
-  keys.add("camera", values.camera,
-           "First and last pixel: x if camera_depth is given, otherwise the sine of the direction")
-      .exactly(2, "first last");
-  keys.add("pixels", values.pixels, "Number of pixels of the camera").from(64, 1 << 20);
-  add_camera_keys(keys, values.noise);
-  keys.add("background", values.noise.background,
-           "Uniform background light, relative to the mean light over the pixels")
-      .not_negative();
-}
-
-void add_reference_keys(Keys& keys, ImageKeys& values) {
-  keys.group("Reference");
-  keys.add("reference_x", values.reference_x,
-           "x of a reference point on the object's line; frames are divided (deconvolved) by its "
-           "frame")
-      .unit("length");
-  add_keys(keys, values.deconvolution);
-}
-
-void add_blinking_keys(Keys& keys, ImageKeys& values) {
-  keys.group("Blinking");
-  keys.add("blinking", values.blinking,
-           "How the brightness of points varies between the frames of a medium: not at all (none), "
-           "by random subsets, or by excitation with a different speckle pattern in each frame "
-           "(speckle)")
-      .one_of({"none", "subsets", "speckle"});
-  keys.add("blinking_frames", values.blinking_frames, "Number of frames of each medium")
-      .from(2, 100000);
-  keys.add("lit", values.lit, "blinking = subsets: fraction of the frames in which a point shines")
-      .between(0, 1);
-  keys.add("excitation_wavelength", values.excitation_wavelength,
-           "blinking = speckle: wavelength of the exciting light (default: wavelength)")
-      .positive()
-      .unit("length");
-  keys.add("excitation_optical_depth", values.excitation_optical_depth,
-           "blinking = speckle: optical depth of the medium at excitation_wavelength (default: "
-           "optical_depth)")
-      .positive();
-  keys.add("excitation_paths", values.excitation_paths,
-           "blinking = speckle: number of light paths for the covariance of the exciting field "
-           "between the points")
-      .positive();
-  keys.add("sources", values.sources,
-           "Number of sources into which frames are separated (default: determined from the "
-           "singular values of the frames)")
-      .from(1, 64);
-}
-
-void add_image_keys(Keys& keys, ImageKeys& values) {
-  add_scatterer_keys(keys, values.spec);
-  add_bulk_keys(keys, values.spec);
-  add_medium_keys(keys, values.spec);
-  add_profile_keys(keys, values.spec);
-  add_structure_key(keys, values.spec);
-  add_object_keys(keys, values);
-  add_reference_keys(keys, values);
-  add_blinking_keys(keys, values);
-  keys.group("Pictures");
-  keys.add("repeats", values.repeats,
-           "Number of random media, with one frame each; points are searched in each frame (0: "
-           "compute only the prediction)")
-      .from(0, std::numeric_limits<double>::infinity());
-  mc::add_average_key(keys, values.average);
-  keys.add("method", values.method,
-           "paths: fields by light paths; wave: fields of placements by the exact solver")
-      .one_of({"paths", "wave"});
-  keys.add("paths_per_field", values.paths_per_field,
-           "Number of light paths of each medium (default: enough for an excess kurtosis of 0.01, "
-           "and at least four per visible grain)")
-      .positive();
-  add_wave_keys(keys, values.estimation);
-  keys.remove("wave_samples");
-  keys.add("points", values.points,
-           "Number of points to recover (default: number of object points; 0: no search)")
-      .from(0, 64);
-  keys.add("object_extent", values.object_extent,
-           "Longest distance between points in the search (default: 1.25 times the extent of the "
-           "object)")
-      .positive()
-      .unit("length");
-  keys.add("resolution", values.resolution,
-           "Smallest distance between points, and tolerance within which a point counts as "
-           "recovered, in speckle grains")
-      .positive();
-  keys.add("memory_range", values.memory_range,
-           "Distance between two points at which the intensity correlation C_I of their speckles "
-           "is 1/2; determines the weights of pairs in the search (default: equal weights)")
-      .positive()
-      .unit("length");
-  keys.add("prediction_paths", values.prediction_paths,
-           "Number of light paths for the prediction of the correlation peaks of pairs of points")
-      .positive();
-}
-
 mc::LineObject object_of(const Keys& keys, const ImageKeys& values) {
-  mc::LineObject object{keys.required(values.object_x), keys.read(values.object_brightness)};
-  if (object.brightness.empty()) object.brightness.assign(object.x.size(), 1);
-  if (object.brightness.size() != object.x.size())
-    throw InputError("object_brightness: has " + std::to_string(object.brightness.size()) +
-                     " values, must have one for each of the " + std::to_string(object.x.size()) +
-                     " points");
+  mc::LineObject object{keys.required(values.object_x), {}};
+  object.brightness = brightness_of(keys, values, object.x.size());
   for (double& x : object.x) x *= keys.read(values.object_scale);
-  if (const auto& count = keys.read(values.object_count)) {
-    if (static_cast<std::size_t>(*count) > object.x.size())
-      throw InputError("object_count", *count,
-                       "must be at most " + std::to_string(object.x.size()) +
-                           ", the number of points in object_x");
-    object.x.resize(static_cast<std::size_t>(*count));
-    object.brightness.resize(object.x.size());
-  }
+  const std::size_t count = count_of(keys, values, object.x.size());
+  object.x.resize(count);
+  object.brightness.resize(count);
   return object;
 }
 
@@ -287,44 +145,6 @@ void check_memory(std::size_t lights, const mc::LineCamera& camera, const mc::Im
                          " GB of memory; reduce repeats or pixels");
 }
 
-/// Subtracts the mean over all n realizations from each field. The differences are multiplied by
-/// sqrt(n / (n - 1)), so that their variance is unbiased.
-void remove_mean(std::vector<Complex>& fields, std::size_t channels) {
-  const std::size_t count = fields.size() / channels;
-  const auto n = static_cast<double>(count);
-  for (std::size_t c = 0; c < channels; ++c) {
-    Complex mean = 0;
-    for (std::size_t r = 0; r < count; ++r) mean += fields[r * channels + c] / n;
-    for (std::size_t r = 0; r < count; ++r) {
-      Complex& field = fields[r * channels + c];
-      field = (field - mean) * std::sqrt(n / (n - 1));
-    }
-  }
-}
-
-/// Returns the exact fields of all placements minus their mean (the coherent field), so that only
-/// the speckle is left, as in fields computed by light paths.
-mc::FieldDraw exact_fields(const mc::LineScene& line, const mc::ImagingTask& task,
-                           double tolerance) {
-  const BatchJob exact = wave_estimation(line.scene, tolerance, task.seed).job.batches;
-  const std::size_t channels = line.scene.request.channels.size();
-  const std::uint64_t media = task.repeats * task.average;
-  const auto fields = std::make_shared<std::vector<Complex>>(media * channels);
-  BatchJob job;
-  job.size = 1;
-  job.run = [&](std::uint64_t number, std::span<Complex>) {
-    std::vector<Complex> sums(exact.size);
-    exact.run(number, sums);
-    std::copy_n(sums.begin(), channels, fields->begin() + static_cast<long>(number * channels));
-  };
-  RunState state;
-  run_to_end(job, {{media, std::nullopt, std::nullopt}, task.threads, "wave", {}}, state);
-  remove_mean(*fields, channels);
-  return [fields, channels](std::uint64_t number, std::span<Complex> field, std::span<double>) {
-    std::copy_n(fields->begin() + static_cast<long>(number * channels), channels, field.begin());
-  };
-}
-
 struct ImagedFields {
   mc::FieldDraw draw;
   std::string how;
@@ -335,7 +155,8 @@ ImagedFields fields_of(const mc::LineScene& line, const mc::ImagingTask& task,
                        const std::optional<std::int64_t>& paths_per_field) {
   if (task.repeats == 0) return {{}, "prediction only, without frames"};
   if (method == "wave")
-    return {exact_fields(line, task, wave_tolerance),
+    return {exact_fields(line.scene, task.repeats * task.average, task.seed, task.threads,
+                         wave_tolerance),
             "wave: placements by the exact solver, minus their mean field"};
   const auto paths = paths_per_field ? static_cast<std::uint64_t>(*paths_per_field)
                                      : mc::paths_for_fields(line, task.seed, task.threads);
@@ -421,15 +242,27 @@ class ImageExperiment : public OneShot {
   }
 
   void read(const Keys& keys) override {
+    if (keys.read(values_.spec.dimension) == 3)
+      pictures_ = picture_run(keys, values_, seed(), threads());
+    else
+      read_line(keys);
+  }
+
+ private:
+  /// Reads the keys of `image` in the plane.
+  void read_line(const Keys& keys) {
     if (keys.read(values_.method) == "wave")
       keys.read(values_.estimation.wave_tolerance);
     else
       keys.read(values_.paths_per_field);
     mc::LineObject object = object_of(keys, values_);
-    const double object_depth = keys.required(values_.object_depth);
+    const auto& depths = keys.required(values_.object_depth);
+    if (depths.size() != 1)
+      throw InputError("object_depth", depths.size(), "values: must be one in the plane");
+    const double object_depth = depths.front();
     const mc::LineCamera camera = camera_of(keys, values_);
     const std::optional<double> reference = keys.read(values_.reference_x);
-    keys.read(values_.prediction_paths);
+    prediction_paths_ = prediction_paths(keys, values_);
     task_ = task_of(keys, values_, object.x.size());
     if (by_waves() && task_.repeats * task_.average < 2)
       throw InputError("repeats", task_.repeats,
@@ -459,7 +292,6 @@ class ImageExperiment : public OneShot {
     task_.recovery.memory_range *= std::abs(magnification(*line_));
   }
 
- private:
   bool by_waves() const { return values_.method == "wave"; }
   bool by_speckle() const { return values_.blinking == "speckle"; }
   ResultFile::Storage storage() const override { return ResultFile::Storage::disk; }
@@ -479,26 +311,28 @@ class ImageExperiment : public OneShot {
   }
 
   Made make(ResultFile& file, bool prints) const override {
+    if (pictures_) return make_pictures(file, *pictures_, prints);
     mc::ImagingTask task = task_;
     if (task.repeats > 0) set_brightness(task);
     const auto fields = fields_of(*line_, task_, values_.method, values_.estimation.wave_tolerance,
                                   values_.paths_per_field);
-    const auto prediction = mc::predicted(
-        *line_, static_cast<std::uint64_t>(values_.prediction_paths), task_.seed, task_.threads);
+    const auto prediction = mc::predicted(*line_, prediction_paths_, task_.seed, task_.threads);
     const auto media = mc::imaged(*line_, task, fields.draw);
     write_medium(file, line_->scene);
     mc::write_imaging(file, *line_, task, media, prediction);
     check_power(file, "", line_->scene,
-                {"mc", static_cast<double>(values_.prediction_paths), 0, task_.seed});
+                {"mc", static_cast<double>(prediction_paths_), 0, task_.seed});
     if (prints) print_summary(*line_, task, media, prediction);
     return Made{fields.how, static_cast<double>(task_.repeats * task_.average)};
   }
 
   ImageKeys values_;
   mc::ImagingTask task_;
+  std::uint64_t prediction_paths_ = 0;
   std::optional<SceneSpec> excitation_;
   std::optional<Scene> excited_;
   std::optional<mc::LineScene> line_;
+  std::optional<PictureRun> pictures_;  ///< in space
 };
 
 }  // namespace

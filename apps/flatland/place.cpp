@@ -71,7 +71,7 @@ void add_keys(Keys& keys, PlaceKeys& values) {
       .only_of("disks and spheres");
   keys.add("placement", values.placement,
            "poisson for points; for disks hard_disk (random sequential addition) or equilibrium "
-           "(hard-disk fluid); for spheres hard_disk")
+           "(fluid of hard disks or spheres)")
       .one_of(placement_words);
   keys.add("min_gap", values.min_gap,
            "Smallest distance between the rims of disks (default: 1e-3 of the smallest radius)")

@@ -14,6 +14,7 @@
 #include "mc/imaging/recovery/phase_retrieval.h"
 #include "mc/imaging/recovery/recovery.h"
 #include "mc/imaging/recovery/recovery_datasets.h"
+#include "mc/imaging/retrieval/bispectrum.h"
 #include "mc/imaging/retrieval/picture_datasets.h"
 #include "mc/imaging/separation/separation.h"
 
@@ -63,19 +64,12 @@ void add_keys(Keys& keys, RecoverKeys& values) {
   keys.add("recovery", values.recovery,
            "search: recover points; phases: also retrieve a picture that has the frame's "
            "autocorrelation, by hybrid input-output and error reduction; sources: locate blinking "
-           "points from all frames of one medium, by non-negative factorisation; auto: search for "
-           "frames of one line, phases for pictures")
-      .one_of({"auto", "search", "phases", "sources"});
-  keys.add("starts", values.phases.starts,
-           "recovery = phases: number of random starts of phase retrieval; the best result is used")
-      .from(1, 10000);
-  keys.add("phase_iterations", values.phases.iterations,
-           "recovery = phases: number of iterations from each random start")
-      .from(4, 100000);
-  keys.add("sparsity", values.phases.sparsity,
-           "recovery = phases: error reduction sets values of the picture below this fraction of "
-           "the largest value to 0")
-      .from(0, 1);
+           "points from all frames of one medium, by non-negative factorisation; bispectrum: "
+           "retrieve "
+           "a picture that is not rotated, by the mean bispectrum of windows of the frames; auto: "
+           "search for frames of one line, phases for pictures")
+      .one_of({"auto", "search", "phases", "sources", "bispectrum"});
+  mc::add_keys(keys, values.phases);
   add_camera_keys(keys, values.noise);
   keys.add("reference", values.reference,
            "File with the frame of a reference point: one frame for all frames, or one for each; "
@@ -116,24 +110,18 @@ mc::SeparationTask separation_task(const Keys& keys, const RecoverKeys& values,
   task.sources = static_cast<std::size_t>(keys.read(values.points).value_or(0));
   task.resolution_grains = keys.read(values.resolution);
   read_camera_keys(keys, values.noise, task.noise);
-  task.lags = lags_of(keys, values, frames.columns);
+  task.rows = frames.rows;
+  task.lags = lags_of(keys, values,
+                      frames.rows == 1 ? frames.columns : std::min(frames.rows, frames.columns));
   if (frames.count() < 2)
-    throw InputError("frames: recovery = sources requires at least 2 columns, one for each frame");
-  return task;
-}
-
-mc::PhaseTask phase_settings(const Keys& keys, const mc::PhaseTask& phases) {
-  mc::PhaseTask task;
-  task.starts = keys.read(phases.starts);
-  task.iterations = keys.read(phases.iterations);
-  task.sparsity = keys.read(phases.sparsity);
+    throw InputError("frames: recovery = sources requires at least 2 frames (columns of a table)");
   return task;
 }
 
 /// Returns the task of phase retrieval; nullopt unless recovery = phases.
 std::optional<mc::PhaseTask> phase_task(const Keys& keys, const RecoverKeys& values) {
   if (keys.read(values.recovery) != "phases") return std::nullopt;
-  return phase_settings(keys, values.phases);
+  return mc::phase_task(keys, values.phases);
 }
 
 /// Returns the frames as lists of pixels.
@@ -203,8 +191,11 @@ void print_sources(const mc::SeparatedSources& found) {
   std::printf("%zu sources (singular values above %.3g), residual %.3g\n", found.count.sources,
               found.count.threshold, found.factors.residual);
   std::printf("%-8s %-8s %s\n", "source", "group", "position (pixels)");
-  for (std::size_t s = 0; s < found.places.x.size(); ++s)
-    std::printf("%-8zu %-8zu %.1f\n", s, found.places.group[s], found.places.x[s]);
+  for (std::size_t s = 0; s < found.places.x.size(); ++s) {
+    std::printf("%-8zu %-8zu %.1f", s, found.places.group[s], found.places.x[s]);
+    if (found.rows > 1) std::printf(", %.1f", found.places.y[s]);
+    std::puts("");
+  }
 }
 
 using Make = std::function<Made(ResultFile&)>;
@@ -219,7 +210,7 @@ Make search_of(const Keys& keys, const RecoverKeys& values, const Frames& read) 
   return [=](ResultFile& file) {
     std::vector<mc::Recovered> all;
     std::vector<mc::Deconvolved> pictures;
-    std::vector<mc::PhasedPicture> phased;
+    std::vector<mc::RetrievedPicture> phased;
     std::vector<std::string> names;
     const auto frames = lists_of(read);
     const auto all_names = names_of(read);
@@ -229,7 +220,7 @@ Make search_of(const Keys& keys, const RecoverKeys& values, const Frames& read) 
             mc::deconvolved(frames[i], references.of_frame[i], task.lags, references.task));
       all.push_back(mc::recovered(std::span(frames).subspan(i, average), task));
       if (phases)
-        phased.push_back(mc::retrieved_phases(all.back().statistics.autocorrelation, *phases));
+        phased.push_back(mc::retrieved_line(all.back().statistics.autocorrelation, *phases));
       names.push_back(all_names[i]);
     }
     mc::write_recovery(file, names, task, all);
@@ -265,34 +256,47 @@ void print_pictures(const std::vector<mc::RecoveredPicture>& all) {
 
 /// Returns the function that retrieves a picture from each frame, and writes the result.
 Make pictures_of(const Keys& keys, const RecoverKeys& values, const Frames& frames) {
-  if (keys.read(values.recovery) != "auto" && values.recovery != "phases")
+  const bool oriented = keys.read(values.recovery) == "bispectrum";
+  if (values.recovery == "search")
     throw InputError("recovery", values.recovery,
-                     "requires frames of one line; pictures take phases");
+                     "requires frames of one line; pictures take phases, bispectrum or sources");
   const std::size_t pixels = std::min(frames.rows, frames.columns);
   mc::CameraNoise noise;
   read_camera_keys(keys, values.noise, noise);
   const std::size_t lags = lags_of(keys, values, pixels),
                     average = average_of(keys, values, frames.count());
-  const mc::PhaseTask task = phase_settings(keys, values.phases);
+  mc::PhaseTask task;
+  if (oriented) {  // it has one start
+    task.iterations = keys.read(values.phases.iterations);
+    task.sparsity = keys.read(values.phases.sparsity);
+  } else {
+    task = mc::phase_task(keys, values.phases);
+  }
   return [=](ResultFile& file) {
     std::vector<mc::RecoveredPicture> all;
     std::vector<std::string> names;
     for (std::size_t i = 0; i < frames.count(); i += average) {
       auto statistics = mc::picture_statistics(frames, i, average, lags, noise);
-      auto retrieved = mc::retrieved_picture(statistics.autocorrelation, lags, task);
+      auto retrieved = oriented
+                           ? mc::oriented_picture(frames, i, average, statistics, lags, task)
+                           : mc::retrieved_picture(statistics.autocorrelation, {lags, lags}, task);
       all.push_back({std::move(statistics), std::move(retrieved)});
       names.push_back(names_of(frames)[i]);
     }
     mc::write_pictures(file, names, lags, all);
     print_pictures(all);
-    return Made{"autocorrelation of each frame, phase retrieval", static_cast<double>(all.size())};
+    return Made{oriented ? "bispectrum of windows of each frame, error reduction"
+                         : "autocorrelation of each frame, phase retrieval",
+                static_cast<double>(all.size())};
   };
 }
 
 Make make_of(const Keys& keys, const RecoverKeys& values, const Frames& frames) {
+  if (keys.read(values.recovery) == "sources") return sources_of(keys, values, frames);
   if (frames.rows > 1) return pictures_of(keys, values, frames);
-  return keys.read(values.recovery) == "sources" ? sources_of(keys, values, frames)
-                                                 : search_of(keys, values, frames);
+  if (values.recovery == "bispectrum")
+    throw InputError("recovery", values.recovery, "requires frames that are pictures");
+  return search_of(keys, values, frames);
 }
 
 int recover_points(const Subcommand& command, RecoverKeys& values) {
@@ -300,9 +304,11 @@ int recover_points(const Subcommand& command, RecoverKeys& values) {
   const Session session(command.text(), keys, values.run, command.only_prints());
   const Frames frames =
       corrected_frames(keys, values.corrections, values.format, keys.required(values.frames));
-  const Make make = make_of(keys, values, frames);
-  if (!command.settle()) return ExitStatus::done;
-  return session.once(ResultFile(session.out()), make);
+  return naming_frames(values.frames, [&]() -> int {
+    const Make make = make_of(keys, values, frames);
+    if (!command.settle()) return ExitStatus::done;
+    return session.once(ResultFile(session.out()), make);
+  });
 }
 
 }  // namespace

@@ -103,6 +103,35 @@ void print_summary(const DesignState& state, const DesignCheck& check) {
                 check.start_held_out, check.start_held_out / *check.held_out_half_step);
 }
 
+/// Prints what the objective is usually judged by: dB of pictures, the exponent of a guide.
+void print_figures(const DesignScene& scene, const Designer& designer, const DesignState& state,
+                   const DesignCheck& check) {
+  if (const auto* screens =
+          dynamic_cast<const grin::design::ScreenTarget*>(scene.design_target.get());
+      screens && check.measurements) {
+    const auto psnr = picture_psnr(*screens, *check.measurements);
+    std::printf("pictures of held-out rays:");
+    for (std::size_t i = 0; i < psnr.size(); ++i)
+      std::printf("%s %.2f dB", i == 0 ? "" : ",", psnr[i]);
+    std::puts(" (peak signal-to-noise ratio)");
+  }
+  const grin::design::FieldForm form = designer.form(state);
+  if (const auto* guide = std::get_if<grin::design::GuideForm>(&form);
+      guide && guide->coefficients == 0)
+    std::printf("exponent of the profile %.6g\n", state.search.coefficients.front());
+  if (scene.focus)
+    if (const auto length = focal_length(scene, designer, state))
+      std::printf("effective focal length %.6g, by a ray at a tenth of the radius\n", *length);
+}
+
+void print_end(const DesignScene& scene, const DesignState& state) {
+  std::printf("ended after %zu steps by the rule: %s", state.history.rms.size() - 1,
+              state.ended_by.c_str());
+  if (state.ended_by == "tolerance")
+    std::printf(" (two steps reduced the residual by less than %.3g %%)", 100 * scene.tolerance);
+  std::puts("");
+}
+
 void print_throughput(const DesignScene& scene, const DesignCheck& check) {
   if (scene.goal == grin::design::ThroughputValues::word)
     std::printf("%.4g %% of the held-out rays pass through the aperture\n", 100 * check.in_place);
@@ -138,7 +167,9 @@ Made make(const DesignScene& scene, const Kept& kept, ResultFile& file) {
   if (!state.ended) throw Interrupted{};
   const DesignCheck check = designer.check(state);
   write_design(file, scene, designer, state, check);
+  print_end(scene, state);
   print_summary(state, check);
+  print_figures(scene, designer, state, check);
   print_throughput(scene, check);
   note_bounds(designer.at_bounds(state), scene);
   note_unseen(check.unseen);

@@ -33,15 +33,6 @@ void note_losses(const grin::TransportCounts& counts) {
                  static_cast<unsigned long long>(counts.lost_values));
 }
 
-void note_smoothing(const grin::LevelSurface& surface) {
-  const double change = surface.volume() / surface.meant_volume() - 1;
-  std::fprintf(
-      stderr,
-      "note: body_mesh is replaced by a smooth surface of spacing %.3g, whose volume differs by "
-      "%+.2g %%\n",
-      surface.spacing(), 100 * change);
-}
-
 /// Prints a warning if paths may be so long that the run shows no progress for a long time.
 void note_long_paths(const grin::Stage& stage, std::int64_t max_scatterings) {
   constexpr double many = 1e6, seconds_each = 3e-7;
@@ -139,14 +130,10 @@ bool print_sensor(const std::string& name, const grin::Sensor& sensor,
   if (!(image.value[brightest].real() > 0)) return false;
   std::printf("%-16s %-13s %-10s\n", name.c_str(), "value", "error");
   if (result.total) print_resolved("total power", *result.total, "");
-  if (result.within) {
+  if (result.within)
     for (std::size_t i = 0; i < result.within->radii.size(); ++i)
       print_row(("within " + number_text(result.within->radii[i])).c_str(), result.within->power, i,
                 "");
-    std::puts(
-        "target_error applies to the largest of these errors, each relative to its power or, if "
-        "larger, to 1 % of the light");
-  }
   print_resolved("mean of pixels", result.mean, units);
   print_row("brightest pixel", image, brightest, units);
   if (result.gradients) print_gradients(result, parameters, units);
@@ -223,13 +210,17 @@ class RenderExperiment : public Experiment {
     grin::add_keys(keys, values_);
     grin::add_keys(keys, request_values_);
     add_run_keys(keys, run_);
+    keys.add("samples_per_pixel", samples_per_pixel_,
+             "Stop after this number of paths from each pixel of the largest picture")
+        .positive()
+        .effort();
   }
 
   void read(const Keys& keys) override {
-    stop_ = stop_rule(keys, run_);
     request_ = make_render_request(keys, request_values_);
     scene_ = make_render_scene(keys, values_);
     check(*scene_, request_);
+    stop_ = stop_rule(keys, run_, samples(keys));
     check_target();
     inputs_ = inputs_text(keys);
   }
@@ -239,8 +230,7 @@ class RenderExperiment : public Experiment {
       std::fputs("note: the sound deflects no ray by 1e-5 rad or more and is left out\n", stderr);
     note_long_paths(scene_->stage, request_.max_scatterings);
     for (const grin::Body& body : scene_->stage.bodies)
-      if (const auto* level = std::get_if<grin::LevelSurface>(&body.surface))
-        note_smoothing(*level);
+      if (!body.note.empty()) std::fprintf(stderr, "note: %s\n", body.note.c_str());
   }
 
   PlannedExperiment plan() const override {
@@ -253,6 +243,20 @@ class RenderExperiment : public Experiment {
   }
 
  private:
+  /// Returns the number of light paths to compute, if it is given directly or per pixel.
+  std::optional<std::int64_t> samples(const Keys& keys) const {
+    const auto& in_all = keys.read(run_.samples);
+    const auto& each = keys.read(samples_per_pixel_);
+    if (!each) return in_all;
+    if (in_all) throw InputError("samples_per_pixel: must not be given together with samples");
+    std::int64_t pixels = 1;
+    for (const grin::Sensor& sensor : scene_->sensors)
+      pixels = std::max<std::int64_t>(pixels, pixels_of(sensor).grid.count());
+    if (*each > std::numeric_limits<std::int64_t>::max() / pixels)
+      throw InputError("samples_per_pixel", number_text(static_cast<double>(*each)),
+                       "is too large for this number of pixels");
+    return *each * pixels;
+  }
   /// Throws InputError for a target error with a method of infinite variance.
   void check_target() const {
     if (stop_.target_error && request_.method && !has_finite_variance(*scene_, *request_.method))
@@ -280,6 +284,7 @@ class RenderExperiment : public Experiment {
 
   grin::RenderValues values_;
   grin::RenderRequestValues request_values_;
+  std::optional<std::int64_t> samples_per_pixel_;
   grin::RenderRequest request_;
   std::optional<grin::RenderScene> scene_;
 };

@@ -22,12 +22,14 @@ using grin::TraceScene;
 using grin::Vec3;
 
 std::string ends_of(const std::vector<TracedRay>& rays, double length_unit) {
-  std::size_t ends[3] = {};
+  std::size_t ends[4] = {};
   for (const auto& ray : rays) ++ends[static_cast<std::size_t>(ray.status)];
   std::ostringstream text;
   text << "ended: " << ends[1] << " at max_length, ";
   if (ends[2] > 0) text << ends[2] << " at the edge of the grid, ";
+  if (ends[3] > 0) text << ends[3] << " absorbed, ";
   text << ends[0] << " on a stop surface";
+  if (ends[3] == rays.size()) return text.str();
   const auto printed = grin::ends_to_print(rays);
   if (printed.size() < rays.size()) text << "; only for rays that end on a stop surface:";
   const auto [least, most] =
@@ -60,16 +62,59 @@ std::string text_of(const grin::RayImage& image) {
   return text.str();
 }
 
+std::string text_of(const grin::ParaxialSystem& system) {
+  std::ostringstream text;
+  text << std::setprecision(8) << "\nparaxial: focal length " << system.focal_length;
+  if (std::abs(system.image_index - 1) > 1e-9)
+    text << " behind the system (index " << system.image_index << "), power " << system.power;
+  if (system.back_focal_length) text << ", back focal length " << *system.back_focal_length;
+  text << ", focus at " << grin::listed(system.focus) << std::setprecision(4) << ", f/"
+       << system.f_number;
+  return text.str();
+}
+
+std::string text_of(const grin::ImageQuality& quality) {
+  std::ostringstream text;
+  text << std::setprecision(4) << "\nnumerical aperture " << quality.aperture << ", Strehl ratio "
+       << quality.strehl << " about the centre of the spot, " << quality.best_strehl
+       << " about the best point";
+  if (!quality.modulation)
+    return text.str() + "; no MTF: too few rays, or path differences vary too fast";
+  const auto& mtf = *quality.modulation;
+  text << "\nMTF (x, y, ideal):";
+  for (const std::size_t f : {2, 5, 10})
+    text << (f == 2 ? " " : "; ") << mtf.along_x[f] << ", " << mtf.along_y[f] << ", "
+         << mtf.of_ideal[f] << " at " << mtf.frequency[f] << " per unit of length";
+  return text.str();
+}
+
+/// Writes the image of the rays and returns a text about it.
+std::string make_image(const TraceScene& scene, const std::vector<TracedRay>& rays,
+                       ResultFile& file) {
+  const grin::RayImage image = make_ray_image(*scene.image, rays);
+  write_image(file, image);
+  std::string text = text_of(image);
+  if (const auto system = paraxial_system(scene)) {
+    write_system(file, *system);
+    text += text_of(*system);
+  }
+  if (!scene.wavelength) return text;
+  if (const auto quality = image_quality(image, rays, *scene.wavelength)) {
+    write_quality(file, *quality);
+    text += text_of(*quality);
+  }
+  return text;
+}
+
 Made trace_light(const TraceScene& scene, ResultFile& file, bool prints) {
   const auto rays = trace_rays(scene);
   write_rays(file, scene, rays);
   if (scene.path_points > 0) write_paths(file, scene, rays);
-  std::optional<grin::RayImage> image;
-  if (scene.image) write_image(file, image.emplace(make_ray_image(*scene.image, rays)));
+  const std::string image = scene.image ? make_image(scene, rays, file) : "";
   std::string plan = std::to_string(rays.size()) + (rays.size() == 1 ? " ray: " : " rays: ") +
                      describe(scene.steps);
   if (prints) std::printf("%s\n%s\n", plan.c_str(), ends_of(rays, scene.length_unit).c_str());
-  if (prints && image) std::printf("%s\n", text_of(*image).c_str());
+  if (prints && scene.image) std::printf("%s\n", image.c_str());
   return {plan, static_cast<double>(rays.size())};
 }
 
@@ -132,6 +177,11 @@ class TraceExperiment : public OneShot {
     scene_ = make_trace_scene(keys, values_);
     keys.read(run_.seed);
     if (!scene_->curves) keys.disregard(run_.seed);
+  }
+
+  void note() const override {
+    for (const grin::Body& body : scene_->stage.bodies)
+      if (!body.note.empty()) std::fprintf(stderr, "note: %s\n", body.note.c_str());
   }
 
  private:

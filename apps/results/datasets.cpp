@@ -21,8 +21,8 @@ namespace mc {
 extern const DatasetTable diffusion_table, mean_table, intensity_table, full_table, pairs_table,
     moves_table, reflection_theory_table, gradient_table, delays_table, contrast_table,
     frequency_table, numerical_table, flux_table, field_table, imaging_table, picture_table,
-    blinking_table, recovery_table, recovered_picture_table, contrast_map_table, separation_table,
-    fit_table, plan_table;
+    blinking_table, simulated_picture_table, recovery_table, recovered_picture_table,
+    contrast_map_table, separation_table, fit_table, plan_table;
 }
 
 namespace grin {
@@ -128,6 +128,7 @@ std::vector<const DatasetTable*> all_tables() {
                                              &mc::imaging_table,
                                              &mc::picture_table,
                                              &mc::blinking_table,
+                                             &mc::simulated_picture_table,
                                              &mc::recovery_table,
                                              &mc::recovered_picture_table,
                                              &mc::separation_table,

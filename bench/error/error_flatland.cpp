@@ -149,6 +149,15 @@ SceneSpec small_box_in_space() {
   return spec;
 }
 
+SceneSpec few_spheres() {
+  SceneSpec spec = small_box_in_space();
+  spec.count = 50;
+  spec.scatterer = "penetrable";
+  spec.radius = 1 / (2 * pi);
+  spec.index = "2";
+  return spec;
+}
+
 /// Returns boxes of optical depth about 1, in the plane and in space.
 std::vector<FlatScene> scenes() {
   const auto shared = [](const SceneSpec& spec) {
@@ -161,7 +170,8 @@ std::vector<FlatScene> scenes() {
           {"box_points, in space", shared(box_in_space(1257))},
           {"box_points_absorbing, in space", shared(absorbing_box_in_space())},
           {"box_spheres, in space", shared(spheres())},
-          {"box_100_points, in space", shared(small_box_in_space())}};
+          {"box_100_points, in space", shared(small_box_in_space())},
+          {"box_50_spheres, in space", shared(few_spheres())}};
 }
 
 /// The tolerance 1e-2 gives field errors of 3e-4, far below the error of any ensemble here.

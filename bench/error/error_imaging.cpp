@@ -1,8 +1,13 @@
 #include <cmath>
+#include <numeric>
+#include <string>
 
 #include "bench/error/error_modules.h"
 #include "bench/scenes/blinking_frames.h"
 #include "bench/scenes/imaged_points.h"
+#include "bench/scenes/speckle_frames.h"
+#include "mc/imaging/retrieval/contrast_map.h"
+#include "mc/imaging/simulated/picture_prediction.h"
 
 namespace flatspeckle::bench {
 
@@ -62,10 +67,84 @@ ErrorCurve by_frames(double cpu_seconds) {
   return curve;
 }
 
+Estimate separations(const mc::PictureScene& scene, double paths, std::uint64_t seed) {
+  mc::PictureTask task;
+  task.prediction_paths = static_cast<std::uint64_t>(paths);
+  task.seed = seed;
+  return mc::predicted_speckle(scene, task).correlation;
+}
+
+ErrorCurve separations_by_paths(double cpu_seconds) {
+  const mc::PictureScene scene = imaged_in_space();
+  constexpr double many_paths = 2e6;
+  const Estimate many = separations(scene, many_paths, 1000);
+  const ErrorReference reference{many.value, relative_error(many), "2,000,000 paths"};
+  ErrorCurve curve{"image in space, C_I", "paths", reference.how, reference.relative_error, {}};
+  measure_points(curve, cpu_seconds, [&, paths = 2500.0]() mutable {
+    paths *= 2;
+    return rms_point(16, [&](unsigned seed) {
+      return timed_run(paths, [&] {
+        return std::pow(relative_distance(separations(scene, paths, seed).value, reference), 2);
+      });
+    });
+  });
+  return curve;
+}
+
+/// Error of K^2, averaged over a map, for frames of two patterns.
+ErrorPoint contrast_point(std::size_t count) {
+  constexpr double expected = 0.5;
+  return rms_point(8, [&](unsigned seed) {
+    const Frames frames = mixed_speckle(count, 48, 2, seed);
+    return timed_run(static_cast<double>(count), [&] {
+      const auto map = mc::contrast_map(frames, {.window = 9});
+      const double mean = std::reduce(map.square.begin(), map.square.end()) /
+                          static_cast<double>(map.square.size());
+      return std::pow(mean / expected - 1, 2);
+    });
+  });
+}
+
+/// Lack of correlation of a picture with the object, by the number of frames.
+ErrorPoint picture_point(std::size_t count) {
+  constexpr std::size_t side = 96, lags = 20;
+  const auto letter = sparse_letter(lags);
+  return rms_point(4, [&](unsigned seed) {
+    const Frames frames = shifted_speckle(count, side, letter, lags, seed);
+    return timed_run(static_cast<double>(count), [&] {
+      const auto statistics = mc::picture_statistics(frames, 0, count, lags, {});
+      const auto found = mc::retrieved_picture(statistics.autocorrelation, {lags, lags},
+                                               {.starts = 4, .iterations = 200});
+      return std::pow(1 - mc::best_alignment(letter, found.picture, {lags, lags}).correlation, 2);
+    });
+  });
+}
+
+ErrorCurve by_count(const std::string& name, const std::string& how, std::size_t most,
+                    ErrorPoint (*point)(std::size_t), double cpu_seconds) {
+  ErrorCurve curve{name, "frames", how, 0, {}};
+  measure_points(curve, cpu_seconds, [most, point, count = std::size_t{1}]() mutable {
+    count *= 2;
+    return count <= most ? std::optional(point(count)) : std::nullopt;
+  });
+  return curve;
+}
+
+ErrorCurve contrast_by_frames(double cpu_seconds) {
+  return by_count("contrast, K^2", "frames of two patterns", 128, contrast_point, cpu_seconds);
+}
+
+ErrorCurve pictures_by_frames(double cpu_seconds) {
+  return by_count("recover, pictures", "the object of the frames", 64, picture_point, cpu_seconds);
+}
+
 }  // namespace
 
 std::vector<ErrorRun> imaging_error_runs() {
-  return {{"image, C_I of pairs", "paths", pairs_by_paths, true},
+  return {{"image in space, C_I", "paths", separations_by_paths, true},
+          {"contrast, K^2", "frames", contrast_by_frames, false},
+          {"recover, pictures", "frames", pictures_by_frames, false},
+          {"image, C_I of pairs", "paths", pairs_by_paths, true},
           {"image, patterns of sources", "frames", by_frames, false}};
 }
 

@@ -55,4 +55,8 @@ std::vector<LongRun> render_long_runs();
 /// coefficients; radial profiles are also searched by methods that use only the gradient.
 std::vector<ErrorRun> design_error_runs();
 
+/// RMS error of the normals of a ball of more and more triangles, which are taken as curved or as
+/// plane.
+std::vector<ErrorRun> lens_error_runs();
+
 }  // namespace flatspeckle::bench

@@ -119,7 +119,7 @@ PlanCase flag(const std::string& left_out, const std::string& name, const Render
 TwoKernels map_alone() {
   const RenderScene alone = oracles::lamp_map(0.9);
   RenderScene both = alone;
-  both.sensors = {Camera{Vec3(0, 0, 5), -Vec3::UnitZ(), Vec3::UnitY(), 1, {8, 8}}};
+  both.sensors = {Camera{Vec3(0, 0, 5), -Vec3::UnitZ(), Vec3::UnitY(), 1, {4, 4}}};
   return {map_of(both), map_of(alone)};
 }
 

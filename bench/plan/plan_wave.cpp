@@ -10,6 +10,9 @@
 #include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/maps/field_map.h"
 #include "wave_solver/solutions/wave_solution.h"
+#include "wave_solver/spheres/sphere_equations.h"
+#include "wave_solver/spheres/sphere_pairs.h"
+#include "wave_solver/sums/space_product.h"
 
 namespace flatspeckle::bench {
 
@@ -163,6 +166,24 @@ TwoAlternatives pixels_one_by_one(bool) {
           [=] { return map(FieldMap::Route::fastest); }};
 }
 
+/// Compares direct sums over all pairs of points in space with pre-corrected FFT.
+TwoAlternatives pairs_in_space(bool is_quick) {
+  constexpr double tolerance = 1e-5, per_volume = 10;
+  RandomStream random(1, static_cast<std::uint64_t>(Stream::placement), 0);
+  const double count = is_quick ? 8000 : 20000, side = std::cbrt(count / per_volume);
+  PlacementRule rule;
+  rule.mean_count = count;
+  rule.count = static_cast<std::uint64_t>(count);
+  const Placement points =
+      draw_placement({Domain::Kind::box, side, side, side}, point, rule, random);
+  BasisOrders orders(k, tolerance, sphere_rules());
+  const auto equations =
+      std::make_shared<const SphereEquations>(points, k, orders.basis(points, {}));
+  const auto sums = std::make_shared<const SpaceProduct>(*equations, tolerance);
+  const auto x = equations->right_hand_sides(Lights({0.3}), tolerance);
+  return {[=] { return equations->apply(x); }, [=] { return (*sums)(x); }};
+}
+
 /// Compares a system of all disks in all copies of a cluster with one that uses the cluster's
 /// T-matrix, computed once.
 TwoAlternatives disks_of_copies(bool) {
@@ -195,6 +216,8 @@ std::vector<PlanCase> wave_plan_cases() {
           row("diagnosis", "box_cylinders", "placement", 1e-12, diagnosis),
           row("the matrix", "4000 points (500 in a quick look)", "placement", 1e-4, whole_matrix),
           row("sums pixel by pixel", "100 cylinders, 26400 pixels", "map", 1e-8, pixels_one_by_one),
+          row("pairs beyond a wavelength", "20000 points in space (8000 in a quick look)",
+              "product", 1e-5, pairs_in_space),
           row("disks of copies", "12 copies of 16 cylinders", "placement", 1e-7, disks_of_copies)};
 }
 

@@ -1,7 +1,9 @@
 #include "bench/scenes/blinking_frames.h"
 #include "bench/scenes/imaged_points.h"
+#include "bench/scenes/speckle_frames.h"
 #include "bench/stability/extreme_rows.h"
 #include "mc/imaging/media_statistics.h"
+#include "mc/imaging/retrieval/contrast_map.h"
 
 namespace flatspeckle::bench {
 
@@ -65,6 +67,35 @@ Finding counted_in_noise(double photons) {
   return yes(found.count.sources <= 1);
 }
 
+/// Returns by how much K^2 and autocorrelation change if all values of the frames are multiplied by
+/// a number.
+Finding scaled_frames(double scale) {
+  const Frames frames = mixed_speckle(2, 64, 1, 1);
+  Frames scaled = frames;
+  for (double& value : scaled.values) value *= scale;
+  const auto map = mc::contrast_map(frames, {.window = 8}),
+             other = mc::contrast_map(scaled, {.window = 8});
+  const auto one = mc::picture_statistics(frames, 0, 2, 12, {}),
+             two = mc::picture_statistics(scaled, 0, 2, 12, {});
+  double figure = 0;
+  for (std::size_t p = 0; p < map.square.size(); ++p)
+    figure = larger({figure, std::abs(other.square[p] / map.square[p] - 1)});
+  for (std::size_t p = 0; p < one.autocorrelation.size(); ++p)
+    figure = larger({figure, std::abs(one.autocorrelation[p] - two.autocorrelation[p])});
+  return {figure, 1e-9};
+}
+
+/// Returns the deviation of the mean of a detector's values, in standard errors of the shot noise.
+Finding detected_mean(double photons) {
+  constexpr std::size_t pixels = 4096;
+  RandomStream random(1, static_cast<std::uint64_t>(Stream::camera), 0);
+  std::vector<double> frame(pixels, 1.0);
+  mc::detect(frame, {.photons = photons}, {.quantum_efficiency = 0.5}, random);
+  double mean = 0;
+  for (const double value : frame) mean += value / pixels;
+  return {std::abs(mean - photons / 2) / std::sqrt(photons / 2 / pixels), 5};
+}
+
 }  // namespace
 
 void mc_imaging_extremes(ExtremeRows& rows) {
@@ -85,6 +116,10 @@ void mc_imaging_extremes(ExtremeRows& rows) {
            BlinkingScene{.frames = 80, .brightness = {1, 5, 30}}, 1);
   rows.add_each("even light of ", {1e-3, 1e6}, " photons a pixel",
                 "1 where noise is counted as sources", counted_in_noise);
+  rows.add_each("frames of speckle, times ", {1e-100, 1e100}, "",
+                "K^2 and autocorrelation keep their values", scaled_frames);
+  rows.add_each("detector, ", {1e-2, 1e12}, " photons a pixel", "mean, in standard errors",
+                detected_mean);
   rows.add_refused("dark frames", "not positive", [] {
     mc::separated_sources(std::vector<std::vector<double>>(3, std::vector<double>(100, 0.0)),
                           {{}, 10});

@@ -103,7 +103,10 @@ Frames corrected_frames(const Keys& keys, const FrameCorrections& corrections,
   const auto binning = static_cast<std::size_t>(keys.read(corrections.binning));
   if (part[0] + part[2] > frames.columns || part[1] + part[3] > frames.rows || part[2] < binning ||
       part[3] < std::min(binning, frames.rows))
-    throw InputError("region, binning: must lie in the frames, which have " + size_of(frames));
+    throw InputError("region = " + std::to_string(part[0]) + " " + std::to_string(part[1]) + " " +
+                     std::to_string(part[2]) + " " + std::to_string(part[3]) +
+                     ", binning = " + std::to_string(binning) + ": must lie in the frames of " +
+                     path + ", which have " + size_of(frames));
   const bool line = frames.rows == 1;
   if (binning == 1 && part[2] == frames.columns && part[3] == frames.rows) return frames;
   if (line && binning > 1) throw InputError("binning", binning, "must be 1 for frames of one line");

@@ -136,6 +136,10 @@ Frames read(const std::string& key, const std::filesystem::path& path, const Fra
 
 }  // namespace
 
+bool is_text_frames(const std::filesystem::path& path) {
+  return format_of(path) == Format::text;
+}
+
 void add_frame_keys(Keys& keys, FrameFormat& format) {
   keys.add("frame_dataset", format.dataset,
            "Dataset of an HDF5 file that holds the frames (default: the only one with two or three "

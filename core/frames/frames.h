@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/error.h"
 #include "core/keys/keys.h"
 
 namespace flatspeckle {
@@ -37,6 +38,22 @@ void add_frame_keys(Keys& keys, FrameFormat& format);
 /// Reads those of the keys that apply to the format of a file.
 void read_frame_keys(const Keys& keys, const FrameFormat& format,
                      const std::filesystem::path& path);
+
+/// Whether a file is a table of text, by its first bytes.
+bool is_text_frames(const std::filesystem::path& path);
+
+/// Calls f(). An InputError about the key `frames` then also names the file.
+template <typename F>
+auto naming_frames(const std::string& path, const F& f) {
+  const std::string key = "frames: ";
+  try {
+    return f();
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    if (!text.starts_with(key)) throw;
+    throw InputError("frames = " + path + ": " + text.substr(key.size()));
+  }
+}
 
 /// Reads frames from PNG (grey, 8 or 16 bit), TIFF (grey, one or several pages), NPY, HDF5 or CSV.
 /// The content of the file tells its format. Throws InputError, which names the key and the file,

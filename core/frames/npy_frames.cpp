@@ -46,9 +46,13 @@ Header header_of(const std::string& bytes) {
   Header header{after(text, "descr", '\'', '\''), {}, false, place + length};
   header.by_columns = after(text, "fortran_order", ' ', ',') == "True";
   std::istringstream numbers(after(text, "shape", '(', ')'));
-  for (std::string number; std::getline(numbers, number, ',');)
-    if (number.find_first_of("0123456789") != std::string::npos)
-      header.shape.push_back(std::stoull(number));
+  try {
+    for (std::string number; std::getline(numbers, number, ',');)
+      if (number.find_first_of("0123456789") != std::string::npos)
+        header.shape.push_back(std::stoull(number));
+  } catch (const std::out_of_range&) {
+    throw std::runtime_error("has an axis longer than any memory");
+  }
   return header;
 }
 
@@ -97,9 +101,10 @@ Frames read_npy(const std::string& bytes) {
     throw std::runtime_error("must have two axes (rows, columns) or three (frames, rows, columns)");
   for (const auto& [name, size, values, full_scale] : types) {
     if (header.type != name) continue;
-    std::size_t count = 1;
-    for (const std::size_t length : header.shape) count *= length;
-    if (bytes.size() - header.begin != count * size)
+    double count = 1;
+    for (const std::size_t length : header.shape) count *= static_cast<double>(length);
+    if (static_cast<double>(bytes.size()) - static_cast<double>(header.begin) !=
+        count * static_cast<double>(size))
       throw std::runtime_error("is a damaged NPY file");
     Frames frames{header.shape[header.shape.size() - 2], header.shape.back(),
                   values(std::string_view(bytes).substr(header.begin)), full_scale};

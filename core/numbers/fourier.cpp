@@ -81,15 +81,16 @@ void PlaneTransform::backward(Complex* spectrum, double* picture) const {
   fftw_execute_dft_c2r(plans_->backward, native(spectrum), picture);
 }
 
-void transform_even(std::vector<Complex>& values, std::size_t rows, std::size_t columns) {
-  const int sizes[] = {static_cast<int>(rows / 2 + 1), static_cast<int>(columns / 2 + 1)};
-  const fftw_r2r_kind kinds[] = {FFTW_REDFT00, FFTW_REDFT00};
+void transform_even(std::vector<Complex>& values, const std::vector<std::size_t>& sizes) {
+  std::vector<int> halves;
+  for (const std::size_t size : sizes) halves.push_back(static_cast<int>(size / 2 + 1));
+  const std::vector<fftw_r2r_kind> kinds(sizes.size(), FFTW_REDFT00);
   auto* data = reinterpret_cast<double*>(values.data());
   fftw_plan plan;
   {
     const std::lock_guard lock(fourier_planning());
-    plan = fftw_plan_many_r2r(2, sizes, 2, data, nullptr, 2, 1, data, nullptr, 2, 1, kinds,
-                              FFTW_ESTIMATE);
+    plan = fftw_plan_many_r2r(static_cast<int>(sizes.size()), halves.data(), 2, data, nullptr, 2, 1,
+                              data, nullptr, 2, 1, kinds.data(), FFTW_ESTIMATE);
   }
   fftw_execute(plan);
   const std::lock_guard lock(fourier_planning());

@@ -50,10 +50,10 @@ class PlaneTransform {
   std::shared_ptr<const Plans> plans_;
 };
 
-/// Computes the Fourier transform of a function on a periodic grid of rows x columns that is even
-/// in both coordinates. Function and transform are stored on the first (rows / 2 + 1) x (columns /
-/// 2 + 1) points of the grid.
-void transform_even(std::vector<Complex>& values, std::size_t rows, std::size_t columns);
+/// Computes the Fourier transform of a function on a periodic grid with two or three axes of the
+/// given sizes, row by row, that is even in all coordinates. Function and transform are stored on
+/// the first size / 2 + 1 points of each axis.
+void transform_even(std::vector<Complex>& values, const std::vector<std::size_t>& sizes);
 
 /// Returns the smallest even number of the form 2^a 3^b 5^c that is at least `least`: a fast
 /// transform size.

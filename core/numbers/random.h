@@ -23,7 +23,14 @@ class RandomStream {
 
   /// Makes the next call of uniform() return u, in (0, 1), before the stream continues; used for
   /// numbers that are stratified over many streams.
-  void put_back(double u) { block_.v[--used_] = static_cast<std::uint64_t>(u * 0x1p53) << 11; }
+  void put_back(double u) { block_.v[--used_] = bits_of(u); }
+  /// Makes the next four calls of uniform() return these numbers, in (0, 1), before the stream
+  /// continues with its next block; used for points that are stratified over many paths.
+  void lead(const std::array<double, 4>& u) {
+    for (used_ = 4; used_ > 0;) put_back(u[used_ - 1]);
+  }
+  std::uint64_t seed() const { return key_.v[0]; }
+  std::uint64_t batch() const { return counter_.v[1]; }
 
   /// Returns a random number u, uniformly distributed in the open interval (0, 1), so that log(u),
   /// log(1 - u) and 1/u are finite.
@@ -35,6 +42,7 @@ class RandomStream {
   }
 
  private:
+  static std::uint64_t bits_of(double u) { return static_cast<std::uint64_t>(u * 0x1p53) << 11; }
   void refill() {
     block_ = engine_(counter_, key_);
     ++counter_.v[0];

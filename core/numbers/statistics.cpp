@@ -72,18 +72,19 @@ double lift(double size) {
 
 }  // namespace
 
-Estimate controlled_jackknife(const GroupedSums& sums, const Estimator& theta, std::size_t control,
-                              double few) {
+Estimate controlled_jackknife(const GroupedSums& sums, Estimator theta,
+                              std::span<const std::size_t> controls, double few) {
   constexpr std::size_t many = 32;
   if (sums.groups() < many) return jackknife(sums, theta, few);
-  const auto of_control = coefficients(sums, theta, control);
-  const auto controlled = [&](double samples, std::span<const Complex> all) {
-    std::vector<Complex> value = theta(samples, all);
-    for (std::size_t i = 0; i < value.size(); ++i)
-      value[i] -= of_control[i] * all[control] / samples;
-    return value;
-  };
-  return jackknife(sums, controlled, few);
+  for (const std::size_t control : controls)
+    theta = [before = theta, of_control = coefficients(sums, theta, control), control](
+                double samples, std::span<const Complex> all) {
+      std::vector<Complex> value = before(samples, all);
+      for (std::size_t i = 0; i < value.size(); ++i)
+        value[i] -= of_control[i] * all[control] / samples;
+      return value;
+    };
+  return jackknife(sums, theta, few);
 }
 
 GroupedSums::GroupedSums(std::size_t size) : size_(size), most_groups_(most_groups(size)) {

@@ -116,11 +116,11 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta, double few);
 /// because means are linear in the sums: their errors follow directly from the means of the groups.
 Estimate jackknife(const GroupedSums& sums, const EntrySums& of, double few = few_groups);
 
-/// Computes the jackknife of a theta that is linear in the sums, with a control variate: the sum of
-/// index `control`, whose expectation is 0. Its coefficients follow from a regression over the
-/// groups, whose bias is of the order of 1 / samples. The control variate is used only if there are
-/// at least 32 groups and it clearly reduces the variance.
-Estimate controlled_jackknife(const GroupedSums& sums, const Estimator& theta, std::size_t control,
-                              double few = few_groups);
+/// Computes the jackknife of a theta that is linear in the sums, with control variates: the sums of
+/// indices `controls`, whose expectations are 0, one after the other. Their coefficients follow
+/// from regressions over the groups, whose bias is of the order of 1 / samples. A control variate
+/// is used only if there are at least 32 groups and it clearly reduces the variance.
+Estimate controlled_jackknife(const GroupedSums& sums, Estimator theta,
+                              std::span<const std::size_t> controls, double few = few_groups);
 
 }  // namespace flatspeckle

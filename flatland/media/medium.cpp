@@ -11,6 +11,7 @@
 #include "core/contract.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "core/numbers/gauss.h"
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
 #include "flatland/media/hard_sphere_fluid.h"
@@ -197,22 +198,62 @@ BulkMedium bulk_medium(const Scatterer& bulk, const BulkPhase& phase, double mu_
   return medium;
 }
 
-BulkMedium correlated_medium(BulkMedium medium, double k, StructureFactor structure) {
-  medium.structure = std::move(structure);
+std::vector<Complex> correlated_amplitudes_in_space(const BulkMedium& medium, double k) {
+  auto values = amplitudes_in_space(medium.t_matrix, k);
+  const double step = std::numbers::pi / static_cast<double>(values.size() - 1);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    values[i] *= structure_amplitude(medium.structure, k, static_cast<double>(i) * step);
+  return values;
+}
+
+namespace {
+
+/// Integrals of |A|^2 S, and of |A|^2 S times the cosine of the scattering angle, over all angles.
+struct Scattered {
+  double sum = 0, cosine = 0;
+
+  void add(double weight, double square, double cosine_of_angle) {
+    sum += weight * square;
+    cosine += weight * square * cosine_of_angle;
+  }
+};
+
+/// S is an analytic function of q^2 and thus of the cosine, so that Gauss's rule converges
+/// spectrally.
+Scattered scattered_in_space(const BulkMedium& medium, double k) {
+  const auto rule = gauss_legendre(static_cast<int>(64 * (medium.t_matrix.size() + 1)));
+  Scattered scattered;
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const double cosine = 2 * rule.node[i] - 1;
+    const double structure = medium.structure(k * std::sqrt(2 * (1 - cosine)));
+    scattered.add(4 * std::numbers::pi * rule.weight[i],
+                  structure * std::norm(amplitude_in_space(medium.t_matrix, k, cosine)), cosine);
+  }
+  return scattered;
+}
+
+Scattered scattered_in_plane(const BulkMedium& medium, double k) {
   // If S is smooth, the trapezoidal rule converges spectrally. If S is tabulated, this number of
   // intervals is fine enough.
   const std::size_t intervals = 256 * (medium.t_matrix.size() + 1);
   const auto alone = amplitudes(medium.t_matrix, k, intervals);
   const double step = std::numbers::pi / static_cast<double>(intervals);
-  double sum = 0, cosine = 0;
+  Scattered scattered;
   for (std::size_t i = 0; i <= intervals; ++i) {
     const double theta = static_cast<double>(i) * step;
     const double weight = i == 0 || i == intervals ? step : 2 * step;
     const double root = structure_amplitude(medium.structure, k, theta);
-    const double scattered = weight * std::norm(root * alone[i]);
-    sum += scattered;
-    cosine += scattered * std::cos(theta);
+    scattered.add(weight, std::norm(root * alone[i]), std::cos(theta));
   }
+  return scattered;
+}
+
+}  // namespace
+
+BulkMedium correlated_medium(BulkMedium medium, double k, StructureFactor structure) {
+  medium.structure = std::move(structure);
+  const auto [sum, cosine] =
+      medium.dimension == 3 ? scattered_in_space(medium, k) : scattered_in_plane(medium, k);
   const double absorption = medium.mu_t - medium.mu_s;
   medium.mu_s = medium.density * sum;
   medium.mu_t = medium.mu_s + absorption;

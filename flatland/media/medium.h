@@ -95,9 +95,13 @@ void set_density(BulkMedium& medium, const Scatterer& scatterer, double k, doubl
 /// Returns a medium given by a phase function and an extinction coefficient.
 BulkMedium bulk_medium(const Scatterer& bulk, const BulkPhase& phase, double mu_t);
 
+/// Returns the amplitudes A(theta) sqrt(S(2 k sin(theta/2))) of a medium in space at theta = 0 ..
+/// pi in equal intervals. Precondition: the scatterers have a T-matrix.
+std::vector<Complex> correlated_amplitudes_in_space(const BulkMedium& medium, double k);
+
 /// Returns the medium of the same scatterers at positions with the given structure factor (C16).
 /// Then mu_s = rho int |A|^2 S, g and albedo follow from |A|^2 S, and the absorption remains rho
-/// (sigma_e - sigma_s).
+/// (sigma_e - sigma_s). The phase function in space is not set.
 BulkMedium correlated_medium(BulkMedium independent, double k, StructureFactor structure);
 
 /// Returns the mean of media, weighted by the fraction of the domain that each fills.

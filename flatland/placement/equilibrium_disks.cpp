@@ -30,8 +30,10 @@ Neighbours neighbour(std::uint32_t cell, int step, std::uint32_t cells, double l
   return {cell + static_cast<std::uint32_t>(step), 0};
 }
 
-/// Packing fraction up to which random sequential addition is fast.
-constexpr double start_packing = 0.3;
+/// Returns the packing fraction up to which random sequential addition is fast.
+double start_packing(std::size_t axes) {
+  return axes == 3 ? 0.2 : 0.3;
+}
 /// Number of contacts per chain. It is small enough for density waves to relax at their fastest
 /// rate.
 constexpr double contacts_per_chain = 20;
@@ -40,36 +42,45 @@ constexpr double contacts_per_chain = 20;
 /// one. Relaxation times were measured with up to 1000 disks. Below packing 0.65 density waves
 /// relax most slowly, in 10 to 20 contacts per disk. Above packing 0.65 the orientation of the
 /// bonds between neighbours relaxes most slowly, in 25 contacts per disk at 0.65 and 330 at 0.69.
-double contacts_per_disk(double packing) {
-  return 100 + 0.8 / std::pow(0.71 - packing, 2);
+/// Spheres, whose fluid freezes at 0.494, need fewer.
+double contacts_per_disk(double packing, std::size_t axes) {
+  return axes == 3 ? 100 : 100 + 0.8 / std::pow(0.71 - packing, 2);
 }
 
 /// Returns the mean distance that a chain moves between contacts. At a contact the motion jumps by
-/// pi/4 diameters on average. The ratio of jumps to distance is Z - 1 = 2 eta g(contact), with Z
-/// the compressibility factor, eta the packing fraction and g the pair correlation function. In a
-/// dilute gas the mean spacing is returned if it is shorter.
-double free_distance(double packing, double mean_diameter, double spacing) {
-  const double jumps = 2 * packing * HardDiskFluid(packing, mean_diameter).contact_value();
-  return std::min(std::numbers::pi / 4 * mean_diameter / jumps, spacing);
+/// pi/4 diameters on average, in space by 2/3. The ratio of jumps to distance is Z - 1 = 2 eta
+/// g(contact), in space 4 eta g(contact), with Z the compressibility factor, eta the packing
+/// fraction and g the pair correlation function. In space Z is that of Carnahan and Starling
+/// [carnahan1969]. In a dilute gas the mean spacing is returned if it is shorter.
+double free_distance(double packing, double mean_diameter, double spacing, std::size_t axes) {
+  const double jumps = axes == 3
+                           ? 4 * packing * (1 - packing / 2) / std::pow(1 - packing, 3)
+                           : 2 * packing * HardDiskFluid(packing, mean_diameter).contact_value();
+  return std::min((axes == 3 ? 2.0 / 3 : std::numbers::pi / 4) * mean_diameter / jumps, spacing);
 }
 
 class Fluid {
  public:
   Fluid(const Domain& box, std::span<const double> radii, RandomStream& random)
       : box_(box), random_(random), chains_(box, radii) {
-    double area = 0;
-    for (double radius : radii) area += std::numbers::pi * radius * radius;
-    packing_ = area / box.content();
-    const double disks = static_cast<double>(radii.size());
+    const std::size_t axes = chains_.axes();
+    double content = 0;
+    for (double radius : radii)
+      content += axes == 3 ? 4 * std::numbers::pi / 3 * (radius * radius * radius)
+                           : std::numbers::pi * radius * radius;
+    packing_ = content / box.content();
+    const double disks = static_cast<double>(radii.size()), each = box.content() / disks;
     const double mean_diameter = 2 * std::accumulate(radii.begin(), radii.end(), 0.0) / disks;
-    chain_length_ = contacts_per_chain *
-                    free_distance(packing_, mean_diameter, std::sqrt(box.content() / disks));
+    chain_length_ =
+        contacts_per_chain *
+        free_distance(packing_, mean_diameter, axes == 3 ? std::cbrt(each) : std::sqrt(each), axes);
   }
 
   /// Places all disks, with reduced radii if the packing is high, then grows them to full size
   /// while they move.
   void fill() {
-    const double scale = std::min(1.0, std::sqrt(start_packing / packing_));
+    const double filled = start_packing(chains_.axes()) / packing_;
+    const double scale = std::min(1.0, chains_.axes() == 3 ? std::cbrt(filled) : std::sqrt(filled));
     for (std::size_t disk = 0; disk < chains_.size(); ++disk)
       try_until([&] { return chains_.place(disk, anywhere(), scale); });
     try_until([&] {
@@ -79,7 +90,7 @@ class Fluid {
     });
   }
 
-  void equilibrate() { move(contacts_per_disk(packing_)); }
+  void equilibrate() { move(contacts_per_disk(packing_, chains_.axes())); }
 
   /// Returns all centres, shifted by one common random vector, which makes the density exactly
   /// uniform.
@@ -90,6 +101,7 @@ class Fluid {
       Vec moved = chains_.centre(disk) + shift;
       moved.x -= box_.width * std::floor(moved.x / box_.width + 0.5);
       moved.z -= box_.depth * std::floor(moved.z / box_.depth);
+      if (box_.height > 0) moved.y -= box_.height * std::floor(moved.y / box_.height + 0.5);
       result.push_back(moved);
     }
     return result;
@@ -116,15 +128,17 @@ class Fluid {
     const auto disks = static_cast<double>(chains_.size());
     const double number = std::ceil(contacts_each * disks / contacts_per_chain);
     for (double chain = 0; chain < number; ++chain) {
-      const std::size_t axis = random_.uniform() < 0.5 ? 0 : 1;
+      const auto axes = static_cast<double>(chains_.axes());
+      const auto axis =
+          std::min(static_cast<std::size_t>(random_.uniform() * axes), chains_.axes() - 1);
       const auto first = static_cast<std::size_t>(random_.uniform() * disks);
       chains_.move(axis, std::min(first, chains_.size() - 1), chain_length_);
     }
   }
 
   Vec anywhere() {
-    const double x = (random_.uniform() - 0.5) * box_.width;
-    return {x, random_.uniform() * box_.depth};
+    const double x = (random_.uniform() - 0.5) * box_.width, z = random_.uniform() * box_.depth;
+    return {x, z, box_.height > 0 ? (random_.uniform() - 0.5) * box_.height : 0};
   }
 
   Domain box_;
@@ -136,30 +150,50 @@ class Fluid {
 }  // namespace
 
 EventChains::EventChains(const Domain& box, std::span<const double> radii)
-    : length_{box.width, box.depth}, radius_(radii.begin(), radii.end()), reach_(radii.size()) {
+    : axes_(box.height > 0 ? 3 : 2),
+      length_{box.width, box.depth, box.height},
+      cell_size_{},
+      cells_{1, 1, 1},
+      radius_(radii.begin(), radii.end()),
+      reach_(radii.size()) {
   for (double& radius : radius_) radius *= 1 + rounding_margin;
   const double contact = 2 * *std::max_element(radius_.begin(), radius_.end());
   // A finer grid, with many more cells than disks, would only cost memory.
-  const double most_cells = 3 + 2 * std::sqrt(static_cast<double>(size()));
-  for (std::size_t axis = 0; axis < 2; ++axis) {
+  const auto number = static_cast<double>(size());
+  const double most_cells = 3 + 2 * (axes_ == 3 ? std::cbrt(number) : std::sqrt(number));
+  for (std::size_t axis = 0; axis < axes_; ++axis) {
     const double cells = std::floor(std::min(length_[axis] / contact, most_cells));
     FS_EXPECT(cells >= 3);
     cells_[axis] = static_cast<std::uint32_t>(cells);
     cell_size_[axis] = length_[axis] / cells;
-    at_[axis].resize(size());
-    cell_[axis].resize(size());
   }
-  first_.assign(std::size_t{cells_[0]} * cells_[1], none);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    at_[axis].assign(size(), 0);
+    cell_[axis].assign(size(), 0);
+  }
+  first_.assign(std::size_t{cells_[0]} * cells_[1] * cells_[2], none);
   next_.assign(size(), none);
   previous_.assign(size(), none);
 }
 
 Vec EventChains::centre(std::size_t disk) const {
-  return {at_[0][disk] - length_[0] / 2, at_[1][disk]};
+  return {at_[0][disk] - length_[0] / 2, at_[1][disk], at_[2][disk] - length_[2] / 2};
+}
+
+std::array<double, 3> EventChains::point_of(Vec centre) const {
+  return {centre.x + length_[0] / 2, centre.z, centre.y + length_[2] / 2};
+}
+
+EventChains::Cell EventChains::cell_of(const std::array<double, 3>& point) const {
+  Cell cell{};
+  for (std::size_t axis = 0; axis < axes_; ++axis)
+    cell[axis] =
+        std::min(static_cast<std::uint32_t>(point[axis] / cell_size_[axis]), cells_[axis] - 1);
+  return cell;
 }
 
 void EventChains::enter(std::uint32_t disk) {
-  std::uint32_t& first = first_in({cell_[0][disk], cell_[1][disk]});
+  std::uint32_t& first = first_in({cell_[0][disk], cell_[1][disk], cell_[2][disk]});
   previous_[disk] = none;
   next_[disk] = first;
   if (first != none) previous_[first] = disk;
@@ -172,37 +206,39 @@ void EventChains::leave(std::uint32_t disk) {
   if (before != none)
     next_[before] = after;
   else
-    first_in({cell_[0][disk], cell_[1][disk]}) = after;
+    first_in({cell_[0][disk], cell_[1][disk], cell_[2][disk]}) = after;
 }
 
 template <typename Visit>
-void EventChains::visit_near(const std::array<double, 2>& point, Visit visit) const {
-  std::array<std::uint32_t, 2> cell;
-  for (std::size_t axis = 0; axis < 2; ++axis)
-    cell[axis] =
-        std::min(static_cast<std::uint32_t>(point[axis] / cell_size_[axis]), cells_[axis] - 1);
+void EventChains::visit_near(const std::array<double, 3>& point, Visit visit) const {
+  const Cell cell = cell_of(point);
+  const int levels = axes_ == 3 ? 1 : 0;
   for (int i = -1; i <= 1; ++i) {
     const Neighbours x = neighbour(cell[0], i, cells_[0], length_[0]);
     for (int j = -1; j <= 1; ++j) {
       const Neighbours z = neighbour(cell[1], j, cells_[1], length_[1]);
-      for (std::uint32_t l = first_in({x.cell, z.cell}); l != none; l = next_[l])
-        visit(l, Vec{at_[0][l] + x.shift - point[0], at_[1][l] + z.shift - point[1]});
+      for (int level = -levels; level <= levels; ++level) {
+        const Neighbours y = neighbour(cell[2], level, cells_[2], length_[2]);
+        for (std::uint32_t l = first_in({x.cell, z.cell, y.cell}); l != none; l = next_[l])
+          visit(l, Vec{at_[0][l] + x.shift - point[0], at_[1][l] + z.shift - point[1],
+                       at_[2][l] + y.shift - point[2]});
+      }
     }
   }
 }
 
 bool EventChains::place(std::size_t disk, Vec centre, double scale) {
-  const std::array<double, 2> point{centre.x + length_[0] / 2, centre.z};
+  const auto point = point_of(centre);
   const double radius = scale * radius_[disk];
   bool free = true;
   visit_near(point, [&](std::uint32_t other, Vec distance) {
     free = free && length(distance) > radius + reach_[other];
   });
   if (!free) return false;
-  for (std::size_t axis = 0; axis < 2; ++axis) {
+  const Cell cell = cell_of(point);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     at_[axis][disk] = point[axis];
-    cell_[axis][disk] =
-        std::min(static_cast<std::uint32_t>(point[axis] / cell_size_[axis]), cells_[axis] - 1);
+    cell_[axis][disk] = cell[axis];
   }
   reach_[disk] = radius;
   enter(static_cast<std::uint32_t>(disk));
@@ -211,7 +247,7 @@ bool EventChains::place(std::size_t disk, Vec centre, double scale) {
 
 bool EventChains::grow(std::size_t disk) {
   double free_radius = radius_[disk];
-  visit_near({at_[0][disk], at_[1][disk]}, [&](std::uint32_t other, Vec distance) {
+  visit_near({at_[0][disk], at_[1][disk], at_[2][disk]}, [&](std::uint32_t other, Vec distance) {
     if (other != disk) free_radius = std::min(free_radius, length(distance) - reach_[other]);
   });
   reach_[disk] = std::max(reach_[disk], free_radius);
@@ -220,23 +256,34 @@ bool EventChains::grow(std::size_t disk) {
 
 EventChains::Contact EventChains::next_contact(std::size_t axis, std::uint32_t disk,
                                                double farthest) const {
-  const std::size_t across = 1 - axis;
-  const double along = at_[axis][disk], lateral = at_[across][disk], radius = reach_[disk];
+  // In the plane the third axis has one cell, and all its coordinates are 0.
+  const std::size_t across = axis == 0 ? 1 : 0, other = axis == 2 ? 1 : 2;
+  const int levels = axes_ == 3 ? 1 : 0;
+  const double along = at_[axis][disk], radius = reach_[disk];
   Contact contact{farthest, none, 0};
-  std::array<std::uint32_t, 2> cell;
+  Cell cell{};
+  const auto beside = [&](std::size_t side_axis, int side) {
+    const Neighbours row =
+        neighbour(cell_[side_axis][disk], side, cells_[side_axis], length_[side_axis]);
+    cell[side_axis] = row.cell;
+    return row.shift;
+  };
   for (int ahead = 0; ahead <= 1; ++ahead) {
     const Neighbours column = neighbour(cell_[axis][disk], ahead, cells_[axis], length_[axis]);
     cell[axis] = column.cell;
-    for (int side = -1; side <= 1; ++side) {
-      const Neighbours row = neighbour(cell_[across][disk], side, cells_[across], length_[across]);
-      cell[across] = row.cell;
-      for (std::uint32_t l = first_in(cell); l != none; l = next_[l]) {
-        const double dx = at_[axis][l] + column.shift - along;
-        const double dz = at_[across][l] + row.shift - lateral;
-        const double reach = radius + reach_[l], free = reach * reach - dz * dz;
-        if (dx <= 0 || free <= 0) continue;
-        const double distance = dx - std::sqrt(free);
-        if (distance < contact.distance) contact = {std::max(distance, 0.0), l, dx - distance};
+    for (int side = -levels; side <= levels; ++side) {
+      const double shift_y = beside(other, side);
+      for (int row = -1; row <= 1; ++row) {
+        const double shift_z = beside(across, row);
+        for (std::uint32_t l = first_in(cell); l != none; l = next_[l]) {
+          const double dx = at_[axis][l] + column.shift - along;
+          const double dz = at_[across][l] + shift_z - at_[across][disk];
+          const double dy = at_[other][l] + shift_y - at_[other][disk];
+          const double reach = radius + reach_[l], free = reach * reach - dz * dz - dy * dy;
+          if (dx <= 0 || free <= 0) continue;
+          const double distance = dx - std::sqrt(free);
+          if (distance < contact.distance) contact = {std::max(distance, 0.0), l, dx - distance};
+        }
       }
     }
   }

@@ -130,26 +130,27 @@ std::vector<Vec> draw_disks(const Domain& box, std::span<const double> radii,
 namespace {
 
 /// Throws InputError for spheres that are packed too densely. Random sequential addition of spheres
-/// jams at 0.38.
-void check_sphere_packing(PlacementRule::Kind kind, double packing) {
-  if (kind == PlacementRule::Kind::equilibrium)
-    throw InputError("placement", "equilibrium",
-                     "requires dimension = 2; spheres are placed by hard_disk, random sequential "
-                     "addition");
-  if (packing > 1.003 * 0.33)
-    throw InputError("packing fraction (with min_gap)", packing,
-                     "must be at most 0.33 for spheres placed by random sequential addition; lower "
-                     "the density, the radius or min_gap");
+/// jams at 0.38; the equilibrium fluid freezes at 0.494.
+void check_sphere_packing(bool equilibrium, double packing) {
+  if (packing <= 1.003 * (equilibrium ? 0.49 : 0.33)) return;
+  throw InputError(
+      "packing fraction (with min_gap)", packing,
+      equilibrium
+          ? "must be at most 0.49 for spheres, because the fluid of hard spheres freezes at 0.494; "
+            "lower the density, the radius or min_gap"
+          : "must be at most 0.33 for spheres with placement = hard_disk; lower the density, the "
+            "radius or min_gap, or use placement = equilibrium");
 }
 
 }  // namespace
 
 void check_packing(const Domain& box, PlacementRule::Kind kind, double packing, double largest) {
   const bool equilibrium = kind == PlacementRule::Kind::equilibrium;
-  if (box.height > 0) return check_sphere_packing(kind, packing);
+  const bool space = box.height > 0;
+  if (space) check_sphere_packing(equilibrium, packing);
   // The default gap raises the packing fraction slightly: the slack of 0.2 % accepts disks that
   // would be exactly at the limit without it.
-  if (packing > 1.002 * (equilibrium ? 0.69 : 0.5))
+  if (!space && packing > 1.002 * (equilibrium ? 0.69 : 0.5))
     throw InputError(
         "packing fraction (with min_gap)", packing,
         equilibrium
@@ -158,13 +159,15 @@ void check_packing(const Domain& box, PlacementRule::Kind kind, double packing, 
             : "must be at most 0.5 for placement = hard_disk; lower the density, the radius or "
               "min_gap, or use placement = equilibrium");
   const bool slab = box.kind == Domain::Kind::slab;
-  for (const auto& [key, extent] : {std::pair{"width", box.width}, {"depth", box.depth}})
+  for (const auto& [key, extent] : {std::pair{"width", box.width},
+                                    {"depth", box.depth},
+                                    {"height", space ? box.height : box.width}})
     if (equilibrium && !slab && extent < 3.001 * largest)
-      throw InputError(
-          key, extent,
-          "placement = equilibrium requires a box more than three times as wide and deep "
-          "as the largest disk with its gap, " +
-              std::to_string(largest));
+      throw InputError(key, extent,
+                       std::string("placement = equilibrium requires a box more than three times "
+                                   "as wide and deep as the largest ") +
+                           (space ? "sphere" : "disk") + " with its gap, " +
+                           std::to_string(largest));
 }
 
 Placement read_placement(const std::string& path, const Scatterer& scatterer, bool in_space) {

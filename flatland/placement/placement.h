@@ -20,8 +20,8 @@ struct PlacedScatterer {
 /// One realization of a scene: scatterers and their positions.
 using Placement = std::vector<PlacedScatterer>;
 
-/// Rule by which realizations are drawn (C12). Points are placed by poisson, disks by hard_disk or
-/// equilibrium, spheres by hard_disk. hard_disk is random sequential addition, which places one
+/// Rule by which realizations are drawn (C12). Points are placed by poisson, disks and spheres by
+/// hard_disk or equilibrium. hard_disk is random sequential addition, which places one
 /// disk or sphere after the other where it fits. equilibrium draws the fluid of hard disks
 /// (draw_equilibrium_disks), which can be packed more densely.
 struct PlacementRule {
@@ -62,8 +62,8 @@ std::vector<Vec> draw_disks(const Domain& box, std::span<const double> radii,
 /// Throws InputError if the packing fraction is too high for the rule. Random sequential addition
 /// jams at 0.547 and becomes far too slow well below; the equilibrium fluid freezes at 0.70. For
 /// equilibrium, also throws if the largest diameter is too large for the box. Spheres have the
-/// limit 0.33. packing and largest: packing fraction and largest diameter of the disks, with half
-/// the gap included in their radii.
+/// limits 0.33 and 0.49. packing and largest: packing fraction and largest diameter of the disks,
+/// with half the gap included in their radii.
 void check_packing(const Domain& box, PlacementRule::Kind kind, double packing, double largest);
 
 /// Default of the least gap between disks, in radii. Without it some of many random disks would

@@ -214,14 +214,14 @@ void check_extinction(const BulkMedium& medium) {
 void check_structure(const Keys& keys, const SceneSpec& spec, const Scatterer& scatterer) {
   const std::string& structure = keys.read(spec.structure);
   if (structure == "none") return;
-  const bool spheres = scatterer.kind == Scatterer::Kind::mie;
-  if (!scatterer.is_disk() && !spheres)
+  const bool spheres = spec.dimension == 3;
+  if (!scatterer.is_disk() && scatterer.kind != Scatterer::Kind::mie)
     throw InputError("structure", structure,
-                     "is a key of soft, hard, tm, te and mie only; otherwise it must be none");
+                     "is a key of cylinders and spheres only; otherwise it must be none");
   if (spheres != (structure == "hard_spheres"))
     throw InputError("structure", structure,
-                     spheres ? "must be hard_spheres or none for scatterer = mie"
-                             : "requires scatterer = mie; cylinders have hard_disks, or a file "
+                     spheres ? "must be hard_spheres or none for spheres"
+                             : "requires dimension = 3; cylinders have hard_disks, or a file "
                                "that place --structure wrote");
   for (const auto* extinction : {&spec.mean_free_path, &spec.optical_depth})
     if (*extinction)
@@ -230,7 +230,7 @@ void check_structure(const Keys& keys, const SceneSpec& spec, const Scatterer& s
           "cannot be combined with structure, which changes the extinction; give another density");
 }
 
-/// Returns the medium of the scene with the correlations that `structure` names (C16). For spheres,
+/// Returns the medium of the scene with the correlations that `structure` names (C16). For mie,
 /// whose properties are computed in space, sets only the structure factor.
 BulkMedium correlated(const std::string& structure, const Scene& scene) {
   if (scene.scatterer.kind == Scatterer::Kind::mie) {
@@ -240,6 +240,9 @@ BulkMedium correlated(const std::string& structure, const Scene& scene) {
   }
   const DiskSpacing disks{scene.medium.density,
                           2 * scene.scatterer.radius + scene.placement.min_gap};
+  if (structure == "hard_spheres")
+    return correlated_medium(scene.medium, scene.k,
+                             hard_sphere_structure(disks.density, disks.contact));
   return correlated_medium(scene.medium, scene.k,
                            structure == "hard_disks" ? hard_disk_structure(disks, 2 * scene.k)
                                                      : read_structure(structure, disks));

@@ -90,7 +90,7 @@ void add_medium_keys(Keys& keys, SceneSpec& spec) {
       .unit("length");
   keys.add("placement", spec.placement,
            "poisson for points; for disks hard_disk (default, random sequential addition) or "
-           "equilibrium (the fluid of hard disks); for spheres hard_disk")
+           "equilibrium (the fluid of hard disks or spheres)")
       .one_of(placement_words);
   keys.add("min_gap", spec.min_gap,
            "Least gap between the rims of disks or spheres (default 1e-3 radius)")
@@ -171,7 +171,7 @@ void add_structure_key(Keys& keys, SceneSpec& spec) {
   keys.group("Medium");
   keys.add("structure", spec.structure,
            "Structure factor of the positions in Monte Carlo and transport: none; hard_disks, or "
-           "a file that place --structure wrote, of cylinders; hard_spheres of mie");
+           "a file that place --structure wrote, of cylinders; hard_spheres of spheres");
 }
 
 void add_profile_keys(Keys& keys, SceneSpec& spec) {

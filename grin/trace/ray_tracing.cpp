@@ -59,13 +59,15 @@ double largest_coordinate(const std::vector<RayStart>& starts) {
 class BundleTracer {
  public:
   BundleTracer(const SceneField& scene, const Stage& stage, const RayStops& stops,
-               const RaySteps& steps, const std::vector<RayStart>& starts, std::size_t path_points)
+               const RaySteps& steps, const std::vector<RayStart>& starts, std::size_t path_points,
+               const std::vector<RayAperture>& apertures)
       : scene_(scene),
         stage_(stage),
         regions_(stage, largest_coordinate(starts)),
         stops_(stops),
         steps_(steps),
         path_points_(path_points),
+        apertures_(apertures),
         surfaces_(stops.surfaces),
         inside_(make_ray_field(scene.field)),
         outside_(
@@ -73,6 +75,8 @@ class BundleTracer {
     for (const Body& body : stage.bodies) surfaces_.push_back(body.surface);
     if (scene.grid) surfaces_.push_back(*scene.grid);
     if (scene.rim) surfaces_.push_back(*scene.rim);
+    first_aperture_ = static_cast<int>(surfaces_.size());
+    for (const RayAperture& aperture : apertures) surfaces_.push_back(aperture.plane);
     for (Part part = around; part < stage.parts(); ++part)
       plain_.push_back(part == stage.field_part()
                            ? nullptr
@@ -113,6 +117,7 @@ class BundleTracer {
     RayState ray;
     KnownSides ends;
     double transmittance = 1;
+    bool is_absorbed = false;
     RayInvariants first;
     std::uint64_t steps = 0;
   };
@@ -204,6 +209,8 @@ class BundleTracer {
     for (int i = 0; i < number_of_stops(); ++i)
       (watch.is_inside(i) ? sides.inside : sides.outside) |= bit(i);
     if (scene_.grid) sides.inside |= bit(number_of_stops() + regions_.parts() - 1);
+    for (int i = first_aperture_; i < static_cast<int>(surfaces_.size()); ++i)
+      (watch.is_inside(i) ? sides.inside : sides.outside) |= bit(i);
     return sides;
   }
 
@@ -213,7 +220,8 @@ class BundleTracer {
                      .index_mismatch = going.log.index_mismatch(),
                      .first = going.first,
                      .last = invariants(going.ray)};
-    traced.status = end.stop == Stop::length          ? RayStatus::length
+    traced.status = going.is_absorbed                 ? RayStatus::absorbed
+                    : end.stop == Stop::length        ? RayStatus::length
                     : end.surface < number_of_stops() ? RayStatus::surface
                                                       : RayStatus::edge_of_grid;
     const bool is_stop = traced.status == RayStatus::surface;
@@ -233,6 +241,8 @@ class BundleTracer {
       if (is_body(end.surface)) end.surface = stop_in_contact(going.ray.x).value_or(end.surface);
       if (has_ended(going, end)) return end;
       if (is_body(end.surface)) cross(going, end.surface - number_of_stops() + 1);
+      if (end.surface >= first_aperture_) pass(going, end.surface);
+      if (going.is_absorbed) return end;
     }
     throw InputError(
         "max_length", stops_.max_length,
@@ -259,23 +269,39 @@ class BundleTracer {
   /// InputError if the ray is lost.
   bool has_ended(const Going& going, const TraceEnd& end) const {
     if (end.stop == Stop::lost || end.stop == Stop::steps) throw lost(going, end);
-    const bool at_rim = scene_.rim && end.surface + 1 == static_cast<int>(surfaces_.size());
-    return end.stop == Stop::length || !(at_rim || is_body(end.surface));
+    const bool at_rim = scene_.rim && end.surface + 1 == first_aperture_;
+    return end.stop == Stop::length ||
+           !(at_rim || is_body(end.surface) || end.surface >= first_aperture_);
   }
   bool is_body(int surface) const {
     const int body = surface - number_of_stops();
     return body >= 0 && body < static_cast<int>(stage_.bodies.size());
   }
 
-  /// Refracts or reflects the ray at the surface of a body. Has no effect where another body covers
-  /// this surface.
+  /// Lets the ray through the hole of an aperture, or absorbs it.
+  void pass(Going& going, int surface) const {
+    const RayAperture& aperture = apertures_[surface - first_aperture_];
+    going.is_absorbed = (going.ray.x - aperture.plane.point).norm() > aperture.radius;
+    if (going.is_absorbed) going.transmittance = 0;
+    going.ends.inside ^= bit(surface);
+    going.ends.outside ^= bit(surface);
+  }
+
+  /// Refracts, reflects or absorbs the ray at the surface of a body. Has no effect where another
+  /// body covers this surface.
   void cross(Going& going, Part body) const {
     RayState& ray = going.ray;
     const Part to = regions_.beyond(going.part, body, ray.x, ray.v.normalized());
     if (to == going.part) return;
+    const BodyFace kind = stage_.bodies[body - 1].face;
+    if (kind == BodyFace::absorbs) {
+      going.is_absorbed = true;
+      going.transmittance = 0;
+      return;
+    }
     const Interface face(ray.v, normal(regions_.surface(body), ray.x),
                          excess(going.part, ray.x, ray.v), excess(to, ray.x, ray.v));
-    if (const auto refracted = face.refracted()) {
+    if (const auto refracted = face.refracted(); refracted && kind == BodyFace::refracts) {
       going.transmittance *= 1 - face.reflectance();
       going.part = to;
       ray.v = *refracted;
@@ -334,11 +360,41 @@ class BundleTracer {
   const RayStops& stops_;
   const RaySteps& steps_;
   std::size_t path_points_;
+  const std::vector<RayAperture>& apertures_;
+  int first_aperture_ = 0;
   std::vector<Surface> surfaces_;
   std::unique_ptr<const RayField> inside_, outside_;  ///< fields inside and outside the rim
   /// Uniform index of each region of the stage; null for the region that contains the index field.
   std::vector<std::unique_ptr<const RayField>> plain_;
 };
+
+/// Calls use(name of the key of a kind of body, words of their faces).
+template <class Values, class Use>
+void for_each_face(Values& values, const Use& use) {
+  use("ball", values.ball_face);
+  use("block", values.block_face);
+  use("lens", values.lens_face);
+  use("asphere", values.asphere_face);
+}
+
+/// Sets what the surfaces of bodies do. Throws InputError unless there is a word for each body.
+void set_faces(const Keys& keys, const RayBodyValues& values, std::vector<Body>& bodies) {
+  for_each_face(values, [&](const std::string& kind, const std::vector<std::string>& member) {
+    const auto& words = keys.read(member);
+    std::size_t next = 0, count = 0;
+    for (const Body& body : bodies) count += std::string(body.keys) == kind + ", ";
+    if (words.empty()) return;
+    if (words.size() != count)
+      throw InputError(kind + "_face", words.size(), "requires a word for each " + kind);
+    for (Body& body : bodies) {
+      if (std::string(body.keys) != kind + ", ") continue;
+      const std::string& word = words[next++];
+      body.face = word == "mirror"   ? BodyFace::reflects
+                  : word == "absorb" ? BodyFace::absorbs
+                                     : BodyFace::refracts;
+    }
+  });
+}
 
 }  // namespace
 
@@ -348,19 +404,43 @@ void add_keys(Keys& keys, RayBodyValues& values) {
   keys.group("Body that rays pass", std::string("a body (") + body_key_names + ")");
   add_index_around(keys, values);
   add_keys(keys, values.plain_bodies);
+  for_each_face(values, [&](const char* body, std::vector<std::string>& words) {
+    keys.add(std::string(body) + "_face", words,
+             std::string("What the surface of each ") + body +
+                 " does: refract (default), mirror (reflects all light) or absorb")
+        .one_of({"refract", "mirror", "absorb"})
+        .only_of(body);
+  });
+  keys.add("aperture_stop", values.aperture,
+           "x y z nx ny nz radius: an opaque plane screen with a round hole; rays that miss the "
+           "hole "
+           "end there")
+      .each_of(7, "x y z nx ny nz radius")
+      .units("length length length 1 1 1 length");
 }
 
-Stage make_ray_stage(const Keys& keys, const RayBodyValues& values, SceneField& field) {
+std::vector<RayAperture> make_apertures(const Keys& keys, const RayBodyValues& values) {
+  std::vector<RayAperture> apertures;
+  for (const auto row : parts_of(keys.read(values.aperture), 7))
+    apertures.push_back(
+        {{vector_of(row), unit_direction("aperture_stop, normal", vector_of(row, 3))},
+         positive("aperture_stop, radius", row[6])});
+  return apertures;
+}
+
+Stage make_ray_stage(const Keys& keys, const RayBodyValues& values, SceneField& field,
+                     const std::optional<double>& length_unit) {
   Stage stage;
   if (const auto body = given_body(keys, values)) {
-    fill(*body, field);
-    stage.bodies.push_back({*body});
+    fill(body->surface, field);
+    stage.bodies.push_back({.surface = body->surface, .note = body->note});
     stage.excess_around = keys.read(values.index_around) - 1;
   }
-  for (Body& body : make_plain_bodies(keys, values.plain_bodies)) {
+  for (Body& body : make_plain_bodies(keys, values.plain_bodies, length_unit)) {
     if (field.grid) check_within(body, *field.grid, "grid");
     stage.bodies.push_back(std::move(body));
   }
+  set_faces(keys, values, stage.bodies);
   if (stage.bodies.empty()) return stage;
   field.symmetry = Symmetry::none;
   sort_by_size(stage.bodies);
@@ -375,10 +455,11 @@ double index_at(const SceneField& field, const Stage& stage, const Vec3& x) {
 
 std::vector<TracedRay> trace_rays(const SceneField& scene, const Stage& stage,
                                   const RayStops& stops, const RaySteps& steps,
-                                  const std::vector<RayStart>& starts, std::size_t path_points) {
+                                  const std::vector<RayStart>& starts, std::size_t path_points,
+                                  const std::vector<RayAperture>& apertures) {
   for (std::size_t i = 0; i < starts.size(); ++i) check_start(scene, stage, stops, i, starts[i]);
   std::vector<TracedRay> rays(starts.size());
-  const BundleTracer tracer(scene, stage, stops, steps, starts, path_points);
+  const BundleTracer tracer(scene, stage, stops, steps, starts, path_points, apertures);
   if (!tracer.has_lanes()) {
     parallel_for(starts.size(), [&](std::size_t i) {
       stop_if_interrupted();

@@ -37,10 +37,12 @@ const DatasetTable rays_table{
          {"optical_path", Data::real, "THING", "length", "integral of the index along the curve"},
          {"time", Data::real, "THING", "s", "optical path divided by the speed of light"},
          {"status", Data::count, "ray", "1",
-          "0: ended on a stop surface, 1: at max_length, 2: at the edge of the grid"},
+          "0: ended on a stop surface, 1: at max_length, 2: at the edge of the grid, 3: absorbed "
+          "by "
+          "a body or an aperture"},
          {"surface", Data::count, "ray", "1",
-          "number of the stop surface, in the order planes, spheres, boxes; for status 1 and 2 the "
-          "number of stop surfaces"},
+          "number of the stop surface, in the order planes, spheres, boxes; for status 1 to 3 "
+          "the number of stop surfaces"},
          {"transmittance", Data::real, "ray", "1",
           "fraction of the power of unpolarised light transmitted through the surfaces and media "
           "of bodies"},
@@ -100,6 +102,33 @@ const DatasetTable rays_table{
           "root mean square of image/path_difference"},
          {"image/least_path_difference_rms", Data::real, "", "length",
           "root mean square of image/least_path_difference"},
+         {"image/focal_length", Data::real, "", "length",
+          "rear focal length f' = -h/u' of rays close to the axis of a parallel beam, which leave "
+          "at the angle u' if they enter at the height h"},
+         {"image/power", Data::real, "", "1/length",
+          "refractive power: index behind the system over image/focal_length"},
+         {"image/back_focal_length", Data::real, "", "length",
+          "distance from the last surface of a body to the paraxial focus"},
+         {"image/f_number", Data::real, "", "1",
+          "magnitude of image/focal_length over the diameter of the beam"},
+         {"image/paraxial_x", Data::real, "", "length", "x of the paraxial focus"},
+         {"image/paraxial_y", Data::real, "", "length", "y of the paraxial focus"},
+         {"image/paraxial_z", Data::real, "", "length", "z of the paraxial focus"},
+         {"image/aperture", Data::real, "", "1",
+          "numerical aperture of the rays behind the system"},
+         {"image/strehl", Data::real, "", "1",
+          "Strehl ratio: square of the modulus of the mean of exp(2 pi i image/path_difference / "
+          "wavelength)"},
+         {"image/best_strehl", Data::real, "", "1", "Strehl ratio by image/least_path_difference"},
+         {"image/mtf_frequency", Data::scale, "", "1/length",
+          "spatial frequencies, up to the cutoff 2 image/aperture / wavelength"},
+         {"image/mtf_x", Data::real, "image/mtf_frequency", "1",
+          "modulation transfer function in the plane of the image for structures that vary along "
+          "x"},
+         {"image/mtf_y", Data::real, "image/mtf_frequency", "1",
+          "modulation transfer function for structures that vary along y"},
+         {"image/mtf_ideal", Data::real, "image/mtf_frequency", "1",
+          "modulation transfer function without path differences"},
          {"spreading", Data::real, "curve", "length^2",
           "|J|: cross-sectional area of a thin tube of rays at the end of the curve per solid "
           "angle at the start"},
@@ -253,7 +282,7 @@ void write_index_map(ResultFile& file, const TraceScene& scene,
 std::vector<RayState> ends_to_print(const std::vector<TracedRay>& rays) {
   std::vector<RayState> all, on_surface;
   for (const TracedRay& ray : rays) {
-    all.push_back(ray.end);
+    if (ray.status != RayStatus::absorbed) all.push_back(ray.end);
     if (ray.status == RayStatus::surface) on_surface.push_back(ray.end);
   }
   return on_surface.empty() ? all : on_surface;
@@ -278,16 +307,39 @@ void write_rays(ResultFile& file, const TraceScene& scene, const std::vector<Tra
   put_vectors(root, "exit/d", rays, [](const TracedRay& r) { return r.end.v.normalized(); });
   write_lengths(root, rays, std::mem_fn(&TracedRay::end), scene.length_unit);
   const auto printed = ends_to_print(rays);
-  root.put("spot_radius", spot_radius(printed));
-  const auto paths = column(printed, &RayState::optical_path);
-  const auto [shortest, longest] = std::ranges::minmax(paths);
-  root.put("optical_path_spread", longest - shortest);
+  if (!printed.empty()) {  // empty if all rays are absorbed
+    root.put("spot_radius", spot_radius(printed));
+    const auto paths = column(printed, &RayState::optical_path);
+    const auto [shortest, longest] = std::ranges::minmax(paths);
+    root.put("optical_path_spread", longest - shortest);
+  }
   root.put("status", column(rays, &TracedRay::status));
   root.put("surface", column(rays, &TracedRay::surface));
   if (!scene.stage.bodies.empty())
     root.put("transmittance", column(rays, &TracedRay::transmittance));
   root.put("steps", column(rays, &TracedRay::steps));
   write_invariants(root, scene, rays);
+}
+
+void write_system(ResultFile& file, const ParaxialSystem& system) {
+  const ResultGroup root(file, rays_table);
+  root.put("image/focal_length", system.focal_length);
+  root.put("image/power", system.power);
+  if (system.back_focal_length) root.put("image/back_focal_length", *system.back_focal_length);
+  root.put("image/f_number", system.f_number);
+  for (int i = 0; i < 3; ++i) root.put(std::string("image/paraxial_") + "xyz"[i], system.focus[i]);
+}
+
+void write_quality(ResultFile& file, const ImageQuality& quality) {
+  const ResultGroup root(file, rays_table);
+  root.put("image/aperture", quality.aperture);
+  root.put("image/strehl", quality.strehl);
+  root.put("image/best_strehl", quality.best_strehl);
+  if (!quality.modulation) return;
+  root.put("image/mtf_frequency", quality.modulation->frequency);
+  root.put("image/mtf_x", quality.modulation->along_x);
+  root.put("image/mtf_y", quality.modulation->along_y);
+  root.put("image/mtf_ideal", quality.modulation->of_ideal);
 }
 
 void write_image(ResultFile& file, const RayImage& image) {

@@ -3,6 +3,8 @@
 #include <vector>
 
 #include "core/result/result_file.h"
+#include "grin/trace/image_quality.h"
+#include "grin/trace/paraxial.h"
 #include "grin/trace/trace_scene.h"
 
 namespace flatspeckle::grin {
@@ -18,6 +20,8 @@ double spot_radius(const std::vector<RayState>& ends);
 void write_rays(ResultFile& file, const TraceScene& scene, const std::vector<TracedRay>& rays);
 
 void write_image(ResultFile& file, const RayImage& image);
+void write_system(ResultFile& file, const ParaxialSystem& system);
+void write_quality(ResultFile& file, const ImageQuality& quality);
 
 /// Writes the curves between two points, sorted by optical path, and the outcomes of the trials.
 void write_connections(ResultFile& file, const TraceScene& scene, const FoundConnections& found);

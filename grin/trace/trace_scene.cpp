@@ -29,7 +29,7 @@ Eigen::Matrix<double, 3, 2> axes_across(const Vec3& normal) {
 std::vector<std::uint64_t> rays_to_show(const std::vector<TracedRay>& rays) {
   std::vector<std::uint64_t> all, stopped;
   for (std::uint64_t i = 0; i < rays.size(); ++i) {
-    all.push_back(i);
+    if (rays[i].status != RayStatus::absorbed) all.push_back(i);
     if (rays[i].status == RayStatus::surface) stopped.push_back(i);
   }
   return stopped.empty() ? all : stopped;
@@ -263,6 +263,14 @@ double largest_index(const SceneField& scene, const CurveSearch& search) {
   return largest > 0 ? largest : 1;
 }
 
+/// Returns the beam of a light of parallel rays; nullopt for other lights.
+std::optional<ParallelBeam> parallel_beam(const RayStartValues& values) {
+  const bool is_parallel = values.light != "fan" && values.light != "cone";
+  if (!values.rays.empty() || !is_parallel) return std::nullopt;
+  return ParallelBeam{vector_of(values.origin), vector_of(values.direction).normalized(),
+                      values.beam_radius};
+}
+
 void settle_field(TraceScene& scene, const Keys& keys, const TraceValues& values) {
   double reach = keys.required(values.stops.max_length), farthest = 0;
   for (const Vec3& x : points_of(scene)) {
@@ -274,7 +282,7 @@ void settle_field(TraceScene& scene, const Keys& keys, const TraceValues& values
   if (scene.curves)
     scene.curves->ball = std::exchange(scene.field.rim, std::nullopt);
   else
-    scene.stage = make_ray_stage(keys, values.bodies, scene.field);
+    scene.stage = make_ray_stage(keys, values.bodies, scene.field, keys.read(values.length_unit));
   scene.stops =
       make_ray_stops(keys, values.stops, scene.field.scale, farthest, surfaces_of(scene.stage));
   check_bodies(scene.stage);
@@ -316,6 +324,7 @@ RayImage make_ray_image(const ImagePlane& requested, const std::vector<TracedRay
   RayImage image;
   image.axes = axes_across(plane.outwards);
   const auto numbers = rays_to_show(rays);
+  if (numbers.empty()) throw InputError("image_plane: all rays are absorbed");
   check_index(rays, numbers);
   for (const std::uint64_t number : numbers) {
     const RayState& end = rays[number].end;
@@ -386,7 +395,10 @@ TraceScene make_trace_scene(const Keys& keys, const TraceValues& values) {
   if (!scene.curves) {
     check_memory(values);
     scene.starts = make_ray_starts(keys, values.starts);
+    scene.apertures = make_apertures(keys, values.bodies);
     scene.image = make_image_plane(keys, values.image);
+    scene.beam = parallel_beam(values.starts);
+    if (scene.image) scene.wavelength = keys.read(values.bodies.plain_bodies.wavelength);
   }
   settle_field(scene, keys, values);
   settle_steps(scene, keys, values);
@@ -400,7 +412,7 @@ TraceScene make_trace_scene(const TraceValues& values) {
 
 std::vector<TracedRay> trace_rays(const TraceScene& scene) {
   return trace_rays(scene.field, scene.stage, scene.stops, scene.steps, scene.starts,
-                    scene.path_points);
+                    scene.path_points, scene.apertures);
 }
 
 FoundConnections find_connections(const TraceScene& scene, std::uint64_t seed) {

@@ -96,6 +96,12 @@ struct TraceValues {
 
 void add_keys(Keys& keys, TraceValues& values);
 
+/// A parallel beam of rays about an axis.
+struct ParallelBeam {
+  Vec3 origin, direction;
+  double radius;
+};
+
 struct TraceScene {
   SceneField field;
   Stage stage;  ///< geometry with the bodies; rays do not end at its outer boundary
@@ -104,9 +110,12 @@ struct TraceScene {
   /// Starts of rays; empty if curves between two points are searched
   std::vector<RayStart> starts = {};
   std::optional<CurveSearch> curves = {};
+  std::vector<RayAperture> apertures = {};
   std::optional<ImagePlane> image = {};
-  std::size_t path_points = 0;  ///< number of stored points of each ray or curve; 0: none
-  double length_unit = 1;       ///< metres per unit of length
+  std::optional<ParallelBeam> beam = {};  ///< set if the rays are parallel light
+  std::optional<double> wavelength = {};  ///< vacuum wavelength, if given
+  std::size_t path_points = 0;            ///< number of stored points of each ray or curve; 0: none
+  double length_unit = 1;                 ///< metres per unit of length
 };
 
 /// Makes the scene. Throws InputError for invalid values. The overload without `keys` also throws

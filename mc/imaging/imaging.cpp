@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
-#include <random>
 #include <utility>
 
 #include "core/run/runner.h"
@@ -15,15 +13,6 @@
 namespace flatspeckle::mc {
 
 namespace {
-
-/// Adapts a RandomStream to the distributions of the standard library.
-struct Bits {
-  using result_type = std::uint64_t;
-  static constexpr result_type min() { return 0; }
-  static constexpr result_type max() { return std::numeric_limits<result_type>::max(); }
-  result_type operator()() { return stream.bits(); }
-  RandomStream& stream;
-};
 
 /// Expected heights of the peaks in an autocorrelation without noise, with the symbols of
 /// peaks_over_noise(): a_ij of all pairs, a_0, and 2 sum of a_ij^2.
@@ -176,8 +165,15 @@ CovarianceRequest pair_request(const LineScene& line, const Pairs& pairs,
   return request;
 }
 
-/// Returns C_I of each pair, averaged over the positions on the camera. entries: values of the
-/// entries of pair_request(), [place][pair].
+/// Returns the scene with at most `most` pixels.
+LineScene with_fewer_pixels(LineScene line, std::size_t most) {
+  line.camera.pixels = std::min(line.camera.pixels, most);
+  return line_scene(std::move(line.scene), std::move(line.object), line.object_depth, line.camera,
+                    line.reference);
+}
+
+}  // namespace
+
 std::vector<Complex> mean_correlations(std::span<const Complex> entries, std::size_t places) {
   const std::size_t pairs = entries.size() / (3 * places);
   std::vector<Complex> mean(pairs);
@@ -189,15 +185,6 @@ std::vector<Complex> mean_correlations(std::span<const Complex> entries, std::si
     }
   return mean;
 }
-
-/// Returns the scene with at most `most` pixels.
-LineScene with_fewer_pixels(LineScene line, std::size_t most) {
-  line.camera.pixels = std::min(line.camera.pixels, most);
-  return line_scene(std::move(line.scene), std::move(line.object), line.object_depth, line.camera,
-                    line.reference);
-}
-
-}  // namespace
 
 std::vector<double> sum_of_intensities(std::span<const Complex> field,
                                        std::span<const double> brightness) {
@@ -216,18 +203,6 @@ std::vector<double> incoherent_sum(std::span<const Complex> field,
   if (mean > 0)
     for (double& value : frame) value /= mean;
   return frame;
-}
-
-void expose(std::vector<double>& frame, const CameraNoise& noise, RandomStream& random) {
-  for (double& value : frame) value += noise.background;
-  if (noise.photons == 0) return;
-  Bits bits{random};
-  std::normal_distribution<double> reading(0, 1);
-  for (double& value : frame) {
-    const double expected = std::max(value * noise.photons, 1e-300);
-    const auto counted = static_cast<double>(std::poisson_distribution<long long>(expected)(bits));
-    value = (counted + noise.read_noise * reading(bits)) / noise.photons;
-  }
 }
 
 std::vector<double> peaks_over_noise(const LineObject& object,

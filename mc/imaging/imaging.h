@@ -9,6 +9,7 @@
 #include "core/numbers/random.h"
 #include "core/numbers/statistics.h"
 #include "mc/imaging/blinking.h"
+#include "mc/imaging/camera_exposure.h"
 #include "mc/imaging/line_camera.h"
 #include "mc/imaging/recovery/camera_noise.h"
 #include "mc/imaging/recovery/deconvolution.h"
@@ -27,8 +28,9 @@ std::vector<double> sum_of_intensities(std::span<const Complex> field,
 std::vector<double> incoherent_sum(std::span<const Complex> field,
                                    std::span<const double> brightness);
 
-/// Adds the camera's background and noise to a frame.
-void expose(std::vector<double>& frame, const CameraNoise& noise, RandomStream& random);
+/// Returns C_I of each pair of points, averaged over places on the camera. entries: for each place
+/// and pair the covariance of two fields, then their two intensities, [place][pair][3].
+std::vector<Complex> mean_correlations(std::span<const Complex> entries, std::size_t places);
 
 /// Statistics of a frame that determine the noise of its autocorrelation.
 struct FrameGrains {

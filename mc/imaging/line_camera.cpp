@@ -38,6 +38,9 @@ View view_at(const LineCamera& camera, double pixel) {
 
 LineScene line_scene(Scene medium, LineObject object, double object_depth, const LineCamera& camera,
                      std::optional<double> reference) {
+  if (medium.faces)
+    throw InputError("medium_index", medium.faces->inside,
+                     "requires dimension = 3, an object at infinity and a camera of far views");
   require_outside(medium, "object_depth", object_depth);
   if (camera.depth) require_outside(medium, "camera_depth", *camera.depth);
   Lights lights;

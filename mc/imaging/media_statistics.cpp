@@ -197,8 +197,12 @@ MeanOverMedia mean_over(const std::vector<ImagedMedium>& media, double error_of_
 
 MeanOverMedia share_of(const std::vector<ImagedMedium>& media,
                        const std::function<bool(const ImagedMedium&)>& holds) {
-  const auto found = static_cast<double>(std::count_if(media.begin(), media.end(), holds)),
-             n = static_cast<double>(media.size()), likely = (found + 1) / (n + 2);
+  return share_of(static_cast<double>(std::count_if(media.begin(), media.end(), holds)),
+                  static_cast<double>(media.size()));
+}
+
+MeanOverMedia share_of(double found, double n) {
+  const double likely = (found + 1) / (n + 2);
   return {found / n, std::sqrt(likely * (1 - likely) / (n + 3))};
 }
 

@@ -68,6 +68,8 @@ MeanOverMedia mean_over(const std::vector<ImagedMedium>& media, double error_of_
 /// holds for all media.
 MeanOverMedia share_of(const std::vector<ImagedMedium>& media,
                        const std::function<bool(const ImagedMedium&)>& holds);
+/// Returns the same fraction for `found` of n media.
+MeanOverMedia share_of(double found, double n);
 
 /// Returns the square root of a mean, or 0 if the mean is negative.
 MeanOverMedia root_of(const MeanOverMedia& square);

@@ -91,7 +91,8 @@ struct Allowance {
   /// correlations: correlations of the positions of the scatterers. Their effect is of the order of
   /// the packing fraction if they are not modelled, and of the order of its square if they are
   /// (C16). In space it reaches 8 times the packing fraction near the forward direction, where the
-  /// structure factor of hard spheres is 1 - 8 packing.
+  /// structure factor of hard spheres is 1 - 8 packing, and 4 times its square if they are
+  /// modelled.
   ///
   /// fixed_number: effect in space of a fixed number N of scatterers outside the forward lobe. Each
   /// scatterer is surrounded by N - 1 others, which changes each order of scattering by about 1/N.
@@ -117,8 +118,10 @@ struct Allowance {
     const bool refracted = scene.index && !scene.index->is_around(),
                guides = scene.domain.kind == Domain::Kind::box && !refracted;
     guided = guides ? 0.35 * phase * across : 0;
-    const double packing = (scene.medium.dimension == 3 ? 8 : 1) * scene.medium.packing_fraction;
-    correlations = scene.medium.structure.independent() ? packing : packing * packing;
+    const bool space = scene.medium.dimension == 3;
+    const double packing = scene.medium.packing_fraction;
+    correlations = scene.medium.structure.independent() ? (space ? 8 : 1) * packing
+                                                        : (space ? 4 : 1) * packing * packing;
     const double size = scene.scatterer.is_disk() ? scene.k * scene.scatterer.radius : 0;
     near_zone = std::max(0.0, size * size - 1) / (scene.k * scene.medium.mean_free_path());
   }

@@ -63,6 +63,10 @@ IMAGE = {"domain": "box", "width": 60, "depth": 10, "scatterer": "hg", "g": 0.5,
          "object_x": [0, 20], "object_depth": -500, "camera": [-0.3, 0.3], "pixels": 128,
          "repeats": 2, "paths_per_field": 20, "prediction_paths": 500, "samples": None}
 
+SPACE_IMAGE = {"dimension": 3, "width": 30, "height": 30, "depth": 10, "scatterer": "hg", "g": 0.5, "optical_depth": 4,
+               "camera_pixels": 64, "camera_aperture": 0.4, "repeats": 2, "starts": 2, "phase_iterations": 8,
+               "prediction_draws": 2, "prediction_paths": 2000, "paths_per_field": 500, "samples": None}
+
 FIT = {"free": ["g=0:0.8"], "depth": 100, "optical_depth": 2, "measurement": "curve.csv"}
 
 RUNS = {
@@ -109,6 +113,10 @@ RUNS = {
     "recover_sources": ("recover", {"frames": "frames.csv", "points": 2, "recovery": "sources", "samples": None,
                                     "threads": None}),
     "image_lucy": ("image", {**IMAGE, "reference_x": 5, "deconvolution": "richardson_lucy"}),
+    "image_space": ("image", {**SPACE_IMAGE, "object_depth": -300, "object_x": [-6, 6]}),
+    "image_moving": ("image", {**SPACE_IMAGE, "object_x": [-0.02, 0.02], "exposure": 1, "exposure_steps": 2}),
+    "recover_patterns": ("recover", {"frames": "image_space.h5", "frame_dataset": "frames", "recovery": "sources",
+                                     "points": 2, "longest": 10, "samples": None, "threads": None}),
     "recover_phases": ("recover", {"frames": "frames.csv", "points": 2, "recovery": "phases", "samples": None,
                                    "threads": None}),
     "recover_picture": ("recover", {"frames": "frame_picture.csv", "frame_axes": "picture", "longest": 10, "starts": 2,
@@ -193,6 +201,9 @@ RUNS = {
     "ball": ("trace", {**RAYS, "field": "luneburg", "origin": [0, 0, -2], "beam_radius": 0.5}),
     "singlet": ("trace", {**RAYS, "lens": [0, 0, 0, 1, 5, 0, 0.5, 1.5, 0, 0, 0], "origin": [0, 0, -1], "beam_radius": 0.5,
                           "stop_plane": [0, 0, 2, 0, 0, 1], "image_plane": [0, 0, 9, 0, 0, 1], "refocus": True}),
+    "aspheric_image": ("trace", {"asphere": [0, 0, 0, 1, 5, -1, 0, 0, 0.5, 1.5, 0, 0, 0], "light": "disk", "ray_count": 120,
+                                 "origin": [0, 0, -1], "beam_radius": 0.5, "stop_plane": [0, 0, 1, 0, 0, 1], "max_length": 9,
+                                 "image_plane": [0, 0, 10, 0, 0, 1], "refocus": True, "wavelength": 0.01}),
     "guide": ("trace", {**RAYS, "field": "sech", "alpha": 1, "light": "fan", "across": [0, 1, 0]}),
     "ramp": ("trace", {**RAYS, "field": "linear", "slope": [0, 0, 0.1],
                        "stop_plane": [0, 0, 2, 0, 0, 1]}),

@@ -83,12 +83,12 @@ def diffused(pixels, picture, grain, random, photons=None):
     return light if photons is None else random.poisson(photons * light).astype(float)
 
 
-def similarity(truth, found):
-    """Largest normalised sum of products of two pictures over shifts and rotation by 180 degrees."""
+def similarity(truth, found, turns=(False, True)):
+    """Largest normalised sum of products of two pictures over shifts and, for True in turns, rotated by 180 degrees."""
     size = sum(truth.shape) + sum(found.shape)
     first = np.fft.rfft2(truth, (size, size))
     best = 0
-    for turned in (found, found[::-1, ::-1]):
+    for turned in (found[::-1, ::-1] if turn else found for turn in turns):
         products = np.fft.irfft2(first * np.conj(np.fft.rfft2(turned, (size, size))))
         best = max(best, products.max())
     return best / np.sqrt((truth**2).sum() * (found**2).sum())

@@ -104,7 +104,7 @@ class BadFrames(RefusingTest):
 
     def test_sources(self):
         sources = {"recovery": "sources"}
-        self.refused(["columns", "at least 2 columns"], self.frames(columns=("a",)), **sources)
+        self.refused(["columns", "at least 2 frames"], self.frames(columns=("a",)), **sources)
         self.refused(["points = 3", "number of frames"], self.frames(), **sources)
         self.refused(["mean is not positive"], "a,b\n" + "0,0\n" * 200, points=2, **sources)
         self.refused(["average"], self.frames(), points=2, average=2, **sources)

@@ -72,6 +72,44 @@ class Contrast(ProgramTest):
         np.testing.assert_allclose(np.minimum(square, 0.8), expected, rtol=1e-6)
 
 
+class Flow(ProgramTest):
+    """Frames of a phantom of two boxes side by side, in which the scatterers diffuse fast and slowly: the exposure adds
+    up the light of `field` at many delays. K^2 of the map is that of `covariance` for the decay of the same box."""
+    DIFFUSION = 0.5, 0.05
+    FRAMES, PIXELS, TIMES, WINDOW = 12, 64, 10, 9
+    LIQUID = {"dimension": 3, "width": 40, "height": 40, "depth": 10, "scatterer": "hg", "g": 0.5,
+              "optical_depth": 3, "view_angles": 0}
+
+    def exposed(self, diffusion, seed):
+        delays = [(i + 0.5) / self.TIMES for i in range(self.TIMES)]
+        self.call("field", **self.LIQUID, camera_pixels=self.PIXELS, camera_aperture=0.2, fields=self.FRAMES,
+                  paths_per_field=3000, delays=delays, diffusion=diffusion, tolerance=0.05, seed=seed, out="f.h5")
+        field = datasets(self.folder / "f.h5")["field"]
+        light = (np.abs(field)**2).mean(axis=1).reshape(self.FRAMES, self.PIXELS, self.PIXELS)
+        return light / light.mean()
+
+    def expected(self, diffusion):
+        self.call("covariance", **self.LIQUID, delays=[i / 20 for i in range(21)], exposures=1, diffusion=diffusion,
+                  samples=20000, out="k.h5")
+        found = datasets(self.folder / "k.h5")
+        return float(found["squared_contrast"].ravel()[0]), float(found["squared_contrast_error"].ravel()[0])
+
+    def test_map_of_a_phantom_agrees_with_the_decay(self):
+        made = np.concatenate([self.exposed(d, seed) for seed, d in enumerate(self.DIFFUSION, 3)], axis=2)
+        np.save(self.folder / "frames.npy", made)
+        self.call("contrast", frames="frames.npy", window=self.WINDOW, out="c.h5")
+        found = datasets(self.folder / "c.h5")
+        squares = halves(found["contrast_map"], found["map_column"], 2 * self.PIXELS, self.WINDOW // 2)
+        for diffusion, square in zip(self.DIFFUSION, squares):
+            expected, error = self.expected(diffusion)
+            apart = square[::self.WINDOW, ::self.WINDOW]
+            spread = np.hypot(error, apart.std() / np.sqrt(apart.size))
+            with self.subTest(diffusion=diffusion, found=apart.mean(), expected=expected, spread=spread):
+                self.assertLess(spread, 0.03 * expected)
+                self.assertLess(abs(apart.mean() - expected), 3 * spread)
+        self.assertLess(squares[0].mean(), 0.8 * squares[1].mean())
+
+
 class Refused(RefusingTest):
     def test_keys(self):
         write_tiff(self.folder / "one.tif", [np.arange(64 * 64, dtype=np.uint16).reshape(64, 64)])

@@ -79,6 +79,56 @@ class Design(RefusingTest):
         self.assertTrue((rays["status"] == 2).all())
         self.assertGreater(np.abs(rays["exit/dx"]).max(), 1e-4)
 
+    def test_host_index(self):
+        """A lens in a host of index 1.33 focuses as one in air whose index is smaller by this factor; trace and export agree."""
+        said, found = self.design("lens.h5", **SMALL, index_around=1.33, most_index=4)
+        self.assertIn("ended after", said)
+        self.assertIn("effective focal length", said)
+        r, index = found["profile/r"], found["profile/index"]
+        np.testing.assert_allclose(index, 1.33 * np.sqrt(2 - r**2), atol=7e-3)
+        self.call("trace", field="ball", ball_spline="lens.h5", out="rays.h5", **TRACED)
+        rays = datasets(self.folder / "rays.h5")
+        self.assertLess(np.hypot(rays["exit/x"], rays["exit/y"]).max(), 2e-2)
+        printed = self.call("export", "lens.h5", "ball_spline", to="lens.npy", nodes=33).stdout
+        self.assertIn("grid_values = index", printed)
+        n = np.load(self.folder / "lens.npy")
+        self.assertAlmostEqual(n[16, 16, 16], index[0], delta=1e-6)
+        self.assertAlmostEqual(n[0, 0, 0], 1.33, delta=1e-12)
+        self.call("trace", field="grid", grid="lens.npy", grid_values="index", grid_origin=[-1, -1, -1], grid_spacing=[1 / 16] * 3,
+                  light="line", ray_count=5, origin=[0, 0, -0.9], beam_radius=0.3, max_length=0.5, out="grid.h5")
+        self.assert_refused(["grid_values"], "trace", field="grid", grid="lens.npy", grid_origin=[-1, -1, -1],
+                            grid_spacing=[1 / 16] * 3, max_length=0.5)
+        self.call("export", "lens.h5", "ball_spline", to="lens.vtk", nodes=9)
+        head, body = (self.folder / "lens.vtk").read_bytes().split(b"LOOKUP_TABLE default\n")
+        self.assertIn(b"DIMENSIONS 9 9 9", head)
+        np.testing.assert_allclose(np.frombuffer(body, ">f8").reshape(9, 9, 9).transpose(2, 1, 0), n[::4, ::4, ::4], atol=1e-14)
+
+    def test_rules_that_end_a_search(self):
+        """`tolerance` = 0 makes all iterations; more nodes are never worse; gradients keep their bound."""
+        picture = {**PICTURE, "pictures": str(DATA / "pictures" / "hills.csv"), "nodes": [9]}
+        said, found = self.design("nine.h5", **picture, tolerance=0, iterations=4)
+        self.assertIn("ended after 4 steps by the rule: iterations", said)
+        self.assertRegex(said, r"pictures of held-out rays: \d+\.\d+ dB")
+        self.assertEqual(attributes(self.folder / "nine.h5")["ended_by"], "iterations")
+        _, finer = self.design("more.h5", **picture | {"nodes": [17]}, tolerance=0, iterations=8)
+        self.assertLess(finer["rms/seen"], found["rms/seen"])
+        self.assertEqual(finer["history/coefficients"][0], 11**3)  # begins at 9 nodes
+        free = np.abs(np.diff(found["excess"], axis=0)).max() / 0.25
+        _, held = self.design("held.h5", **picture, iterations=4, most_gradient=free / 2)
+        spacing = 2 / 8
+        slopes = [np.diff(held["excess"], axis=axis)[1:-1, 1:-1, 1:-1] / spacing for axis in range(3)]
+        self.assertLess(max(np.abs(slope).max() for slope in slopes), free / 2)
+        self.assert_refused(["smallest_feature"], "design", **picture, smallest_feature=0.6)
+
+    def test_pictures_as_files_of_images(self):
+        """A picture as NPY gives the field that the same picture as text gives."""
+        picture = np.loadtxt(DATA / "pictures" / "hills.csv", delimiter=",")
+        np.save(self.folder / "hills.npy", picture)
+        keys = {**PICTURE, "nodes": [9], "iterations": 2}
+        _, text = self.design("text.h5", **keys, pictures=str(DATA / "pictures" / "hills.csv"))
+        _, array = self.design("array.h5", **keys, pictures="hills.npy")
+        np.testing.assert_array_equal(array["excess"], text["excess"])
+
     def test_deflections_of_trace(self):
         """Blobs are recovered from the deflections of rays in four views."""
         self.write("blobs.csv", "x,y,z,height,width\n0.2,0.1,-0.1,0.001,0.3\n-0.3,0,0.2,0.0015,0.25\n")

@@ -14,6 +14,28 @@ CURVE = {**SLAB, "covariance": "memory_effect", "method": "transport", "toleranc
          "view_angles": [0.1, 0.3]}
 
 
+class Files(ProgramTest):
+    """Pictures of render as PFM, PNG and NPY."""
+
+    def test_pictures(self):
+        self.call("render", stage_box=[-1, -1, 0, 1, 1, 2], mu_s=1, point_light=[0.3, 0.4, 1, 1], sensor="area", sensor_at=[0, 0, 2],
+                  sensor_size=[2, 2], pixels=[6, 4], samples=4000, out="r.h5")
+        with h5py.File(self.folder / "r.h5") as file:
+            image, rows = file["image"][:], file["row"][:]
+        top_down = image if rows[0] > rows[-1] else image[::-1]
+        self.call("export", "r.h5", "image", to="r.pfm")
+        kind, size, scale, data = (self.folder / "r.pfm").read_bytes().split(b"\n", 3)
+        self.assertEqual((kind, size, scale), (b"Pf", b"%d %d" % image.shape[::-1], b"-1.0"))
+        np.testing.assert_array_equal(np.frombuffer(data, "<f4").reshape(image.shape), top_down[::-1].astype("f4"))
+        self.call("export", "r.h5", "image", to="r.npy")
+        np.testing.assert_array_equal(np.load(self.folder / "r.npy"), image)
+        self.call("export", "r.h5", "image", to="r.png")
+        self.assertTrue((self.folder / "r.png").read_bytes().startswith(b"\x89PNG"))
+        for words, flags in (("must end with", {"to": "r.exr"}), ("two axes", {"dataset": "mean", "to": "r.png"})):
+            done = self.call("export", "r.h5", flags.pop("dataset", "image"), **flags, status=2)
+            self.assertIn(words, done.stderr)
+
+
 class ExportTest(ProgramTest):
     def table(self, *words):
         """Returns the comment and the columns {name: texts} that export prints."""

@@ -74,6 +74,18 @@ class Pictures(ProgramTest):
         self.assertGreater(similarity(letter(), found["phased_picture"][0]), 0.85)
         self.assertGreater(found["agreement"][0], 0.8)
 
+    def test_a_bispectrum_keeps_the_orientation(self):
+        random = np.random.default_rng(7)
+        frames = np.array([diffused(512, letter(), 3, random, photons=5000) for _ in range(4)])
+        np.save(self.folder / "frames.npy", frames)
+        for count in (1, 4):
+            self.call("recover", frames="frames.npy", longest=34, recovery="bispectrum", average=count, out="r.h5")
+            for picture in datasets(self.folder / "r.h5")["phased_picture"]:
+                upright, turned = (similarity(letter(), picture, (turn,)) for turn in (False, True))
+                if count == 4:
+                    self.assertGreater(upright, 0.8)
+                    self.assertGreater(upright, turned + 0.05)
+
     def test_the_autocorrelation_is_that_of_the_object_times_that_of_a_grain(self):
         random = np.random.default_rng(5)
         points = np.zeros((20, 20))
@@ -113,6 +125,10 @@ class Refused(RefusingTest):
         self.check(["damaged NPY"], "cut.npy")
         np.save(self.folder / "complex.npy", frame.astype(complex))
         self.check(["<c16"], "complex.npy")
+        for shape in (f"{10**30}, 2", f"{2**63}, 2", f"{2**32}, {2**32}"):
+            data = f"{{'descr': '<u2', 'fortran_order': False, 'shape': ({shape}), }}\n".encode()
+            (self.folder / "long.npy").write_bytes(b"\x93NUMPY\x01\0" + bytes([len(data), 0]) + data + b"\0" * 8)
+            self.check(["NPY" if "0000" not in shape else "memory"], "long.npy")
         np.save(self.folder / "line.npy", frame[0])
         self.check(["two axes"], "line.npy")
         np.save(self.folder / "nan.npy", np.where(frame == 7, np.nan, frame))
@@ -129,7 +145,7 @@ class Refused(RefusingTest):
         write_all(self.folder, frame)
         for words, keys in ((["recovery = search"], {"recovery": "search"}), (["frame_axes"], {"frame_axes": "picture"}),
                             (["longest"], {"longest": 30}), (["points"], {"points": 3}),
-                            (["region"], {"region": [0, 0, 100, 10]}), (["region"], {"region": [1, 2, 3]}),
+                            (["region = 0 0 100 10, binning = 1"], {"region": [0, 0, 100, 10]}), (["region"], {"region": [1, 2, 3]}),
                             (["dark"], {"dark": "small.npy"}), (["average"], {"average": 2})):
             np.save(self.folder / "small.npy", frame[:10])
             with self.subTest(**keys):

@@ -15,7 +15,7 @@ from program import DATA, PROGRAM, WHOLE, ProgramTest, nightly
 ROOT = DATA.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 BLOCK = re.compile(r"```(sh|python)\n(.*?)```|((?:^    [^\n]*\S[^\n]*\n)+)", re.DOTALL | re.MULTILINE)
-WRITES = re.compile(r"^import .*(savetxt|, \"wb?\"\))", re.DOTALL | re.MULTILINE)  # writes a file for later commands
+WRITES = re.compile(r"^import .*(savetxt|np\.save\(|, \"wb?\"\))", re.DOTALL | re.MULTILINE)  # writes a file for later commands
 RESOLVE = ("solve", "place", "covariance", "validate", "field", "image", "recover", "fit", "flux", "sweep", "trace",
            "render", "design", "optimise")
 # Commands that are not run: they prepare the machine, need several machines, or hours.

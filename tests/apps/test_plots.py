@@ -100,6 +100,10 @@ KINDS = {
     "mixed": ("render", {**SPACE, "sensor": ["radial", "area"], "sensor_radius": 0.9, "sensor_direction": [0, 0, 1], "rings": 5,
                          "pixels": [4, 4]}),
     "spectrum": ("solve", {**BOX, "wavelengths": [0.9, 1.1], "view_angles": [3.0, 3.1]}),
+    "points_in_space": ("image", {"dimension": 3, "width": 30, "height": 30, "depth": 5, "scatterer": "hg", "g": 0.9,
+                                  "optical_depth": 2, "object_x": [-0.02, 0.02], "camera_pixels": 64,
+                                  "camera_aperture": 0.4, "repeats": 2, "starts": 2, "phase_iterations": 8,
+                                  "prediction_draws": 2, "prediction_paths": 2000, "paths_per_field": 500}),
     "near": ("solve", {"placement": DATA / "reference/g10/placement.csv", "scatterer": "soft",
                        "map": [-2, 2, -2, 2], "map_pixels": [6, 5]}),
 }
@@ -111,7 +115,8 @@ OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}
        "frequency": {"frequencies"}, "validation": {"both", "own_places"}, "speckle_field": {"fields", "grains"},
        "camera_field": {"camera", "boils", "focused", "scan", "moved"}, "focus_matrix": {"foci"},
        "confocal_scan": {"scan"}, "tracked_motion": {"moved"}, "camera_intensity": {"camera", "cone"},
-       "recovered_picture": {"recovered"}, "contrast_map": {"contrasts"}, "image_success": {"pictures"}, "image": {"frames", "blinks"}, "sources": {"blinks", "separated"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
+       "recovered_picture": {"recovered"}, "simulated_picture": {"points_in_space"},
+       "contrast_map": {"contrasts"}, "image_success": {"pictures"}, "image": {"frames", "blinks"}, "sources": {"blinks", "separated"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
        "design": {"lens", "display", "core"}, "design_methods": {"lens", "display", "core"},
        "render": {"picture", "pulse", "mixed"}, "render_time": {"pulse"},
        "light_map": {"light"}, "ring_profile": {"rings", "mixed"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
@@ -175,7 +180,7 @@ class Plots(ProgramTest):
                   "words.csv": (names + "mc,1,2,3,4,5,6,7,x\nwave,1,2,3,4,5,6,7,x\n", "does not hold")}
         for name, (text, why) in tables.items():
             path = self.maker.write(name, text)
-            for script in ("methods_error_time", "bias_map"):
+            for script in ("methods_error_time", "bias_map", "space_exact"):
                 with self.subTest(script=script, file=name):
                     status, _, heard = run_script(script, path)
                     self.assertEqual((status, heard.count("\n")), (2, 1), heard)

@@ -79,7 +79,7 @@ class Recover(ProgramTest):
             at = [x - at[0] for x in at]
             self.assertIn(places, [at, sorted(at[-1] - x for x in at)])
         (self.folder / "r.h5").unlink()
-        self.refused("starts = 3: is not used here", frames="frames.csv", points=3, longest=80, starts=3)
+        self.refused("starts = 3: is a key of phase retrieval only", frames="frames.csv", points=3, longest=80, starts=3)
 
     def refused(self, words, status=2, **keys):
         line = self.call("recover", **keys, out="r.h5", status=status).stderr

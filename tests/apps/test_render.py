@@ -45,19 +45,49 @@ class Maps(RenderTest):
         self.assertLess(relative, target)
 
 
+class Targets(RenderTest):
+    TISSUE = {**BOX, "mu_s": 2, "mu_a": 0.1, **BEAM, "sensor": "radial", "sensor_at": [0, 0, 0]}
+
+    def test_powers(self):
+        """Each printed power reaches the target error, also faint ones."""
+        self.call("render", **self.TISSUE, radii=[0.1, 0.9], target_error=0.05, out="powers.h5")
+        found = datasets(self.folder / "powers.h5")
+        self.assertLess((found["power_within_error"] / found["power_within"]).max(), 0.05)
+
+    def test_total(self):
+        keys = {**self.TISSUE, "sensor_radius": 0.9, "rings": 200, "target_error": 0.05}
+        self.call("render", **keys, target="total", out="total.h5")
+        found = datasets(self.folder / "total.h5")
+        self.assertLess(found["total_error"], 0.05 * found["total"])
+        line = self.call("render", **keys, target="powers", out="none.h5", status=2).stderr
+        self.assertIn("requires radii", line)
+
+    def test_samples_per_pixel(self):
+        """A batch contains whole pictures."""
+        keys = {**BOX, **FOG, **BEAM, **CAMERA, "method": "path"}
+        self.call("render", **keys, samples_per_pixel=2**12, out="each.h5")
+        self.assertEqual(attributes(self.folder / "each.h5")["samples"] % 24, 0)
+        self.assertGreaterEqual(attributes(self.folder / "each.h5")["samples"], 24 * 2**12)
+        line = self.call("render", **keys, samples_per_pixel=1, samples=100, out="none.h5", status=2).stderr
+        self.assertIn("samples_per_pixel", line)
+
+
 class Scenes(RenderTest):
     def check_sums(self, found, config):
-        """Checks that totals and pulses are sums of pixels, with values beyond the bins stored separately."""
+        """Checks that means and pulses agree with the pixels, with values beyond the bins stored separately.
+        Means are also controlled by the light that hits the sensor."""
         image = found["image"]
         self.assertGreater(image.max(), 0)
-        np.testing.assert_allclose(found["mean"], image.mean(), rtol=1e-12)
+        several = np.sqrt(np.mean(found["image_error"] ** 2))
+        self.assert_within(found["mean"], several, image.mean())
         if "transient" in found:
             beyond = found["transient_before"] + found["transient_after"]
             np.testing.assert_allclose(found["transient"].sum(axis=2) + beyond, image,
                                        atol=1e-12 * image.max())
             whole = found["total"] if "total" in found else found["mean"]
             beyond = found["pulse_before"] + found["pulse_after"]
-            np.testing.assert_allclose(found["pulse"].sum() + beyond, whole, rtol=1e-12)
+            area = whole / found["mean"]
+            np.testing.assert_allclose((found["pulse"].sum() + beyond) / area, image.mean(), rtol=1e-12)
             np.testing.assert_allclose(found["time"], found["optical_path"] * 1e-3 / LIGHT_SPEED)
 
     def check_config_runs_again(self):

@@ -4,8 +4,8 @@ import unittest
 
 import numpy as np
 
-from meshes import ball, volume, write_stl
-from program import ERRORS, SAMPLES, WHOLE, attributes
+from meshes import ball, icosphere, volume, write_polygons, write_stl
+from program import ERRORS, SAMPLES, WHOLE, attributes, datasets
 from renders import BOX, RenderTest
 
 ROOM = {"stage_box": [-2, -2, -2, 2, 2, 2]}
@@ -78,7 +78,7 @@ class Mesh(RenderTest):
 
     def test_text_is_read_as_bytes_are(self):
         """Also inside out; the spacing is the longest side / 64, and the result has volumes."""
-        keys = {**ROOM, **BEAM, **DISK, **SMOKE, "method": "light", "samples": 1000}
+        keys = {**ROOM, **BEAM, **DISK, **SMOKE, "method": "light", "samples": 1000, "body_mesh_crease": 0}
         triangles = ball(3)
         write_stl(self.folder / "bytes.stl", triangles)
         write_stl(self.folder / "text.stl", triangles[:, ::-1], text=True)
@@ -88,6 +88,59 @@ class Mesh(RenderTest):
         told = attributes(self.folder / "bytes.h5")
         self.assertAlmostEqual(told["mesh_volume"], volume(triangles), places=6)
         self.assertAlmostEqual(told["body_volume"], volume(triangles), delta=0.002)
+
+
+class Focus(RenderTest):
+    """A ball lens of triangles focuses parallel light as the exact ball does, at the default spacing."""
+
+    def focus(self, **body):
+        done = self.call("trace", field="homogeneous", light="disk", ray_count=300, origin=[0, 0, -3], beam_radius=0.15,
+                         stop_plane=[0, 0, 2, 0, 0, 1], image_plane=[0, 0, 0, 0, 0, 1], max_length=20, out="focus.h5", **body)
+        return datasets(self.folder / "focus.h5")["image/focus"], done.stderr
+
+    def test_coarse_balls(self):
+        exact, _ = self.focus(body_sphere=[0, 0, 0, 1], index=1.5)
+        for times, error in ((3, 0.005), (2, 0.02)):  # 1280 and 320 triangles
+            write_stl(self.folder / "ico.stl", icosphere(times))
+            found, note = self.focus(body_mesh="ico.stl", index=1.5)
+            self.assertAlmostEqual(found / exact, 1, delta=error)
+            self.assertIn("degrees are taken as one curved surface", note)
+            self.assertNotIn("warning", note)
+        plane, note = self.focus(body_mesh="ico.stl", body_mesh_crease=0, index=1.5)
+        self.assertGreater(abs(plane / exact - 1), 0.05)
+
+    def test_other_formats_and_materials(self):
+        """OBJ and PLY, also as bodies of their own index; turned triangles are reported."""
+        triangles = icosphere(2)
+        exact, _ = self.focus(ball=[0, 0, 0, 1, 1.5, 0, 0, 0])
+        for name in ("ico.obj", "ico.ply"):
+            write_polygons(self.folder / name, triangles)
+            found, note = self.focus(mesh=name, mesh_material=[1.5, 0, 0, 0])
+            self.assertAlmostEqual(found / exact, 1, delta=0.02)
+        triangles[::9] = triangles[::9, ::-1]
+        write_polygons(self.folder / "turned.ply", triangles)
+        again, note = self.focus(mesh="turned.ply", mesh_material=[1.5, 0, 0, 0])
+        self.assertAlmostEqual(again, found, delta=1e-9)
+        self.assertIn("orientation of 36 triangles was reversed", note)
+
+    def test_prism(self):
+        """A prism of 60 degrees deflects as Snell's law states, to rounding: plane faces stay plane."""
+        a, b, c = np.array([-1, 0, 0]), np.array([1, 0, 0]), np.array([0, 0, 3**0.5])
+        up = np.array([0, 1, 0])
+        corners = [a - up, b - up, c - up, a + up, b + up, c + up]
+        faces = [[0, 1, 2], [3, 5, 4], [0, 3, 4], [0, 4, 1], [1, 4, 5], [1, 5, 2], [2, 5, 3], [2, 3, 0]]
+        write_polygons(self.folder / "prism.obj", np.array([[corners[i] for i in face] for face in faces]))
+        tilt = 0.7  # of the light against the normal of the face at the left
+        normal, along = np.array([-np.cos(np.pi / 6), 0, np.sin(np.pi / 6)]), np.array([np.sin(np.pi / 6), 0, np.cos(np.pi / 6)])
+        light = -np.cos(tilt) * normal + np.sin(tilt) * along
+        middle = (a + c) / 2
+        self.call("trace", field="homogeneous", light="line", ray_count=1, origin=list(middle - 3 * light), direction=list(light),
+                  body_mesh="prism.obj", index=1.5, max_length=9, stop_plane=[3, 0, 0, 1, 0, 0], out="prism.h5")
+        found = datasets(self.folder / "prism.h5")
+        inside = np.arcsin(np.sin(tilt) / 1.5)
+        out = np.arcsin(1.5 * np.sin(np.pi / 3 - inside))
+        turn = np.arctan2(light[2], light[0]) - np.arctan2(found["exit/dz"][0], found["exit/dx"][0])
+        self.assertAlmostEqual(turn, tilt + out - np.pi / 3, delta=1e-12)
 
 
 class Refused(RenderTest):
@@ -112,7 +165,7 @@ class Refused(RenderTest):
         lost[7, 1] = [np.nan, 0, 2]
         self.render(**self.GOOD, body_mesh=self.write("good.stl", good))
         self.refuse("none.stl", body_mesh="none.stl")
-        self.refuse("body_mesh = open.stl", "not a closed surface", body_mesh=self.write("open.stl", good[5:]))
+        self.refuse("body_mesh = open.stl", "not a closed surface", "open edges", body_mesh=self.write("open.stl", good[5:]))
         self.refuse("body_mesh = empty.stl", "no triangle", body_mesh=self.write("empty.stl", good[:0]))
         self.refuse("body_mesh = lost.stl", "must be finite", body_mesh=self.write("lost.stl", lost))
         self.refuse("must be inside of the stage", body_mesh=self.write("far.stl", good + [0, 0, 1.6]))
@@ -136,7 +189,7 @@ class Refused(RenderTest):
         for name, content in files.items():
             (self.folder / name).write_bytes(content)
         for name in ("mark.stl", "capitals.stl", "tail.stl"):
-            self.render(**self.GOOD, body_mesh=name)
+            self.render(**self.GOOD, body_mesh=name, body_mesh_crease=0)
             self.assertAlmostEqual(attributes(self.folder / "render.h5")["mesh_volume"], volume(good), places=6)
         self.refuse("body_mesh = few.stl", "not a closed surface", "150 bytes after", body_mesh="few.stl")
         self.refuse("body_mesh = many.stl", f"the header counts {count + 3} triangles", body_mesh="many.stl")

@@ -135,7 +135,8 @@ class Slips(RefusingTest):
             file["excess"] = np.full((4, 4, 4), 1.33)
             file["excess"].attrs.update(origin=[-3.0] * 3, spacing=[2.0] * 3)
         trace = {"field": "grid", "grid": "grid.h5", "origin": [0, 0, -2], "ray_count": 1, "max_length": 3}
-        self.assertIn("n - 1, not n", self.note("trace", **trace))
+        self.assert_refused(["grid.h5", "grid_values = index"], "trace", **trace)
+        self.note("trace", **trace, grid_values="excess")
         with h5py.File(self.folder / "grid.h5", "a") as file:
             file["excess"][0, 0, 0] = 0.33
         self.assertNotIn("n - 1", self.note("trace", **trace))

@@ -26,7 +26,8 @@ inline double periodic_distance(const Domain& box, Vec a, Vec b) {
   const Vec d = a - b;
   const double x = d.x - box.width * std::floor(d.x / box.width + 0.5);
   const double z = d.z - box.depth * std::floor(d.z / box.depth + 0.5);
-  return std::sqrt(x * x + z * z);
+  const double y = box.height > 0 ? d.y - box.height * std::floor(d.y / box.height + 0.5) : 0;
+  return std::sqrt(x * x + z * z + y * y);
 }
 
 /// Adds to counts[b] the pairs (j < i) with distances in [start + b width, start + (b + 1) width).

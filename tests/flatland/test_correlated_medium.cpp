@@ -4,6 +4,7 @@
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <doctest/doctest.h>
 
+#include "flatland/media/hard_sphere_fluid.h"
 #include "flatland/media/medium.h"
 #include "flatland/media/structure_factor.h"
 
@@ -158,6 +159,31 @@ TEST_CASE("correlated medium: independent of the unit of length") {
   const BulkMedium other = correlated(cylinder(1, 1.3, k / 7), 0.2, k / 7);
   CHECK(other.g == doctest::Approx(one.g).epsilon(1e-12));
   CHECK(7 * other.mu_t == doctest::Approx(one.mu_t).epsilon(1e-12));
+}
+
+// Small spheres scatter at q -> 0, where S has its closed form; absorption does not depend on S.
+TEST_CASE("correlated spheres: small ones scatter S(0) times as much, large ones in a ring") {
+  const Scatterer small{.kind = Scatterer::Kind::tm, .radius = 1e-3, .index = {1.5, 0.01}};
+  const double packing = 0.3, density = packing / small.content(3);
+  const BulkMedium alone = bulk_medium(small, k, density, 3),
+                   fluid = correlated_medium(alone, k, hard_sphere_structure(density, 2e-3));
+  const double expected = std::pow(1 - packing, 4) / std::pow(1 + 2 * packing, 2);
+  CHECK(fluid.mu_s / alone.mu_s == doctest::Approx(expected).epsilon(1e-4));
+  CHECK(fluid.mu_t - fluid.mu_s == doctest::Approx(alone.mu_t - alone.mu_s).epsilon(1e-12));
+
+  const Scatterer large{.kind = Scatterer::Kind::hard, .radius = 0.4};
+  const double number = 0.2 / large.content(3);
+  const BulkMedium ring =
+      correlated_medium(bulk_medium(large, k, number, 3), k, hard_sphere_structure(number, 0.8));
+  const HardSphereFluid spheres(0.2, 0.8);
+  const auto integrand = [&](double cosine) {
+    return 2 * pi * std::norm(amplitude_in_space(ring.t_matrix, k, cosine)) *
+           spheres.structure_factor(k * std::sqrt(2 - 2 * cosine));
+  };
+  using Rule = boost::math::quadrature::gauss_kronrod<double, 61>;
+  CHECK(ring.mu_s == doctest::Approx(number * Rule::integrate(integrand, -1, 1, 5)).epsilon(1e-9));
+  const auto amplitudes = correlated_amplitudes_in_space(ring, k);
+  CHECK(std::norm(amplitudes.front()) == doctest::Approx(integrand(1) / (2 * pi)).epsilon(1e-12));
 }
 
 }  // namespace flatspeckle::test_correlated_medium

@@ -152,7 +152,9 @@ TEST_CASE("placement in space: points are uniform in the box and spheres keep th
   CHECK(std::abs(smallest_gap(spheres, 0.5) - least) < 1e-15);
   const PlacementRule dense{PlacementRule::Kind::hard_disk, 600, 600, 0.02};
   CHECK_THROWS_AS(draw_placement(cuboid, sphere, dense, random), InputError);
-  const PlacementRule fluid{PlacementRule::Kind::equilibrium, 10, 10, 0.02};
+  PlacementRule fluid{PlacementRule::Kind::equilibrium, 600, 600, 0.02};  // packing 0.39
+  check_no_overlap(draw_placement(cuboid, sphere, fluid, random));
+  fluid.mean_count = 800;
   CHECK_THROWS_AS(draw_placement(cuboid, sphere, fluid, random), InputError);
 }
 

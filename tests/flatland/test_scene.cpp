@@ -170,7 +170,7 @@ TEST_CASE("scene: a structure factor requires disks of given density") {
   CHECK_FALSE(scene.medium.structure.independent());
   check_contains(scene.medium.structure.origin(), "of hard disks, packing fraction 0.12");
   check_contains(refusal(points, [](auto&) {}),
-                 "structure = hard_disks: is a key of soft, hard, tm, te and mie");
+                 "structure = hard_disks: is a key of cylinders and spheres only");
   check_contains(refusal(points,
                          [](auto& s) {
                            s.scatterer = "hg";

@@ -127,7 +127,7 @@ TEST_CASE("suspension: keys that contradict one another or have no meaning are r
   });
   refused(spheres(), "structure = hard_disks: must be hard_spheres",
           [](auto& s) { s.structure = "hard_disks"; });
-  refused(cylinders(), "structure = hard_spheres: requires scatterer = mie",
+  refused(cylinders(), "structure = hard_spheres: requires dimension = 3",
           [](auto& s) { s.structure = "hard_spheres"; });
   refused(spheres(), "optical_depth = 3: cannot be combined with structure", [](auto& s) {
     s.volume_fraction.reset();

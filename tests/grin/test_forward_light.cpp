@@ -258,7 +258,7 @@ TEST_CASE("target error with radii: the largest error of the powers within") {
   const RunState state = run_render(job, 20000);
   const PowersWithin all = *render_result(scene, job, state.sums)[0].within;
   CHECK(job.batches.relative_error(state.sums) ==
-        doctest::Approx(largest_error(all, 1)).epsilon(1e-12));
+        doctest::Approx(largest_error(all)).epsilon(1e-12));
 }
 
 TEST_CASE("forward tracing: cameras are rejected") {

@@ -131,20 +131,34 @@ TEST_CASE("thin beam in fog: path tracing, which misses it, does not converge") 
   }
 }
 
-TEST_CASE("powers on disks: dark disks do not reach a target error") {
+TEST_CASE("powers on disks: each power reaches the target error, and dark disks do not") {
   PowersWithin powers{
       .radii = {1, 2}, .power = {{1e-4, 0.2}, {1e-5, 2e-3}, {0, 0}}, .covariance = {}};
-  CHECK(largest_error(powers, 1) == doctest::Approx(0.01));
-  powers.power.value = {0, 2.2e-15};
-  powers.power.error = {0, 1.3e-15};
-  CHECK(std::isinf(largest_error(powers, 1)));
-  powers.power.error = {0, 0.4e-15};
-  CHECK(std::isfinite(largest_error(powers, 1)));
-  powers.power.rare = {0, 1};
-  CHECK(std::isinf(largest_error(powers, 1)));
-  powers.power.value = {0, 0};
-  powers.power.error = {0, 0};
-  CHECK(std::isinf(largest_error(powers, 1)));
+  CHECK(largest_error(powers) == doctest::Approx(0.1));
+  powers.power.rare = {1, 0};
+  powers.power.error = {0.9e-5, 2e-3};
+  CHECK(largest_error(powers) == doctest::Approx(0.09));
+  powers.power.error = {1.1e-5, 2e-3};
+  CHECK(std::isinf(largest_error(powers)));
+  powers.power.value = {0, 0.2};
+  powers.power.error = {0, 2e-3};
+  CHECK(std::isinf(largest_error(powers)));
+}
+
+TEST_CASE("totals: as precise as the light paths that hit the sensor") {
+  RenderScene scene = scene_in_box(2, 4, {}, {Vec3::Zero(), Vec3::UnitZ(), 0.5, 1});
+  scene.lights = {PointLight{{0.2, 0, 0.4}}};
+  scene.stage.bodies.push_back({Sphere{{0, 0, 2}, 1}, {}, 0.5});
+  scene.sensors = {PolarDetector{Vec3::UnitZ(), pi, 12}};
+  const RenderJob job = render_job(scene, {RenderMethod::light}, 1);
+  const RunState state = run_render(job, 8000);
+  const Estimate total = *render_result(scene, job, state.sums)[0].total;
+  const Estimate plain = jackknife(state.sums, [&](double samples, std::span<const Complex> sums) {
+    return std::vector{4 * pi * sums[job.first_of_checks()] / samples};
+  });
+  CHECK(plain.error[0] > 1e-3);
+  CHECK(total.error[0] < 1e-6);
+  CHECK(total.value[0].real() == doctest::Approx(1).epsilon(1e-6));
 }
 
 TEST_CASE("path scores by g: mean 0 for any width of the peak") {

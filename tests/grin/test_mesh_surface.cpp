@@ -9,6 +9,7 @@
 #include "core/numbers/random.h"
 #include "grin/rays/marching/ray_jump.h"
 #include "grin/rays/marching/trace.h"
+#include "grin/rays/surfaces/mesh_distance.h"
 #include "grin/rays/surfaces/mesh_surface.h"
 #include "grin/rays/surfaces/spline_cell.h"
 #include "grin/rays/surfaces/straight_crossing.h"
@@ -95,7 +96,7 @@ TEST_CASE(
   CHECK(volume(closed_mesh(inwards)) == doctest::Approx(8));
   inwards = soup(cube_mesh(1));
   std::swap(inwards[0], inwards[1]);
-  CHECK_THROWS_WITH_AS(closed_mesh(inwards), doctest::Contains("3 of 18 edges"), InputError);
+  CHECK(closed_mesh(inwards).turned == 1);
   inwards.resize(33);
   CHECK_THROWS_WITH_AS(closed_mesh(inwards), doctest::Contains("not a closed surface"), InputError);
   inwards[0][1] = std::nan("");
@@ -111,9 +112,7 @@ TEST_CASE("closed mesh: corners apart by up to 1e-5 of the size are merged") {
     std::vector<Vec3> corners = exact;
     for (Vec3& corner : corners) corner += random_point(random, noise);
     if (noise > 1e-5) {
-      CHECK_THROWS_WITH_AS(closed_mesh(corners),
-                           doctest::Contains("edges are not shared by opposite triangles: from"),
-                           InputError);
+      CHECK_THROWS_WITH_AS(closed_mesh(corners), doctest::Contains("holes: near"), InputError);
       continue;
     }
     const TriangleMesh mesh = closed_mesh(corners);
@@ -151,14 +150,14 @@ TEST_CASE("mesh surface: overlapping parts are rejected, cavities are not") {
     for (Vec3& corner : more) corner = scale * corner + by;
     for (std::size_t i = 0; turned && i < more.size(); i += 3) std::swap(more[i], more[i + 1]);
     corners.insert(corners.end(), more.begin(), more.end());
-    return mesh_surface(closed_mesh(corners), "spacing").volume();
+    return mesh_surface(curved_mesh(closed_mesh(corners), 0, 1), "spacing").volume();
   };
   const double ball = volume(ball_mesh(3));
   CHECK(with(0.5, {0.1, 0, 0}, true) == doctest::Approx(ball * 7 / 8).epsilon(0.01));
   CHECK(with(0.5, {2, 0, 0}, false) == doctest::Approx(ball * 9 / 8).epsilon(0.01));
   CHECK_THROWS_AS(with(0.5, {0.1, 0, 0}, false), OverlapError);
   CHECK_THROWS_AS(with(1, {0.7, 0, 0}, false), OverlapError);
-  CHECK_THROWS_WITH_AS(with(0.5, {2, 0, 0}, true), doctest::Contains("inside out"), OverlapError);
+  CHECK(with(0.5, {2, 0, 0}, true) == doctest::Approx(ball * 9 / 8).epsilon(0.01));
 }
 
 TEST_CASE("mesh distance: distance and winding number of a cube agree with the closed form") {
@@ -295,7 +294,7 @@ TEST_CASE("default spacing: finer for thin meshes") {
   const auto bar = [](double y, double z) {
     TriangleMesh mesh = cube_mesh(1);
     for (Vec3& corner : mesh.corners) corner = corner.cwiseProduct(Vec3(1, y, z));
-    return mesh;
+    return curved_mesh(mesh, 0, 1);
   };
   CHECK(mesh_surface(bar(0.3, 0.3), "spacing").spacing() == 2.0 / 64);
   CHECK(mesh_surface(bar(0.3, 0.05), "spacing").spacing() == 2.0 / 128);

@@ -53,17 +53,18 @@ RenderScene deep_slab() {
   return scene;
 }
 
-/// Returns the variance of all pixels times the number of flights and connections, whose costs
-/// differ by less than a factor of two.
+/// Returns the variance of all pixels relative to the square of the light, times the number of
+/// flights and connections, whose costs differ by less than a factor of two.
 double cost(const RenderScene& scene, RenderMethod method) {
   const double samples = (is_night ? 1 : 0.4) * (scene.stage.medium.mu_s > 1 ? 5000 : 30000);
   const RenderJob job = render_job(scene, {method}, 3);
   const RunState state = run_render(job, samples, 1);
   const Estimate picture = rendered_picture(job, state.sums).steady;
-  double variance = 0;
+  double variance = 0, light = 0;
   for (const double error : picture.error) variance += error * error;
+  for (const Complex pixel : picture.value) light += pixel.real();
   const TransportCounts counts = transport_counts(job, state.sums);
-  return variance * static_cast<double>(counts.flights + counts.connections_made);
+  return variance / (light * light) * static_cast<double>(counts.flights + counts.connections_made);
 }
 
 }  // namespace
@@ -102,6 +103,30 @@ TEST_CASE("method choice: methods of infinite variance are not chosen, and plans
   CHECK(plan({RenderMethod::path}).find("no finite variance") != std::string::npos);
   CHECK(plan({RenderMethod::bidirectional}).find("no finite variance") == std::string::npos);
   CHECK(plan({}).starts_with("bidirectional (chosen by a pilot)"));
+}
+
+TEST_CASE("finite variance: decided by the distance of pinholes and lights to scattering media") {
+  RenderScene scene = box(0, Homogeneous{}, PointLight{{0, 0, 1}}, pinhole);
+  scene.stage.bodies.push_back({Sphere{{0, 0, 4}, 0.9}, {.mu_s = 1}, 0});
+  CHECK(has_finite_variance(scene, RenderMethod::light));
+  CHECK(has_finite_variance(scene, RenderMethod::path));
+  scene.lights = {FibreLight{{0, 0, 3.2}, Vec3::UnitZ(), 0.2, 0.2}};
+  CHECK(!has_finite_variance(scene, RenderMethod::path));
+  scene.sensors = {Camera{{0, 0, 3.1}, Vec3::UnitZ(), Vec3::UnitY(), 1.0, {4, 4}}};
+  CHECK(!has_finite_variance(scene, RenderMethod::light));
+  scene.sensors = {pinhole};
+  scene.stage.bodies.front().medium.mu_s = 0;
+  scene.stage.medium.mu_s = 1;
+  CHECK(!has_finite_variance(scene, RenderMethod::light));
+  scene.sensors = {Camera{{0, 0, 4.5}, Vec3::UnitZ(), Vec3::UnitY(), 1.0, {4, 4}}};
+  CHECK(has_finite_variance(scene, RenderMethod::light));
+}
+
+TEST_CASE("method choice: counted paths beside surfaces") {
+  RenderScene scene =
+      box(0, Homogeneous{}, beam, PolarDetector{-Vec3::UnitZ(), std::numbers::pi / 2, 24});
+  scene.stage.bodies.push_back({Box{{-1, -1, 1}, {1, 1, 8}}, {10, 0.1, {HgPhase{0.9}}}, 0.4});
+  CHECK(chosen(scene) == RenderMethod::forward);
 }
 
 /// No connection has a 1/r^2: the error falls as the root of the number of samples, to the right

@@ -36,7 +36,10 @@ class PixelMeans {
       CAPTURE(pixel);
       CAPTURE(mean(pixel));
       CAPTURE(expected(pixel));
-      CHECK(std::abs(mean(pixel) - expected(pixel)) <= 4 * std::sqrt(variance(pixel)) + 1e-12);
+      // the variance of hits grows with their number, and is too small where the mean is
+      const double share = mean(pixel) > 0 ? std::max(1.0, expected(pixel) / mean(pixel)) : 1;
+      CHECK(std::abs(mean(pixel) - expected(pixel)) <=
+            4 * std::sqrt(share * variance(pixel)) + 1e-12);
     }
   }
   /// Checks that all pixels agree and are not all dark.

@@ -10,7 +10,9 @@
 #include "reference.h"
 #include "tests/statistics.h"
 #include "wave_solver/equations/t_matrix_system.h"
+#include "wave_solver/spheres/sphere_pairs.h"
 #include "wave_solver/sums/fast_product.h"
+#include "wave_solver/sums/space_product.h"
 
 namespace flatspeckle::wave::test_fast_product {
 
@@ -102,6 +104,23 @@ TEST_CASE("fast product of points: agrees with the block-by-block product within
   const auto exact = system.apply(x);
   for (const double tolerance : {1e-3, 1e-6, 1e-9, 1e-12})
     CHECK(relative_distance(FastProduct(system, tolerance)(x), exact) < tolerance);
+}
+
+TEST_CASE("product of points in space: agrees with direct sums within the tolerance") {
+  Placement placement;
+  RandomStream random(4, 1, 0);
+  for (std::size_t i = 0; i < 8000; ++i)
+    placement.push_back({{4 * random.uniform(), 3 * random.uniform(), 5 * random.uniform()},
+                         {.kind = Kind::point, .phase_shift = i % 3 == 0 ? 1.2 : 0.1}});
+  BasisOrders orders(two_pi, 1e-12, sphere_rules());
+  const SphereEquations equations(placement, two_pi, orders.basis(placement, {}));
+  const auto x = random_columns(equations.unknowns());
+  const auto exact = equations.apply(x);
+  for (const double tolerance : {1e-3, 1e-6}) {
+    const SpaceProduct product(equations, tolerance);
+    CHECK(product.range() > 0);
+    CHECK(relative_distance(product(x), exact) < tolerance);
+  }
 }
 
 TEST_CASE("fast product: no scatterer, one, and two close ones") {

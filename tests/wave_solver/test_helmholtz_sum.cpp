@@ -23,6 +23,14 @@ std::vector<Vec> points_in_box(std::size_t count, double width, double depth,
   return points;
 }
 
+std::vector<Vec> points_in_space(std::size_t count, Vec size) {
+  RandomStream random(7, 1, count);
+  std::vector<Vec> points(count);
+  for (Vec& p : points)
+    p = {size.x * random.uniform(), size.z * random.uniform(), size.y * random.uniform()};
+  return points;
+}
+
 std::vector<Complex> random_charges(std::size_t count) {
   RandomStream random(5, 2, count);
   std::vector<Complex> charges(count);
@@ -33,14 +41,16 @@ std::vector<Complex> random_charges(std::size_t count) {
 // Reference: the sum over all pairs with accurate Hankel functions.
 std::vector<Complex> direct_sum(double k, const std::vector<Vec>& sources,
                                 const std::vector<Vec>& targets,
-                                const std::vector<Complex>& charges) {
+                                const std::vector<Complex>& charges,
+                                Radial kind = Radial::cylindrical) {
   const std::size_t columns = charges.size() / sources.size();
   std::vector<Complex> sums(columns * targets.size());
   for (std::size_t i = 0; i < targets.size(); ++i)
     for (std::size_t j = 0; j < sources.size(); ++j) {
       const double r = length(targets[i] - sources[j]);
       if (r == 0) continue;
-      const Complex h = Complex(hankel(0, k * r)[0]);
+      const Complex h = kind == Radial::cylindrical ? Complex(hankel(0, k * r)[0])
+                                                    : std::polar(1 / (k * r), k * r - two_pi / 4);
       for (std::size_t c = 0; c < columns; ++c)
         sums[c * targets.size() + i] += h * charges[c * sources.size() + j];
     }
@@ -57,6 +67,17 @@ void check_accuracy(double k, const std::vector<Vec>& points) {
     CAPTURE(tolerance);
     const HelmholtzSum sum(k, points, tolerance);
     CHECK(sum.range() > 0);
+    CHECK(relative_distance(sum(charges), exact) < tolerance);
+  }
+}
+
+// Checks sums in space with two columns of charges and a given range.
+void check_in_space(const std::vector<Vec>& points, double range) {
+  const auto charges = random_charges(2 * points.size());
+  const auto exact = direct_sum(two_pi, points, points, charges, Radial::spherical);
+  for (const double tolerance : tolerances) {
+    CAPTURE(tolerance);
+    const HelmholtzSum sum(two_pi, points, tolerance, Radial::spherical, range);
     CHECK(relative_distance(sum(charges), exact) < tolerance);
   }
 }
@@ -107,6 +128,41 @@ TEST_CASE("Helmholtz sum: agrees with the direct sum within the tolerance in box
     CAPTURE(box.x);
     check_accuracy(two_pi, points_in_box(some, box.x, box.z));
   }
+}
+
+TEST_CASE("kernel split in space: parts add to h_0, and near vanishes beyond its range") {
+  for (const double range : {1e-3, 0.5, 3.0}) {
+    const KernelSplit split(two_pi, range, 1e-9, Radial::spherical);
+    const std::vector<double> distances{1e-6 * range, 0.1 * range, 0.999 * range, 1.001 * range};
+    std::vector<double> near(distances.size());
+    std::vector<Complex> far(distances.size());
+    split.near(distances, near);
+    split.far(distances, far);
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      const double x = two_pi * distances[i];
+      CHECK(std::abs(far[i] + Complex(0, near[i]) - std::polar(1 / x, x - two_pi / 4)) < 1e-13 / x);
+    }
+    CHECK(std::abs(near[2]) < 1e-6 / (two_pi * range));
+    CHECK(near[3] == 0);
+  }
+}
+
+TEST_CASE("Helmholtz sum in space: agrees with the direct sum within the tolerance") {
+  check_in_space(points_in_space(400, {2, 1.2, 0.7}), 0.5);
+  check_in_space(points_in_space(400, {2, 0, 1}), 0.3);
+  auto close = points_in_space(400, {1, 1, 1});
+  for (std::size_t i = 0; i < 20; ++i) {
+    close[100 + i] = close[i] + Vec{0, 0, 1e-6};
+    close[200 + i] = close[i];
+  }
+  check_in_space(close, 0.4);
+}
+
+TEST_CASE("Helmholtz sum in space: uses a grid for dense points only") {
+  const auto dense = points_in_space(20000, {8, 8, 8});
+  CHECK(HelmholtzSum(two_pi, dense, 1e-4, Radial::spherical).range() > 0);
+  const auto sparse = points_in_space(2000, {30, 30, 30});
+  CHECK(HelmholtzSum(two_pi, sparse, 1e-4, Radial::spherical).range() == 0);
 }
 
 TEST_CASE("Helmholtz sum: is invariant under a change of the unit of length") {

@@ -91,7 +91,6 @@ TEST_CASE("ensemble in space: scenes that cannot be solved are rejected") {
   };
   CHECK_NOTHROW(make([](SceneSpec&) {}));
   CHECK_THROWS_AS(make([](SceneSpec& spec) { spec.scatterer = "mie"; }), InputError);
-  CHECK_THROWS_AS(make([](SceneSpec& spec) { spec.placement = "equilibrium"; }), InputError);
   CHECK_THROWS_AS(make([](SceneSpec& spec) { spec.count = 2200; }), InputError);  // packing 0.37
   CHECK_THROWS_AS(make([](SceneSpec& spec) { spec.medium_index = 1.3; }), InputError);
 }

@@ -18,6 +18,7 @@
 #include "wave_solver/spheres/sphere_equations.h"
 #include "wave_solver/sums/block_krylov.h"
 #include "wave_solver/sums/fast_product.h"
+#include "wave_solver/sums/space_product.h"
 
 namespace flatspeckle::wave {
 
@@ -298,7 +299,12 @@ SolvableEquations solvable(const WaveEquations& equations) {
 SolvableEquations solvable(const SphereEquations& equations) {
   const auto* const of = &equations;
   return {equations.unknowns(), [of] { return of->matrix(); },
-          [of](double) -> BlockMap {
+          [of](double tolerance) -> BlockMap {
+            if (of->only_points()) {
+              const auto product = std::make_shared<const SpaceProduct>(*of, tolerance);
+              if (product->range() > 0)
+                return [product](std::span<const Complex> x) { return (*product)(x); };
+            }
             return [of](std::span<const Complex> x) { return of->apply(x); };
           }};
 }

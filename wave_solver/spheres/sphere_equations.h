@@ -36,6 +36,7 @@ class SphereEquations {
   /// Returns |T_l| and T_l of an unknown.
   double strength(std::size_t unknown) const;
   ExtendedComplex t_matrix(std::size_t unknown) const { return t_[degree_[unknown]]; }
+  Complex diagonal(std::size_t unknown) const { return diagonal_[unknown]; }
 
   /// Returns M, column by column. Threaded unless called from a parallel region. Throws InputError
   /// if memory does not suffice.

@@ -84,7 +84,7 @@ std::vector<Vec> centres(Bodies bodies) {
 // highest order represents all bodies.
 struct Outline {
   explicit Outline(const WaveEquations& system)
-      : k(system.k()), centres(wave::centres(system.bodies())), box(bounds_of(centres)) {
+      : k(system.k()), centres(wave::centres(system.bodies())), box(bounds_of_all(centres)) {
     std::size_t highest = 0;
     for (std::size_t j = 0; j < centres.size(); ++j) {
       if (system.order(j) > system.order(highest)) highest = j;
@@ -97,7 +97,7 @@ struct Outline {
 
   double k;
   std::vector<Vec> centres;
-  Rectangle box;
+  PointBounds box;
   double radius = 0;
   ModeSet modes;
   double squares;  // number of elements of M
@@ -134,7 +134,7 @@ std::optional<double> best_range(const WaveEquations& system, double tolerance, 
   consider(std::numeric_limits<double>::infinity(),
            cost::stored(8 * outline.squares, outline.squares / 2 * seconds_per_element));
   if (!with_grid) return range;
-  const double extent = std::max(outline.box.width(), outline.box.depth());
+  const double extent = outline.box.extent();
   for (double r = extent / 3; r > extent * 1e-3; r /= std::numbers::sqrt2)
     consider(r, grid_cost(outline, r, tolerance));
   return range;
@@ -206,7 +206,7 @@ RingProduct::RingProduct(const WaveEquations& system, double range, double toler
     if (!resolved_) return;
     split.emplace(system.k(), range, finer);
     const auto points = place_rings(bodies, range);
-    const GridShape shape(system.k(), range, finer, bounds_of(points));
+    const GridShape shape(system.k(), range, finer, bounds_of_all(points));
     far_.emplace(*split, shape, finer, points, points);
   }
   find_neighbours(bodies, range);
@@ -254,7 +254,7 @@ void RingProduct::find_neighbours(std::span<const WaveEquations::Body> bodies, d
   const auto positions = centres(bodies);
   double largest = 0, reach = 0;
   for (const MultipoleRing& ring : rings_) largest = std::max(largest, ring.radius);
-  const Rectangle box = bounds_of(positions);
+  const PointBounds box = bounds_of_all(positions);
   reach = std::min(range + 2 * largest, 2 * length(box.high - box.low) + 1);
   const StripOrder strips(positions, reach / 3);
   neighbours_.resize(bodies.size());

@@ -6,20 +6,24 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 #include <vector>
 
-#include "core/numbers/hankel_array.h"
 #include "core/run/parallel.h"
+#include "wave_solver/equations/wave_equations.h"
 
 namespace flatspeckle::wave {
 
 StripOrder::StripOrder(std::span<const Vec> points, double height)
     : height_(height), order_(points.size()), first_{0}, z_(points.size()) {
   if (points.empty()) return;
-  low_ = std::min_element(points.begin(), points.end(), [](Vec a, Vec b) { return a.x < b.x; })->x;
+  const PointBounds box = bounds_of_all(points);
+  low_ = box.low;
+  levels_ = static_cast<std::size_t>((box.high.y - low_.y) / height_) + 1;
   std::vector<std::size_t> strip(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
-    strip[i] = static_cast<std::size_t>((points[i].x - low_) / height_);
+    strip[i] = static_cast<std::size_t>((points[i].x - low_.x) / height_) * levels_ +
+               static_cast<std::size_t>((points[i].y - low_.y) / height_);
   std::iota(order_.begin(), order_.end(), 0U);
   std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
     if (strip[a] != strip[b]) return strip[a] < strip[b];
@@ -32,24 +36,38 @@ StripOrder::StripOrder(std::span<const Vec> points, double height)
 }
 
 void StripOrder::around(Vec place, double distance, std::vector<Interval>& intervals) const {
-  const double own = (place.x - low_) / height_, reach = distance / height_;
-  const auto strips = static_cast<double>(first_.size() - 1);
-  const auto from = static_cast<std::size_t>(std::clamp(std::floor(own - reach), 0.0, strips));
-  const auto to = static_cast<std::size_t>(std::clamp(std::floor(own + reach) + 1, 0.0, strips));
-  for (std::size_t s = from; s < to; ++s) {
-    const auto strip = static_cast<double>(s);
-    const double apart = height_ * std::max({strip - own, own - strip - 1, 0.0});
-    // Half the length of the strip within the circle around `place`, slightly enlarged so that
-    // rounding loses no pair.
-    const double chord =
-        std::sqrt(std::max(distance * distance - apart * apart, 0.0)) + 1e-6 * distance;
-    const auto begin = z_.begin() + first_[s], end = z_.begin() + first_[s + 1];
-    const auto low = std::lower_bound(begin, end, place.z - chord);
-    const auto high = std::upper_bound(low, end, place.z + chord);
-    if (low < high)
-      intervals.push_back(
-          {static_cast<std::uint32_t>(low - z_.begin()), static_cast<std::uint32_t>(high - low)});
-  }
+  const double reach = distance / height_;
+  // Numbers of the strips along one axis that are within reach of a coordinate, in units of
+  // height_.
+  const auto within = [&](double own, std::size_t count) {
+    const auto most = static_cast<double>(count);
+    return std::pair(static_cast<std::size_t>(std::clamp(std::floor(own - reach), 0.0, most)),
+                     static_cast<std::size_t>(std::clamp(std::floor(own + reach) + 1, 0.0, most)));
+  };
+  const auto distance_of = [&](std::size_t strip, double own) {
+    const auto s = static_cast<double>(strip);
+    return height_ * std::max({s - own, own - s - 1, 0.0});
+  };
+  const double x = (place.x - low_.x) / height_, y = (place.y - low_.y) / height_;
+  const auto [from, to] = within(x, (first_.size() - 2) / levels_ + 1);
+  const auto [from_level, to_level] = within(y, levels_);
+  for (std::size_t row = from; row < to; ++row)
+    for (std::size_t level = from_level; level < to_level; ++level) {
+      const std::size_t s = row * levels_ + level;
+      if (s + 1 >= first_.size()) break;
+      const double beside = distance_of(row, x), above = distance_of(level, y);
+      // Half the length of the strip within the circle around `place`, slightly enlarged so that
+      // rounding loses no pair.
+      const double chord =
+          std::sqrt(std::max(distance * distance - beside * beside - above * above, 0.0)) +
+          1e-6 * distance;
+      const auto begin = z_.begin() + first_[s], end = z_.begin() + first_[s + 1];
+      const auto low = std::lower_bound(begin, end, place.z - chord);
+      const auto high = std::upper_bound(low, end, place.z + chord);
+      if (low < high)
+        intervals.push_back(
+            {static_cast<std::uint32_t>(low - z_.begin()), static_cast<std::uint32_t>(high - low)});
+    }
 }
 
 NearSum::NearSum(const KernelSplit& split, const StripOrder& strips, std::span<const Vec> sources,
@@ -115,12 +133,13 @@ void NearSum::add(std::span<const Complex> charges, std::span<Complex> sums) con
 
 namespace {
 
-// Returns, sorted, the cell of each point in a grid of square cells with the given side.
+// Returns, sorted, the cell of each point in a grid of square or cubic cells with the given side.
 std::vector<std::uint64_t> occupied(std::span<const Vec> points, Vec low, double side) {
   std::vector<std::uint64_t> cells;
   cells.reserve(points.size());
   for (const Vec p : points)
-    cells.push_back((static_cast<std::uint64_t>((p.x - low.x) / side) << 32) +
+    cells.push_back((static_cast<std::uint64_t>((p.x - low.x) / side) << 42) +
+                    (static_cast<std::uint64_t>((p.y - low.y) / side) << 21) +
                     static_cast<std::uint64_t>((p.z - low.z) / side));
   std::sort(cells.begin(), cells.end());
   return cells;
@@ -128,16 +147,16 @@ std::vector<std::uint64_t> occupied(std::span<const Vec> points, Vec low, double
 
 // Returns the cheapest range of the KernelSplit, or 0 if it is cheaper to sum all pairs directly.
 double best_range(double k, double tolerance, std::span<const Vec> sources,
-                  std::span<const Vec> targets) {
-  const Rectangle box = bounds_of(sources).united(bounds_of(targets));
-  const double extent = std::max(box.width(), box.depth());
+                  std::span<const Vec> targets, Radial kind) {
+  const PointBounds box = bounds_of_all(sources, targets);
+  const double extent = box.extent(), stored = kind == Radial::cylindrical ? 1.3 : 1.7;
   const auto from = static_cast<double>(sources.size()), to = static_cast<double>(targets.size());
-  double best = cost::all_pairs(from * to), range = 0;
+  double best = cost::all_pairs(from * to, kind), range = 0;
   for (double r = extent / 3; r > extent * 1e-4; r /= std::numbers::sqrt2) {
-    const double grid = cost::grid(GridShape(k, r, tolerance, box), from + to);
+    const double grid = cost::grid(GridShape(k, r, tolerance, box, kind), from + to);
     if (grid > best) continue;
-    const double pairs = near_pairs(sources, targets, r);
-    const double cost = grid + cost::stored(1.3 * 8 * pairs, 40e-9 * pairs);
+    const double pairs = near_pairs(sources, targets, r, kind);
+    const double cost = grid + cost::stored(stored * 8 * pairs, 40e-9 * pairs);
     if (cost < best) {
       best = cost;
       range = r;
@@ -155,11 +174,13 @@ std::vector<Vec> in_order(std::span<const Vec> points, std::span<const std::uint
 
 }  // namespace
 
-// Counts the pairs whose two points are in the same cell of a grid. The square cells have the area
-// of a disk of radius `range`.
-double near_pairs(std::span<const Vec> sources, std::span<const Vec> targets, double range) {
-  const double side = range * std::sqrt(std::numbers::pi);
-  const Vec low = bounds_of(sources).united(bounds_of(targets)).low;
+// Counts the pairs whose two points are in the same cell of a grid. The cells have the area of a
+// disk of radius `range`, in space the volume of a ball.
+double near_pairs(std::span<const Vec> sources, std::span<const Vec> targets, double range,
+                  Radial kind) {
+  const double side = range * (kind == Radial::cylindrical ? std::sqrt(std::numbers::pi)
+                                                           : std::cbrt(4 * std::numbers::pi / 3));
+  const Vec low = bounds_of_all(sources, targets).low;
   const auto from = occupied(sources, low, side), to = occupied(targets, low, side);
   double pairs = 0;
   for (auto cell = to.begin(); cell != to.end();) {
@@ -175,41 +196,60 @@ namespace cost {
 
 namespace {
 double limited(double bytes, double seconds) {
-  return bytes > most_bytes ? std::numeric_limits<double>::infinity() : seconds;
+  const bool fits = bytes < std::min(most_bytes, memory_of_system());
+  return fits ? seconds : std::numeric_limits<double>::infinity();
 }
 }  // namespace
 
 double grid(const GridShape& shape, double points) {
-  const double cells = static_cast<double>(shape.x.size) * static_cast<double>(shape.z.size);
-  const double lines = points * shape.width;
-  return limited(
-      12 * cells + 16 * lines,
-      cells * 20e-9 + lines * 20e-9 + uses * (cells * 14e-9 + lines * shape.width * 0.5e-9));
+  const double cells = shape.points(), lines = points * shape.width;
+  const double each = shape.levels() > 1 ? 28e-9 : 14e-9;
+  return limited(12 * cells + 24 * lines,
+                 cells * 20e-9 + lines * 20e-9 +
+                     uses * (cells * each + lines * shape.width * shape.levels() * 0.5e-9));
 }
 
 double stored(double bytes, double seconds_to_make) {
   return limited(bytes, seconds_to_make + uses * bytes * 0.13e-9);
 }
 
-double all_pairs(double pairs) {
-  return uses * pairs * 12e-9;
+double all_pairs(double pairs, Radial kind) {
+  return uses * pairs * (kind == Radial::cylindrical ? 12e-9 : 1.4e-9);
 }
 
 }  // namespace cost
 
 HelmholtzSum::HelmholtzSum(double k, std::span<const Vec> sources, std::span<const Vec> targets,
-                           double tolerance)
-    : k_(k), sources_(sources.begin(), sources.end()), targets_(targets.begin(), targets.end()) {
+                           double tolerance, Radial kind)
+    : k_(k),
+      kind_(kind),
+      sources_(sources.begin(), sources.end()),
+      targets_(targets.begin(), targets.end()) {
   if (sources.empty() || targets.empty()) return;
-  range_ = best_range(k, tolerance, sources, targets);
-  if (range_ == 0) return;
+  range_ = best_range(k, tolerance, sources, targets, kind);
+  if (range_ > 0) split_sums(tolerance);
+}
+
+HelmholtzSum::HelmholtzSum(double k, std::span<const Vec> points, double tolerance, Radial kind,
+                           double range)
+    : k_(k),
+      range_(range),
+      kind_(kind),
+      sources_(points.begin(), points.end()),
+      targets_(sources_) {
+  if (range_ > 0 && !points.empty()) split_sums(tolerance);
+}
+
+// Makes the near and the far part, and sorts sources and targets.
+void HelmholtzSum::split_sums(double tolerance) {
+  const std::vector<Vec> sources = std::move(sources_), targets = std::move(targets_);
   const StripOrder by_source(sources, range_ / 3), by_target(targets, range_ / 3);
   source_order_.assign(by_source.order().begin(), by_source.order().end());
   target_order_.assign(by_target.order().begin(), by_target.order().end());
   sources_ = in_order(sources, source_order_);
   targets_ = in_order(targets, target_order_);
-  const KernelSplit split(k, range_, tolerance);
-  const GridShape shape(k, range_, tolerance, bounds_of(sources).united(bounds_of(targets)));
+  const KernelSplit split(k_, range_, tolerance, kind_);
+  const GridShape shape(k_, range_, tolerance, bounds_of_all(sources, targets), kind_);
   near_.emplace(split, by_source, sources, targets_);
   far_.emplace(split, shape, tolerance, sources_, targets_);
 }
@@ -241,7 +281,7 @@ std::vector<Complex> HelmholtzSum::all_pairs(std::span<const Complex> charges) c
       if (x[j] == 0) coincident.push_back(j);
       if (x[j] == 0) x[j] = 1;
     }
-    hankel0(x, h);
+    outgoing_wave(kind_, x, h);
     for (const std::size_t j : coincident) h[j] = 0;
     for (std::size_t c = 0; c < columns; ++c) {
       Complex sum = 0;

@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "core/numbers/hankel_array.h"
+#include "core/numbers/wide/every_width.h"
+#include "core/numbers/wide/functions.h"
 
 namespace flatspeckle::wave {
 
@@ -25,7 +27,21 @@ std::vector<double> chebyshev_series(const std::vector<double>& values) {
   return series;
 }
 
+FLATSPECKLE_EVERY_WIDTH void spherical_wave(const double* x, Complex* h, std::size_t count) {
+  auto* parts = reinterpret_cast<double*>(h);
+#pragma omp simd
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [sine, cosine] = wide_sine_cosine(x[i]);
+    parts[2 * i] = sine / x[i];
+    parts[2 * i + 1] = -cosine / x[i];
+  }
+}
+
 }  // namespace
+
+void outgoing_wave(Radial kind, std::span<const double> x, std::span<Complex> h) {
+  kind == Radial::cylindrical ? hankel0(x, h) : spherical_wave(x.data(), h.data(), x.size());
+}
 
 double bump(double beta, double t) {
   const double inside = 1 - t * t;
@@ -64,8 +80,8 @@ double KernelSplit::band(double k, double range, double tolerance) {
   return shape.centre + shape.beta / range;
 }
 
-KernelSplit::KernelSplit(double k, double range, double tolerance)
-    : k_(k), range_(range), shape_(mollifier(k, range, tolerance)) {
+KernelSplit::KernelSplit(double k, double range, double tolerance, Radial kind)
+    : k_(k), range_(range), kind_(kind), shape_(mollifier(k, range, tolerance)) {
   const double norm = 1 / moment(0, range).real();
   const auto terms = static_cast<std::size_t>(16 + shape_.beta + k * range);
   std::vector<double> values(terms);
@@ -74,13 +90,14 @@ KernelSplit::KernelSplit(double k, double range, double tolerance)
         std::cos(std::numbers::pi * (static_cast<double>(j) + 0.5) / static_cast<double>(terms));
     const double r = range * std::sqrt((1 + u) / 2), x[1] = {k * r};
     Complex h[1];
-    hankel0(x, h);
+    wave(x, h);
     values[j] = norm * (h[0].imag() * moment(0, r).real() + h[0].real() * moment(r, range).imag());
   }
   chebyshev_ = chebyshev_series(values);
 }
 
-// Returns the integral of the mollifier times H_0(k s) s over from < s < to.
+// Returns the integral of the mollifier times H_0(k s) s, in space h_0(k s) s^2, over from < s <
+// to.
 Complex KernelSplit::moment(double from, double to) const {
   const Quadrature rule = double_exponential_rule(shape_.beta + 2 * k_ * range_);
   const double middle = (from + to) / 2, half = (to - from) / 2;
@@ -91,13 +108,13 @@ Complex KernelSplit::moment(double from, double to) const {
     x[i] = k_ * s[i];
   }
   std::vector<Complex> h(count), modulation(count, 1);
-  hankel0(x, h);
+  wave(x, h);
   for (std::size_t i = 0; i < count; ++i) x[i] = shape_.centre * s[i];
-  if (shape_.centre > 0) hankel0(x, modulation);
+  if (shape_.centre > 0) wave(x, modulation);
   Complex sum = 0;
   for (std::size_t i = 0; i < count; ++i)
-    sum += half * rule.weights[i] * s[i] * bump(shape_.beta, s[i] / range_) * modulation[i].real() *
-           h[i];
+    sum += half * rule.weights[i] * (kind_ == Radial::cylindrical ? s[i] : s[i] * s[i]) *
+           bump(shape_.beta, s[i] / range_) * modulation[i].real() * h[i];
   return sum;
 }
 
@@ -127,7 +144,7 @@ void KernelSplit::near(std::span<const double> r, std::span<double> values) cons
   std::vector<double> x(r.size());
   std::vector<Complex> h(r.size());
   for (std::size_t i = 0; i < r.size(); ++i) x[i] = k_ * (r[i] > 0 ? r[i] : range_);
-  hankel0(x, h);
+  wave(x, h);
   smooth_y0(r, values);
   for (std::size_t i = 0; i < r.size(); ++i) {
     if (r[i] >= range_)
@@ -140,7 +157,7 @@ void KernelSplit::near(std::span<const double> r, std::span<double> values) cons
 void KernelSplit::far(std::span<const double> r, std::span<Complex> values) const {
   std::vector<double> x(r.size()), smooth(r.size());
   for (std::size_t i = 0; i < r.size(); ++i) x[i] = k_ * (r[i] > 0 ? r[i] : range_);
-  hankel0(x, values);
+  wave(x, values);
   smooth_y0(r, smooth);
   for (std::size_t i = 0; i < r.size(); ++i) {
     if (r[i] == 0)

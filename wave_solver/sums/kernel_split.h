@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numbers/bessel.h"
 #include "core/numbers/complex.h"
 
 namespace flatspeckle::wave {
@@ -23,15 +24,19 @@ Quadrature double_exponential_rule(double frequency);
 /// Returns the beta that an accuracy requires: ln(1 / tolerance) plus a margin.
 double bump_exponent(double tolerance);
 
-/// Splits H_0(k r) = far(r) + i near(r). far is H_0 convolved with a radial mollifier of radius
-/// `range` whose Fourier transform is 1 at k. By the mean-value property of waves, far equals H_0
-/// beyond `range`, and has the same real part, J_0, everywhere. near is therefore real and vanishes
-/// beyond `range`. The transform of far is negligible beyond `band`. The mollifier is bump(beta, r
-/// / range) J_0(centre r). Its transform is largest at `centre`, which is so close to k that the
-/// maximum is not much larger than 1.
+/// Computes the outgoing wave of order 0 at arguments x > 0: H_0 in the plane (cylindrical), h_0 =
+/// -i e^{ix} / x in space (spherical).
+void outgoing_wave(Radial kind, std::span<const double> x, std::span<Complex> h);
+
+/// Splits H_0(k r) = far(r) + i near(r), or the same with h_0 in space. far is H_0 convolved with a
+/// radial mollifier of radius `range` whose Fourier transform is 1 at k. By the mean-value property
+/// of waves, far equals H_0 beyond `range`, and has the same real part, J_0, everywhere. near is
+/// therefore real and vanishes beyond `range`. The transform of far is negligible beyond `band`.
+/// The mollifier is bump(beta, r / range) J_0(centre r), in space with j_0. Its transform is
+/// largest at `centre`, which is so close to k that the maximum is not much larger than 1.
 class KernelSplit {
  public:
-  KernelSplit(double k, double range, double tolerance);
+  KernelSplit(double k, double range, double tolerance, Radial kind = Radial::cylindrical);
   /// Returns the spatial frequency, above k, beyond which the Fourier transform of far is
   /// negligible.
   static double band(double k, double range, double tolerance);
@@ -47,6 +52,7 @@ class KernelSplit {
 
  private:
   Complex moment(double from, double to) const;
+  void wave(std::span<const double> x, std::span<Complex> h) const { outgoing_wave(kind_, x, h); }
   void smooth_y0(std::span<const double> r, std::span<double> values) const;
 
   struct Mollifier {
@@ -55,6 +61,7 @@ class KernelSplit {
   static Mollifier mollifier(double k, double range, double tolerance);
 
   double k_, range_;
+  Radial kind_;
   Mollifier shape_;
   std::vector<double> chebyshev_;  // series of Im far on [0, range] in 2 (r / range)^2 - 1
 };

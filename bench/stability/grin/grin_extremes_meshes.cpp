@@ -6,6 +6,7 @@
 #include "bench/scenes/meshes.h"
 #include "bench/scenes/random_fields.h"
 #include "bench/stability/extreme_rows.h"
+#include "grin/rays/surfaces/straight_crossing.h"
 #include "grin/render/flights/space.h"
 
 namespace flatspeckle::bench {
@@ -74,6 +75,37 @@ Finding lost_by_grazing() {
   return {lost / static_cast<double>(flights), 1e-3};
 }
 
+/// Returns the rms deviation of the normals of the smooth surface of a ball of `8 * 4^times`
+/// triangles at the default spacing.
+Finding normals_of_coarse_ball(double scale, const Vec3& at) {
+  const TriangleMesh mesh = moved(ball_mesh(3), scale, at);
+  const CurvedMesh curved = curved_mesh(mesh, 0.52, first_spacing(mesh) / 3);
+  return {fit_of(mesh_surface(curved, "spacing"), curved).normal_deviation, 0.01};
+}
+
+/// Checks that lines cross an aspheric lens an even number of times, and that the crossings lie on
+/// it.
+Finding crossings_of_asphere(double scale, const Vec3& at, double limit) {
+  const AsphericFace front{1.2 / scale, -0.8, {0.1 / std::pow(scale, 3), 0, 0}},
+      back{-0.9 / scale, 1.1, {0, 0.05 / std::pow(scale, 5), 0}};
+  const Surface lens = *AsphericLens::make(at, 0.7 * scale, front, back, 0.8 * scale);
+  RandomStream random(14, 99, 0);
+  double worst = 0;
+  for (int line = 0; line < 2000; ++line) {
+    Vec3 x = at + 3 * scale * random_direction(random);
+    const Vec3 d = (at + random_point(random, 0.6 * scale) - x).normalized();
+    int count = 0;
+    for (bool leaves = false; count < 9; leaves = !leaves, ++count) {
+      const double length = leaves ? exit_distance(lens, x, d) : entry_distance(lens, x, d);
+      if (!(length < 10 * scale)) break;
+      x += length * d;
+      worst = larger(worst, std::abs(distance(lens, x)) / scale);
+    }
+    if (count % 2 != 0) return {1, limit};
+  }
+  return {worst, limit};
+}
+
 }  // namespace
 
 void mesh_extremes(ExtremeRows& rows) {
@@ -87,6 +119,15 @@ void mesh_extremes(ExtremeRows& rows) {
                 "share of light that is lost", along_faces);
   rows.add("ball of triangles, light that grazes it", "share of light that is lost",
            lost_by_grazing);
+  rows.add("coarse ball of triangles", "normals of the sphere", normals_of_coarse_ball, 1,
+           Vec3(0, 0, 0));
+  rows.add("coarse ball of triangles, 1e-6 wide, 100 of its sizes away", "normals of the sphere",
+           normals_of_coarse_ball, 1e-6, Vec3(1e-4, 0, 0));
+  const std::string on_lens = "lines cross it where it is, in units of its size";
+  rows.add("aspheric lens", on_lens, crossings_of_asphere, 1, Vec3(0, 0, 0), 1e-13);
+  rows.add("aspheric lens, 1e-9 wide", on_lens, crossings_of_asphere, 1e-9, Vec3(0, 0, 0), 1e-13);
+  rows.add("aspheric lens, 1e5 of its sizes away", on_lens, crossings_of_asphere, 1,
+           Vec3(1e5, 1e5, 1e5), 1e-9);
   rows.add_refused("triangles that are not closed", "not a closed surface", [] {
     closed_mesh({Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()});
   });

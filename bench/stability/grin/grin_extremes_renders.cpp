@@ -63,6 +63,16 @@ RenderScene in_box(AnyIndexField field, const ScatteringMedium& medium) {
   return scene_in(std::move(field), {unit_box(), medium}, environment(), whole_face());
 }
 
+/// Checks that every pixel of a picture of an even environment is 1, with error 0.
+Finding even_picture(RenderScene scene, std::uint64_t samples) {
+  scene.sensors = {Camera{Vec3(0.2, -0.1, -0.8), Vec3::UnitZ(), Vec3::UnitY(), 1.2, {61, 47}}};
+  const Estimate pixels = rendered(scene, std::nullopt, samples).pixels;
+  double worst = 0;
+  for (std::size_t i = 0; i < pixels.value.size(); ++i)
+    worst = std::max(worst, std::abs(pixels.value[i] - 1.0) + pixels.error[i]);
+  return {worst, 1e-12};
+}
+
 /// A slab of matched index and thickness 1 under a thin beam, with a detector that covers a face.
 RenderScene slab(const ScatteringMedium& medium, bool reflected) {
   RenderScene scene{};
@@ -137,6 +147,10 @@ void add_furnaces(ExtremeRows& rows) {
   add(false, "white furnace, ball of index 3, light trapped",
       with_ball(in_box(Homogeneous{2}, thin)), 4000);
   add(false, "white furnace, density of contrast 1e6", in_box(Homogeneous{0.3}, spike), 2000);
+  rows.add_timed(false, "picture of an empty stage under an environment", "each pixel is 1",
+                 even_picture, in_box(Homogeneous{}, {}), 30'000);
+  rows.add_timed(false, "picture of a scattering ball under an environment", "each pixel is 1",
+                 even_picture, with_ball(in_box(Homogeneous{}, {.mu_s = 3})), 30'000);
 }
 
 /// Returns the reflectance of a deep slab without absorption by Milne's theory. The transmittance

@@ -173,7 +173,7 @@ LeastSquares::Model LeastSquares::model_at(SearchState& state) const {
   const double rough = mean(model.rough_diagonal);
   model.rough_unit = rough > 0 ? model.mean_curvature / rough : 0;
   model.roughness.add_times(state.coefficients, state.roughness * model.rough_unit, model.gradient);
-  const auto& [least, most] = search_.bounds;
+  const std::vector<double>&least = search_.bounds.least, &most = search_.bounds.most;
   for (std::size_t i = 0; i < count; ++i) {
     const bool low = state.coefficients[i] <= least[i] && model.gradient[i] >= 0;
     const bool high = state.coefficients[i] >= most[i] && model.gradient[i] <= 0;

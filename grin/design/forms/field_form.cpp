@@ -69,12 +69,52 @@ void hold_faces(const CoefficientShape& shape, Bounds& bounds) {
 
 }  // namespace
 
+/// Moves neighbours that differ by too much towards each other, again and again, until all keep the
+/// bound, then scales the values for what is left.
+void Bounds::hold_differences(std::span<double> values) const {
+  constexpr int most_sweeps = 200;
+  constexpr double margin = 1e-3;
+  const int nx = shape.extent[0], ny = shape.extent[1], nz = shape.extent[2];
+  const std::size_t strides[3] = {static_cast<std::size_t>(ny) * nz, static_cast<std::size_t>(nz),
+                                  1};
+  const auto each_pair = [&](const auto& use) {
+    for (int i = 0; i < nx; ++i)
+      for (int j = 0; j < ny; ++j)
+        for (int k = 0; k < nz; ++k) {
+          const std::size_t at = i * strides[0] + j * strides[1] + k;
+          if (i + 1 < nx) use(at, at + strides[0]);
+          if (j + 1 < ny) use(at, at + strides[1]);
+          if (k + 1 < nz) use(at, at + strides[2]);
+        }
+  };
+  double worst = 0;
+  for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+    worst = 0;
+    each_pair([&](std::size_t a, std::size_t b) {
+      const double excess = std::abs(values[b] - values[a]) - *most_difference;
+      if (!(excess > 0)) return;
+      worst = std::max(worst, excess);
+      const double move = std::copysign(excess / 2, values[b] - values[a]);
+      values[a] = std::clamp(values[a] + move, least[a], most[a]);
+      values[b] = std::clamp(values[b] - move, least[b], most[b]);
+    });
+    if (worst <= margin * *most_difference) break;
+  }
+  double largest = 0;
+  each_pair([&](std::size_t a, std::size_t b) {
+    largest = std::max(largest, std::abs(values[b] - values[a]));
+  });
+  if (largest <= *most_difference) return;
+  for (double& value : values) value *= *most_difference / largest;
+}
+
 Bounds bounds_of(const FieldForm& form, double least_index, double most_index) {
   if (const auto* guide = std::get_if<GuideForm>(&form))
     return guide->coefficients > 0
                ? evenly_bounded(guide->shape(), -3, most_correction(guide->core.delta))
                : evenly_bounded(guide->shape(), 1, 10);
   Bounds bounds = evenly_bounded(shape_of(form), least_index - 1, most_index - 1);
+  bounds.shape = shape_of(form);
   if (std::holds_alternative<BoxForm>(form)) hold_faces(shape_of(form), bounds);
   return bounds;
 }

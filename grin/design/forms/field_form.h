@@ -88,11 +88,19 @@ inline CoefficientShape shape_of(const FieldForm& form) {
 /// Lower and upper bound of each coefficient.
 struct Bounds {
   std::vector<double> least, most;
+  CoefficientShape shape = {{1, 1, 1}};
+  /// Largest difference between neighbouring coefficients; nullopt: unlimited.
+  std::optional<double> most_difference = {};
 
+  /// Changes the values so that they keep the bounds.
   void hold(std::span<double> values) const {
     for (std::size_t i = 0; i < values.size(); ++i)
       values[i] = std::clamp(values[i], least[i], most[i]);
+    if (most_difference) hold_differences(values);
   }
+
+ private:
+  void hold_differences(std::span<double> values) const;
 };
 /// Returns the bounds of the coefficients that keep the index between least_index and most_index.
 /// For a guide, these limits are not used: its exponent and correction have fixed bounds.

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "core/error.h"
+#include "core/frames/frames.h"
 #include "core/keys/csv.h"
 #include "core/keys/number_text.h"
 #include "grin/design/objectives/even_points.h"
@@ -149,26 +150,30 @@ Numbers blurred(const Numbers& values, int pixels, std::size_t stride, std::size
   return blurred;
 }
 
-std::vector<std::vector<double>> rows_of(const std::string& path) {
+/// Returns the pixels of a PNG, TIFF or NPY file, or of a text file of numbers, one line per row.
+Frames pixels_of(const std::string& path) {
+  if (!is_text_frames(path)) return read_frames("pictures", path, {});
   try {
-    return read_rows(path);
+    const auto rows = read_rows(path);
+    Frames pixels{rows.size(), rows.empty() ? 0 : rows.front().size(), {}};
+    for (const auto& row : rows) pixels.values.insert(pixels.values.end(), row.begin(), row.end());
+    return pixels;
   } catch (const InputError& error) {
     throw InputError(std::string("pictures = ") + error.what());
   }
 }
 
-/// Reads a picture from a file of numbers, one line per row. Throws InputError if the picture is
-/// not square, has fewer than 4 rows, contains only zeros, or contains anything other than numbers
-/// from 0 to 1e50.
+/// Reads a picture. Throws InputError if it is not square, has fewer than 4 rows, contains only
+/// zeros, or contains anything other than numbers from 0 to 1e50.
 ScreenPicture read_picture(const std::string& path, double width) {
-  const auto rows = rows_of(path);
-  const std::size_t columns = rows.empty() ? 0 : rows.front().size();
-  if (rows.size() != columns || columns < 4 || columns > 4096)
+  const Frames pixels = pixels_of(path);
+  const std::size_t columns = pixels.columns;
+  if (pixels.rows != columns || columns < 4 || columns > 4096 ||
+      pixels.values.size() != columns * columns)
     throw InputError("pictures", path,
                      "must be a square of 4 to 4096 rows of numbers; has " +
-                         std::to_string(rows.size()) + " rows of " + std::to_string(columns));
-  ScreenPicture picture{width, static_cast<int>(columns), {}};
-  for (const auto& row : rows) picture.values.insert(picture.values.end(), row.begin(), row.end());
+                         std::to_string(pixels.rows) + " rows of " + std::to_string(columns));
+  ScreenPicture picture{width, static_cast<int>(columns), pixels.values};
   for (const double value : picture.values)
     if (!(value >= 0 && value <= most_input))
       throw InputError("pictures", path,

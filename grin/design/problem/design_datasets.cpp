@@ -41,9 +41,9 @@ const DatasetTable design_table{
          {"coefficient_z", Data::numbers, "", "1", "number of a coefficient along z"},
          {"coefficient", Data::numbers, "", "1", "number of a coefficient along r"},
          {"ball_spline", Data::real, "coefficient_x coefficient_y coefficient_z", "1",
-          "coefficients of the spline s of a ball, n = 1 + (1 - r^2/R^2) s"},
+          "coefficients of the spline s of a ball, n = host_index + (1 - r^2/R^2) s"},
          {"radial_spline", Data::real, "coefficient", "1",
-          "coefficients of the spline s, n = 1 + (1 - r^2/R^2) s"},
+          "coefficients of the spline s, n = host_index + (1 - r^2/R^2) s"},
          {"graded_spline", Data::real, "coefficient", "1",
           "coefficients of the spline s of q = (rho/R)^2, n^2 = n0^2 (1 - 2 delta (q^(exponent/2) "
           "+ "
@@ -86,6 +86,8 @@ const DatasetTable design_table{
         {"ball_spline", "origin", "float64s",
          "three numbers: position of the first coefficient's knot"},
         {"ball_spline", "spacing", "float64s", "three numbers: spacing of the knots"},
+        {"ball_spline", "host_index", "float64", "index around the ball; 1 if absent"},
+        {"radial_spline", "host_index", "float64", "index around the ball; 1 if absent"},
         {"radial_spline", "centre", "float64s", "three numbers"},
         {"radial_spline", "radius", "float64", "R"},
         {"graded_spline", "index", "float64", "n0 on the axis"},
@@ -98,6 +100,7 @@ const DatasetTable design_table{
         {"picture/asked", "width", "float64", "side of the pictures"},
         {"", "goal", "text", "objective of the design"},
         {"", "focus", "float64", "focal distance from the centre"},
+        {"", "ended_by", "text", "rule by which the search ended"},
         {"", "stalled", "bool", "whether the search stopped without the expected decrease"}}};
 
 namespace {
@@ -106,27 +109,37 @@ std::vector<double> listed_numbers(const Vec3& x) {
   return {x[0], x[1], x[2]};
 }
 
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+// The following functions write coefficients of the index, given those of the index relative to the
+// host index.
+
 void write_coefficients(const ResultGroup& root, const BallForm& form,
-                        const std::vector<double>& values) {
+                        const std::vector<double>& values, double host) {
   const FieldGrid grid = form.grid();
   const Vec3 first = grid.origin - grid.spacing;
   for (const char* axis : {"coefficient_x", "coefficient_y", "coefficient_z"})
     root.number(axis, static_cast<std::size_t>(form.nodes) + 2);
-  root.put("ball_spline", values);
+  root.put("ball_spline", scaled(values, host));
+  root.attribute("ball_spline", "host_index", host);
   root.attribute("ball_spline", "origin", listed_numbers(first));
   root.attribute("ball_spline", "spacing", listed_numbers(grid.spacing));
 }
 void write_coefficients(const ResultGroup& root, const RadialForm& form,
-                        const std::vector<double>& values) {
+                        const std::vector<double>& values, double host) {
   root.number("coefficient", values.size());
-  root.put("radial_spline", values);
+  root.put("radial_spline", scaled(values, host));
+  root.attribute("radial_spline", "host_index", host);
   root.attribute("radial_spline", "centre", listed_numbers(form.centre));
   root.attribute("radial_spline", "radius", form.radius);
 }
 
 /// Writes the coefficients of the correction of a guide.
 void write_coefficients(const ResultGroup& root, const GuideForm& form,
-                        const std::vector<double>& values) {
+                        const std::vector<double>& values, double) {
   const GradedGuide field = form.field(values);
   const GradedProfile& profile = field.profile();
   root.number("coefficient", profile.correction().size());
@@ -136,10 +149,10 @@ void write_coefficients(const ResultGroup& root, const GuideForm& form,
   root.attribute("graded_spline", "radius", profile.core().radius);
   root.attribute("graded_spline", "exponent", profile.core().exponent);
 }
-/// Writes n - 1 at the nodes of a box. Two nodes with n = 1 are added beyond each face, so that the
-/// spline through all nodes equals the designed field.
+/// Writes n - 1 at the nodes of a box. Two nodes with the host index are added beyond each face, so
+/// that the spline through all nodes equals the designed field.
 void write_coefficients(const ResultGroup& root, const BoxForm& form,
-                        const std::vector<double>& values) {
+                        const std::vector<double>& values, double host) {
   constexpr int beyond = 2;
   const SplineField field = form.field(values);
   const FieldGrid grid = form.grid();
@@ -151,7 +164,8 @@ void write_coefficients(const ResultGroup& root, const BoxForm& form,
     for (int j = 0; j < nodes; ++j)
       for (int k = 0; k < nodes; ++k) {
         const Vec3 x = origin + grid.spacing.cwiseProduct(Vec3(i, j, k));
-        excess.push_back(is_in(i) && is_in(j) && is_in(k) ? field.excess(x) : 0);
+        const double relative = is_in(i) && is_in(j) && is_in(k) ? field.excess(x) : 0;
+        excess.push_back(host - 1 + host * relative);
       }
   for (const char* axis : {"node_x", "node_y", "node_z"})
     root.number(axis, static_cast<std::size_t>(nodes));
@@ -183,7 +197,8 @@ void write_check(const ResultGroup& root, const DesignCheck& check) {
 /// Writes, for each distance from the centre or axis, the mean index over all directions
 /// (transverse directions for a guide) and the largest deviation from this mean.
 template <IndexField F>
-void write_profile(const ResultGroup& root, const F& field, double radius, bool is_guide) {
+void write_profile(const ResultGroup& root, const F& field, double radius, bool is_guide,
+                   double host) {
   constexpr int radii = 101, directions = 50;
   std::vector<double> r, mean, spread;
   for (int i = 0; i < radii; ++i) {
@@ -193,7 +208,7 @@ void write_profile(const ResultGroup& root, const F& field, double radius, bool 
     for (int d = 0; d < directions; ++d) {
       const double z = is_guide ? 0 : 1 - (2 * d + 1.0) / directions, rho = std::sqrt(1 - z * z);
       const Vec3 along(rho * std::cos(2.4 * d), rho * std::sin(2.4 * d), z);
-      found.push_back(index(field, (r.back() * along).eval()));
+      found.push_back(host * index(field, (r.back() * along).eval()));
       sum += found.back();
     }
     mean.push_back(sum / directions);
@@ -206,14 +221,15 @@ void write_profile(const ResultGroup& root, const F& field, double radius, bool 
 }
 
 template <IndexField F>
-void write_slice(const ResultGroup& root, const F& field, const Surface& hull, double radius) {
+void write_slice(const ResultGroup& root, const F& field, const Surface& hull, double radius,
+                 double host) {
   constexpr int pixels = 101;
   std::vector<double> places, map;
   for (int i = 0; i < pixels; ++i) places.push_back(radius * (2.0 * i / (pixels - 1) - 1));
   for (const double x : places)
     for (const double z : places) {
       const Vec3 at(x, 0, z);
-      map.push_back(distance(hull, at) < 0 ? index(field, at) : 1);
+      map.push_back(host * (distance(hull, at) < 0 ? index(field, at) : 1));
     }
   root.put("slice_x", places);
   root.put("slice_z", places);
@@ -249,7 +265,7 @@ void write_drawings(const ResultGroup& root, const Surface& hull, const auto& fo
                     const DesignScene& scene, const std::vector<double>& coefficients) {
   constexpr std::size_t points = 61;
   const auto field = form.field(coefficients);
-  write_slice(root, field, hull, form.radius);
+  write_slice(root, field, hull, form.radius, scene.start.host_index);
   const auto rays = drawn_rays(field, form.radius, points);
   root.number("path_ray", rays.size());
   root.number("path_point", points);
@@ -259,19 +275,23 @@ void write_drawings(const ResultGroup& root, const Surface& hull, const auto& fo
   write_rays(root, "after", rays);
 }
 
+/// Returns the peak signal-to-noise ratio, in dB, of a picture against the requested one.
+double psnr_of(const ScreenPicture& picture, const ScreenPicture& requested) {
+  double square = 0;
+  for (std::size_t p = 0; p < picture.values.size(); ++p)
+    square += std::pow(picture.values[p] - requested.values[p], 2) /
+              static_cast<double>(picture.values.size());
+  return 20 * std::log10(std::ranges::max(requested.values) / std::sqrt(square));
+}
+
 void write_pictures(const ResultGroup& root, const ScreenTarget& design_target,
                     const std::vector<double>& measurements) {
-  std::vector<double> asked_all, shown_all, psnr;
+  std::vector<double> asked_all, shown_all;
   const auto pictures = design_target.shown_by(measurements, true);
   for (std::size_t v = 0; v < pictures.size(); ++v) {
-    const auto& light = pictures[v].values;
     const ScreenPicture asked = shown(design_target.views()[v].picture);
-    double square = 0;
-    for (std::size_t p = 0; p < light.size(); ++p)
-      square += std::pow(light[p] - asked.values[p], 2) / static_cast<double>(light.size());
-    psnr.push_back(20 * std::log10(std::ranges::max(asked.values) / std::sqrt(square)));
     asked_all.insert(asked_all.end(), asked.values.begin(), asked.values.end());
-    shown_all.insert(shown_all.end(), light.begin(), light.end());
+    shown_all.insert(shown_all.end(), pictures[v].values.begin(), pictures[v].values.end());
   }
   const auto pixels = static_cast<std::size_t>(pictures.front().pixels);
   root.number("picture/view", pictures.size());
@@ -279,11 +299,20 @@ void write_pictures(const ResultGroup& root, const ScreenTarget& design_target,
   root.number("picture/column", pixels);
   root.put("picture/asked", asked_all);
   root.put("picture/shown", shown_all);
-  root.put("picture/psnr_db", psnr);
+  root.put("picture/psnr_db", picture_psnr(design_target, measurements));
   root.attribute("picture/asked", "width", pictures.front().width);
 }
 
 }  // namespace
+
+std::vector<double> picture_psnr(const ScreenTarget& design_target,
+                                 const std::vector<double>& measurements) {
+  std::vector<double> psnr;
+  const auto pictures = design_target.shown_by(measurements, true);
+  for (std::size_t v = 0; v < pictures.size(); ++v)
+    psnr.push_back(psnr_of(pictures[v], shown(design_target.views()[v].picture)));
+  return psnr;
+}
 
 void write_design(ResultFile& file, const DesignScene& scene, const Designer& designer,
                   const DesignState& state, const DesignCheck& check) {
@@ -297,13 +326,15 @@ void write_design(ResultFile& file, const DesignScene& scene, const Designer& de
   root.attribute("goal", scene.goal);
   if (scene.focus) root.attribute("focus", *scene.focus);
   root.attribute("stalled", state.stalled);
+  root.attribute("ended_by", state.ended_by);
   const FieldForm form = designer.form(state);
-  std::visit([&](const auto& of) { write_coefficients(root, of, coefficients); }, form);
+  const double host = scene.start.host_index;
+  std::visit([&](const auto& of) { write_coefficients(root, of, coefficients, host); }, form);
   if (const auto* guide = std::get_if<GuideForm>(&form))
-    write_profile(root, guide->field(coefficients), guide->core.radius, true);
+    write_profile(root, guide->field(coefficients), guide->core.radius, true, 1);
   const auto draw = [&]<class Form>(const Form& of) {
     if constexpr (!std::same_as<Form, GuideForm>) {
-      write_profile(root, of.field(coefficients), of.radius, false);
+      write_profile(root, of.field(coefficients), of.radius, false, host);
       write_drawings(root, *hull_of(form), of, scene, coefficients);
     }
   };

@@ -8,6 +8,10 @@ namespace flatspeckle::grin::design {
 
 extern const DatasetTable design_table;
 
+/// Returns the peak signal-to-noise ratio, in dB, of each picture that held-out rays form.
+std::vector<double> picture_psnr(const ScreenTarget& design_target,
+                                 const std::vector<double>& measurements);
+
 /// Writes the designed field in the form that `trace` and `render` read. Also writes the history of
 /// the search, the checks and the data of the plots.
 void write_design(ResultFile& file, const DesignScene& scene, const Designer& designer,

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/keys/kinds.h"
+#include "core/keys/number_text.h"
 #include "core/numbers/address_space.h"
 
 namespace flatspeckle::grin::design {
@@ -11,11 +12,27 @@ namespace {
 
 constexpr std::int64_t most_nodes = 257;
 
-/// Returns the number of nodes of each refinement level. With the default value of `nodes`, a box
-/// omits the first level, which has too few nodes.
+/// Returns the number of nodes of each refinement level. Coarser levels are added before the first
+/// one. With the default value of `nodes`, a box omits the first level, which has too few nodes,
+/// and levels finer than the smallest feature are omitted.
 std::vector<std::int64_t> levels_of(const Keys& keys, const FormValues& values) {
   auto nodes = keys.required(values.nodes);
-  if (values.design == "box" && nodes == FormValues().nodes) nodes.erase(nodes.begin());
+  const bool is_default = nodes == FormValues().nodes;
+  const std::int64_t fewest = values.design == "box" ? 9 : 5;
+  if (is_default && values.design == "box") nodes.erase(nodes.begin());
+  // A search that begins on a fine grid ends in a worse field
+  while (nodes.front() % 2 == 1 && (nodes.front() + 1) / 2 >= fewest)
+    nodes.insert(nodes.begin(), (nodes.front() + 1) / 2);
+  const auto& feature = keys.read(values.smallest_feature);
+  const auto spacing = [&](std::int64_t count) {
+    return 2 * values.radius / static_cast<double>(count - 1);
+  };
+  while (feature && is_default && nodes.size() > 1 && spacing(nodes.back()) < *feature / 2)
+    nodes.pop_back();
+  if (feature && spacing(nodes.back()) < *feature / 2)
+    throw InputError("nodes", nodes.back(),
+                     "have a spacing of " + std::to_string(spacing(nodes.back())) +
+                         ", less than half of smallest_feature; use fewer nodes");
   return nodes;
 }
 
@@ -33,23 +50,29 @@ int first_nodes(const std::vector<std::int64_t>& nodes, int least) {
   return static_cast<int>(nodes.front());
 }
 
-/// Sets the bounds of the index and the start coefficients of a ball, a radial profile or a box. A
-/// box starts with index 1 at its faces.
+/// Sets the bounds of the index and the start coefficients of a ball, a radial profile or a box,
+/// relative to the index around the field. A box starts with that index at its faces.
 void bound(const Keys& keys, const FormValues& values, FormStart& start) {
-  start.least_index = keys.read(values.least_index);
-  start.most_index = keys.read(values.most_index);
+  const double host = start.host_index = keys.read(values.index_around);
+  start.least_index = keys.read(values.least_index) / host;
+  start.most_index = keys.read(values.most_index) / host;
   const double least = start.least_index - 1, most = start.most_index - 1;
-  const double excess = keys.read(values.start_excess);
+  const double excess = keys.read(values.start_excess) / host;
   if (least > 0)
-    throw InputError("least_index", least + 1, "must be at most 1, the index at the rim");
+    throw InputError("least_index", values.least_index,
+                     "must be at most " + number_text(host) + ", the index at the rim");
   if (most < 0)
-    throw InputError("most_index", most + 1, "must be at least 1, the index at the rim");
+    throw InputError("most_index", values.most_index,
+                     "must be at least " + number_text(host) + ", the index at the rim");
   if (!(excess >= least && excess <= most))
-    throw InputError("start_excess", excess,
+    throw InputError("start_excess", values.start_excess,
                      "must lie in the range that least_index and most_index allow: " +
-                         std::to_string(least) + " to " + std::to_string(most));
+                         std::to_string(host * least) + " to " + std::to_string(host * most));
   start.coefficients.assign(shape_of(start.form).size(), excess);
   bounds_of(start.form, start.least_index, start.most_index).hold(start.coefficients);
+  if (values.design != "box") return;
+  if (const auto& gradient = keys.read(values.most_gradient))
+    start.most_gradient = *gradient / host;
 }
 
 FormStart make_guide(const Keys& keys, const FormValues& values, double radius) {
@@ -88,8 +111,8 @@ void add_keys(Keys& keys, FormValues& values) {
       .from(0, 1000)
       .only_of("radial, guide");
   keys.add("start_excess", values.start_excess,
-           "Uniform start value of the spline: of s, with n = 1 + s inside a ball (C30), or of n - "
-           "1 in a box")
+           "Uniform start value of the spline: of s, with n = index_around + s inside a ball "
+           "(C30), or of n - index_around in a box")
       .only_of("ball, radial, box");
   keys.add("least_index", values.least_index, "Lower bound of the index")
       .positive()
@@ -97,6 +120,20 @@ void add_keys(Keys& keys, FormValues& values) {
   keys.add("most_index", values.most_index, "Upper bound of the index")
       .positive_to(100)
       .only_of("ball, radial, box");
+  keys.add("index_around", values.index_around,
+           "Index of the host around a ball or box; the index of the field equals it at the rim")
+      .positive_to(100)
+      .only_of("ball, radial, box");
+  keys.add("smallest_feature", values.smallest_feature,
+           "Smallest period of the index that can be made: nodes must be at least half of it apart")
+      .positive()
+      .unit("length")
+      .only_of("ball, box");
+  keys.add("most_gradient", values.most_gradient,
+           "Upper bound of the magnitude of the gradient of the index")
+      .positive()
+      .unit("1/length")
+      .only_of("box");
   keys.add("index", values.index, "Index n0 on the axis of the guide")
       .positive_to(100)
       .only_of("guide");
@@ -184,6 +221,7 @@ void make_search(const Keys& keys, const DesignValues& values, DesignScene& scen
   keys.read(values.method);
   scene.roughness = keys.read(values.roughness);
   scene.iterations = static_cast<int>(keys.read(values.iterations));
+  scene.tolerance = keys.read(values.tolerance);
   scene.target = keys.read(values.target).value_or(0);
   scene.has_noise = keys.read(values.noise).has_value();
   if (!scene.has_noise) return;
@@ -208,8 +246,15 @@ void add_keys(Keys& keys, DesignValues& values) {
            "guide 1/24 of a quarter of the rays' period)")
       .positive()
       .unit("length");
-  keys.add("iterations", values.iterations, "Largest number of search steps over all levels")
+  keys.add("iterations", values.iterations,
+           "Largest number of search steps over all levels; coarser levels use at most their share")
       .from(1, 1'000'000);
+  keys.add(
+          "tolerance", values.tolerance,
+          "The search ends when two steps in a row on the last level reduce the residual by less "
+          "than this, relative, or when the residual is below the integration error; 0: only after "
+          "the iterations, at the target, or when no step reduces the residual")
+      .from(0, 0.5);
   keys.add("target", values.target,
            "Root mean square residual of the rays at which the search ends; exit status 3 if not "
            "reached")

@@ -22,6 +22,8 @@ struct FormValues {
   double start_excess = 0, least_index = 0.5, most_index = 3;
   double index = 1.5;
   std::optional<double> delta = {};
+  double index_around = 1;
+  std::optional<double> smallest_feature = {}, most_gradient = {};
 };
 
 void add_keys(Keys& keys, FormValues& values);
@@ -32,7 +34,12 @@ struct FormStart {
   int levels = 1;  ///< number of refinement levels, each with half the spacing of the previous one
   double finest = 1;                 ///< number of nodes along an axis in the last level
   std::vector<double> coefficients;  ///< coefficients in the first level
+  /// Bounds of the index, relative to host_index.
   double least_index, most_index;
+  /// Index around the field. The search works with indices relative to it, which bend rays alike.
+  double host_index = 1;
+  /// Largest gradient of a box's relative index; nullopt: unlimited.
+  std::optional<double> most_gradient = {};
 };
 /// Makes the start of the search. Throws InputError.
 FormStart make_form(const Keys& keys, const FormValues& values);
@@ -58,7 +65,7 @@ struct DesignValues {
   TargetValues design_target{};
   std::optional<double> step = {}, target = {}, noise = {};
   std::int64_t iterations = 60;
-  double roughness = 0;
+  double roughness = 0, tolerance = 0.03;
   std::string method = "gauss_newton";
 };
 
@@ -74,8 +81,9 @@ struct DesignScene {
   /// Whether the weight of the roughness is lowered until the residual equals the noise of the
   /// measurements
   bool has_noise;
-  int iterations = 0;  ///< largest number of steps of the search
-  double target = 0;   ///< root mean square residual at which the search ends
+  int iterations = 0;    ///< largest number of steps of the search
+  double tolerance = 0;  ///< relative decrease of the residual below which a step counts as slow
+  double target = 0;     ///< root mean square residual at which the search ends
 };
 
 /// Makes the scene. Throws InputError for invalid values. The overload without `keys` also throws

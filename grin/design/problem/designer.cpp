@@ -88,6 +88,10 @@ FieldForm Designer::form(const DesignState& state) const {
 
 Search Designer::search_in(const FieldForm& form) const {
   Search search{bounds_of(form, scene_.start.least_index, scene_.start.most_index)};
+  if (const auto* box = std::get_if<BoxForm>(&form); box && scene_.start.most_gradient)
+    // The magnitude of a gradient is at most that of its largest component times the root of 3
+    search.bounds.most_difference =
+        *scene_.start.most_gradient * box->grid().spacing[0] / std::sqrt(3.0);
   const auto& extent = shape_of(form).extent;
   // Search steps for a radial profile need not be smooth, because rays cross all of its radii
   if (extent[0] == 1) search.smooth_damping = 0;
@@ -154,7 +158,7 @@ bool Designer::leans_on_steps(DesignState& state) {
 void Designer::advance(DesignState& state) {
   const bool is_last = state.level + 1 == scene_.start.levels;
   // A step of the search is slow if the residual remains above this fraction of its previous value
-  const double slow = is_last ? 0.97 : 0.7;
+  const double slow = is_last ? 1 - scene_.tolerance : 0.7;
   const int most_slow_steps = scene_.has_noise ? 1 : 2;
   const FieldForm form = this->form(state);
   const LeastSquares search({*seen_.rays, *seen_.objective, form}, search_in(form));
@@ -166,13 +170,23 @@ void Designer::advance(DesignState& state) {
   const bool is_enough = rms <= scene_.target;
   const bool gained = step == SearchStep::better && rms < slow * std::sqrt(before);
   state.slow_steps = gained ? 0 : state.slow_steps + 1;
-  const bool is_slow = step != SearchStep::better || state.slow_steps == most_slow_steps ||
-                       (is_last && rms > 0.8 * std::sqrt(before) && leans_on_steps(state));
+  const bool is_settled = step != SearchStep::better;
+  const bool gains_little = state.slow_steps == most_slow_steps;
+  const bool leans = !is_settled && !gains_little && is_last && scene_.tolerance > 0 &&
+                     rms > 0.8 * std::sqrt(before) && leans_on_steps(state);
+  const bool is_slow = is_settled || gains_little || leans;
   note(state);
-  const bool is_spent = static_cast<int>(state.history.rms.size()) > scene_.iterations;
+  const int level = state.level + 1, share = scene_.iterations * level / scene_.start.levels;
+  const bool is_spent = static_cast<int>(state.history.rms.size()) > share;
   const bool may_end = is_last && (is_enough || (is_slow && !smoothes_on(state)));
-  state.ended = is_spent || may_end;
-  if (!state.ended && !is_last && (is_slow || is_enough)) refine(state);
+  state.ended = (is_spent && is_last) || may_end;
+  if (state.ended)
+    state.ended_by = is_enough      ? "target"
+                     : is_settled   ? "no step reduces the residual"
+                     : leans        ? "the residual is below the integration error of the rays"
+                     : gains_little ? "tolerance"
+                                    : "iterations";
+  if (!state.ended && !is_last && (is_slow || is_enough || is_spent)) refine(state);
 }
 
 std::optional<double> Designer::rms(DesignTask& task,
@@ -267,6 +281,27 @@ std::optional<Invariant> Designer::derivatives(const DesignState& state) {
   if (!(size > 0)) return std::nullopt;
   return Invariant{(vector_of(change) - found).norm() / size,
                    of_rounded_rows + (*fine - *coarse).norm() / size};
+}
+
+std::optional<double> focal_length(const DesignScene& scene, const Designer& designer,
+                                   const DesignState& state) {
+  // Closer to the axis, the residual of the rays would be large relative to the height
+  constexpr double share = 0.1;
+  const FieldForm form = designer.form(state);
+  const auto hull = hull_of(form);
+  const Sphere* ball = hull ? std::get_if<Sphere>(&*hull) : nullptr;
+  if (!ball) return std::nullopt;
+  const double height = share * ball->radius;
+  const double back = std::sqrt(ball->radius * ball->radius - height * height);
+  // Grazes no surface: the ray ends on the ball, where the index is that of the host
+  const DesignRay ray{ball->centre + Vec3(height, 0, -back), Vec3::UnitZ(), Surface(*ball)};
+  const FollowedRay end = std::visit(
+      [&](const auto& of) {
+        return follow<Pefrl>(of.field(state.search.coefficients), ray, scene.walk);
+      },
+      form);
+  const double sine = -end.state.v[0] / end.state.v.norm();
+  return end.lost || !(sine > 0) ? std::nullopt : std::optional(height / sine);
 }
 
 }  // namespace flatspeckle::grin::design

@@ -28,7 +28,8 @@ struct DesignState {
   double rms_by_half_steps =
       HUGE_VAL;  ///< root mean square residual with half the integration step, when last computed
   bool ended = false, stalled = false;
-  double cpu_before = 0;  ///< processor time of earlier runs, seconds
+  std::string ended_by = {};  ///< the rule by which the search has ended
+  double cpu_before = 0;      ///< processor time of earlier runs, seconds
 };
 
 /// Root mean square residuals of the rays used in the search (seen) and of held-out rays, with full
@@ -78,6 +79,11 @@ class Designer {
   const DesignScene& scene_;
   DesignTask seen_, held_out_;
 };
+
+/// Returns the effective focal length h / sin u' of a designed ball, from a ray at the height h of
+/// a tenth of its radius along z, which leaves at the angle u'; nullopt if the ray is lost.
+std::optional<double> focal_length(const DesignScene& scene, const Designer& designer,
+                                   const DesignState& state);
 
 /// Returns the path of the file from which an interrupted search resumes: the path of its result
 /// with ".state" appended.

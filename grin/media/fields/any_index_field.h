@@ -15,6 +15,7 @@
 #include "grin/media/fields/linear_ramp.h"
 #include "grin/media/fields/luneburg.h"
 #include "grin/media/fields/parabolic.h"
+#include "grin/media/fields/polynomial.h"
 #include "grin/media/fields/radial_spline.h"
 #include "grin/media/fields/sech.h"
 #include "grin/media/fields/spline_field.h"
@@ -28,7 +29,8 @@ namespace flatspeckle::grin {
 using IndexFieldKinds =
     std::tuple<HomogeneousValues, LuneburgValues, FisheyeValues, ParabolicValues, SechValues,
                LinearValues, TanhValues, BlobsValues, UltrasoundValues, FocusedSoundValues,
-               TransducersValues, GridValues, BallValues, RadialSplineValues, GradedValues>;
+               TransducersValues, GridValues, BallValues, RadialSplineValues, GradedValues,
+               PolynomialValues>;
 
 template <class Kinds>
 struct FieldsOf;

@@ -22,11 +22,11 @@ Sphere ball_in(const FieldGrid& grid) {
 /// Constructs a BallSpline from the grid of spline coefficients in a file. Along each axis, there
 /// are two more coefficients than nodes.
 struct BallGrid {
-  BallGrid(const FieldGrid& where, std::span<const double> values)
-      : ball(nodes_of(where), {values.begin(), values.end()}) {
-    for (const double c : values)
-      if (!(c > -1 && std::isfinite(c)))
-        throw InputError("coefficient of a ball", c, "must be finite and above -1");
+  BallGrid(const GridSamples& samples, double host)
+      : ball(nodes_of(samples.where), samples.values, host - 1) {
+    for (const double c : samples.values)
+      if (!(c > -host && std::isfinite(c)))
+        throw InputError("coefficient of a ball", c, "must be finite and above -host_index");
   }
   static FieldGrid nodes_of(FieldGrid where) {
     where.origin += where.spacing;
@@ -38,15 +38,17 @@ struct BallGrid {
 
 }  // namespace
 
-BallSpline::BallSpline(const FieldGrid& grid, std::vector<double> coefficients)
+BallSpline::BallSpline(const FieldGrid& grid, std::vector<double> coefficients, double host_excess)
     : spline_(SplineField::of_coefficients(grid, std::move(coefficients))),
       ball_(ball_in(grid)),
-      inverse_area_(1 / (ball_.radius * ball_.radius)) {}
+      inverse_area_(1 / (ball_.radius * ball_.radius)),
+      host_excess_(host_excess) {}
 
 FieldFacts facts(const BallSpline& field) {
   return {.scale = std::min(2 * field.spline().grid().spacing[0], field.ball().radius),
           .centre = field.ball().centre,
-          .rim = field.ball()};
+          .rim = field.ball(),
+          .excess_beyond_rim = field.host_excess()};
 }
 
 void add_keys(Keys& keys, BallValues& values) {
@@ -56,7 +58,7 @@ void add_keys(Keys& keys, BallValues& values) {
 
 BallSpline make_field(const Keys& keys, const BallValues& values, const FieldUse&) {
   const auto read = [](const std::string& path) {
-    return read_grid<BallGrid>(path, "ball_spline");
+    return BallGrid(read_samples(path, "ball_spline"), host_index_in(path, "ball_spline"));
   };
   return read_field(keys, keys.required(values.ball), read).ball;
 }

@@ -7,23 +7,27 @@
 
 namespace flatspeckle::grin {
 
-/// Index field of a ball, whose index falls to 1 at its rim: n - 1 = (1 - r^2/R^2) s(x). r is the
-/// distance from the centre, R the radius, and s a cubic spline on the cube around the ball. The
-/// index is smooth inside; its gradient jumps at the rim.
+/// Index field of a ball, whose index falls to that of its host at its rim: n = n_host + (1 -
+/// r^2/R^2) s(x). r is the distance from the centre, R the radius, and s a cubic spline on the cube
+/// around the ball. The index is smooth inside; its gradient jumps at the rim.
 class BallSpline {
  public:
   /// grid: nodes of the spline s, which must form a cube. Throws InputError if they do not form a
   /// cube, or if there are not two more coefficients than nodes along each axis.
-  BallSpline(const FieldGrid& grid, std::vector<double> coefficients);
+  BallSpline(const FieldGrid& grid, std::vector<double> coefficients, double host_excess = 0);
 
   const SplineField& spline() const { return spline_; }
   const Sphere& ball() const { return ball_; }
+  double host_excess() const { return host_excess_; }  ///< n_host - 1
 
-  double excess(const Vec3& x) const { return height(x - ball_.centre) * spline_.excess(x); }
+  double excess(const Vec3& x) const {
+    return host_excess_ + height(x - ball_.centre) * spline_.excess(x);
+  }
   IndexGradient gradient(const Vec3& x) const {
     const Vec3 r = x - ball_.centre;
     const IndexGradient s = spline_.gradient(x);
-    return {height(r) * s.excess, height(r) * s.gradient + s.excess * height_gradient(r)};
+    return {host_excess_ + height(r) * s.excess,
+            height(r) * s.gradient + s.excess * height_gradient(r)};
   }
   IndexHessian hessian(const Vec3& x) const {
     return product(x - ball_.centre, spline_.hessian(x));
@@ -57,12 +61,12 @@ class BallSpline {
     const Vec3 q = height_gradient(r);
     Mat3 hessian = height(r) * s.hessian + q * s.gradient.transpose() + s.gradient * q.transpose();
     hessian.diagonal().array() -= 2 * inverse_area_ * s.excess;
-    return {height(r) * s.excess, height(r) * s.gradient + s.excess * q, hessian};
+    return {host_excess_ + height(r) * s.excess, height(r) * s.gradient + s.excess * q, hessian};
   }
 
   SplineField spline_;
   Sphere ball_;
-  double inverse_area_;
+  double inverse_area_, host_excess_;
 };
 
 FieldFacts facts(const BallSpline& field);

@@ -5,6 +5,7 @@
 #include "core/result/guarded_read.h"
 #include "core/result/result_reader.h"
 #include "grin/media/index/field_file.h"
+#include "grin/media/index/sample_grid.h"
 
 namespace flatspeckle::grin {
 
@@ -23,17 +24,23 @@ RadialSpline read_radial_spline(const std::string& path) {
     const ResultReader file(path);
     const auto centre = numbers(file, "centre", 3);
     const double radius = file.attribute<double>("radial_spline", "radius");
-    return RadialSpline(RadialSplineProfile(radius, file.dataset<double>("radial_spline")),
-                        Vec3(centre[0], centre[1], centre[2]));
+    const double host = host_index_in(path, "radial_spline");
+    return RadialSpline(
+        RadialSplineProfile(radius, file.dataset<double>("radial_spline"), host - 1),
+        Vec3(centre[0], centre[1], centre[2]));
   });
 }
 
 }  // namespace
 
-RadialSplineProfile::RadialSplineProfile(double radius, std::vector<double> coefficients)
-    : radius_(positive("radius", radius)), spline_(std::move(coefficients)) {
+RadialSplineProfile::RadialSplineProfile(double radius, std::vector<double> coefficients,
+                                         double host_excess)
+    : radius_(positive("radius", radius)),
+      host_excess_(host_excess),
+      spline_(std::move(coefficients)) {
   for (const double c : spline_.coefficients())
-    if (!(c > -1)) throw InputError("coefficient of a radial spline", c, "must be above -1");
+    if (!(c > -1 - host_excess))
+      throw InputError("coefficient of a radial spline", c, "must be above -host_index");
 }
 
 FieldFacts facts(const RadialSpline& field) {
@@ -42,7 +49,8 @@ FieldFacts facts(const RadialSpline& field) {
   return {.scale = 2 * profile.radius() / std::max(2.0, cells),
           .symmetry = Symmetry::sphere,
           .centre = field.centre(),
-          .rim = Sphere{field.centre(), profile.radius()}};
+          .rim = Sphere{field.centre(), profile.radius()},
+          .excess_beyond_rim = profile.host_excess()};
 }
 
 void add_keys(Keys& keys, RadialSplineValues& values) {

@@ -11,23 +11,24 @@
 
 namespace flatspeckle::grin {
 
-/// Index profile of a ball of radius R: n - 1 = (1 - q) s with q = r^2/R^2, where r is the distance
-/// from the centre. s is a cubic spline with equal cells in t, where q = t (5 - t)/4. In q, the
-/// cells are narrower towards the rim, where a lens bends rays most. s continues one cell beyond
-/// the rim. Functions take u = r^2 as their argument.
+/// Index profile of a ball of radius R: n = n_host + (1 - q) s with q = r^2/R^2, where r is the
+/// distance from the centre. s is a cubic spline with equal cells in t, where q = t (5 - t)/4. In
+/// q, the cells are narrower towards the rim, where a lens bends rays most. s continues one cell
+/// beyond the rim. Functions take u = r^2 as their argument.
 class RadialSplineProfile {
  public:
   /// The number of cells is the number of coefficients minus 3. Throws InputError for fewer than 4
   /// coefficients, or if one is not finite and above -1.
-  RadialSplineProfile(double radius, std::vector<double> coefficients);
+  RadialSplineProfile(double radius, std::vector<double> coefficients, double host_excess = 0);
 
   double radius() const { return radius_; }
+  double host_excess() const { return host_excess_; }  ///< n_host - 1
   const std::vector<double>& coefficients() const { return spline_.coefficients(); }
 
   double excess(double u) const {
     const Place at = place(u);
     const ProfileSpline::Four four = spline_.four(at.t);
-    return (1 - at.q) * spline_.sum(four, four.w);
+    return host_excess_ + (1 - at.q) * spline_.sum(four, four.w);
   }
   RadialJet jet(double u) const {
     const Place at = place(u);
@@ -37,7 +38,7 @@ class RadialSplineProfile {
                  dds = spline_.sum(four, four.dd) * at.derivative * at.derivative +
                        by_t * at.second_derivative;
     const double area = radius_ * radius_;
-    return {(1 - at.q) * s, ((1 - at.q) * ds - s) / area,
+    return {host_excess_ + (1 - at.q) * s, ((1 - at.q) * ds - s) / area,
             ((1 - at.q) * dds - 2 * ds) / (area * area)};
   }
   /// Adds to `row` the derivatives of a (n - 1) + b dn/du with respect to the coefficients of s.
@@ -58,7 +59,7 @@ class RadialSplineProfile {
     return {q, (5 - root) / 2, 4 / root, 32 / (root * root * root)};
   }
 
-  double radius_;
+  double radius_, host_excess_;
   ProfileSpline spline_;
 };
 

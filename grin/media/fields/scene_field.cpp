@@ -44,6 +44,7 @@ class Adder {
     if (known.rim) scene_.rim = known.rim;
     if (known.grid) scene_.grid = known.grid;
     if (!known.rim) outside_.add(field);
+    if (known.excess_beyond_rim != 0) outside_.add(Homogeneous{known.excess_beyond_rim});
     sum_.add(std::move(field));
   }
   SceneField sum() && {
@@ -76,7 +77,8 @@ SceneField make_scene_field(const Keys& keys, const IndexFieldValues& values, co
     SceneField scene;
     with_kind(values.kinds, words.front(), [&](const auto& kind) {
       auto field = make_field(keys, kind, use);
-      scene = {facts(field), std::move(field)};
+      const FieldFacts known = facts(field);
+      scene = {known, std::move(field), Homogeneous{known.excess_beyond_rim}};
     });
     return scene;
   }

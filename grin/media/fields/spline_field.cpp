@@ -4,9 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include "core/frames/frames.h"
+#include "core/keys/table_text.h"
 #include "core/numbers/wide/every_width.h"
 #include "grin/media/index/cubic_splines.h"
 #include "grin/media/index/field_file.h"
+#include "grin/media/index/sample_grid.h"
 
 namespace flatspeckle::grin {
 
@@ -257,12 +260,63 @@ FieldFacts facts(const SplineField& field) {
 
 void add_keys(Keys& keys, GridValues& values) {
   keys.add("grid", values.grid,
-           "HDF5 with excess[x, y, z] = n - 1 and its attributes origin, spacing")
+           "Grid of the index: HDF5 with excess[x, y, z] = n - 1, or index[x, y, z] = n, and its "
+           "attributes origin, spacing; or an array [x, y, z] as NPY")
       .file();
+  keys.add("grid_values", values.grid_values,
+           "Whether the grid contains n or n - 1 (excess); if unstated, n - 1, and a grid that "
+           "seems "
+           "to contain n is rejected")
+      .one_of({"unstated", "excess", "index"})
+      .only_of("grid");
+  keys.add("grid_origin", values.grid_origin, "x y z of the first node of a grid in an NPY file")
+      .exactly(3, "x y z")
+      .unit("length")
+      .only_of("a grid in an NPY file");
+  keys.add("grid_spacing", values.grid_spacing,
+           "Spacing of the nodes of a grid in an NPY file along x, y and z")
+      .exactly(3, "x y z")
+      .unit("length")
+      .only_of("a grid in an NPY file");
 }
 
+namespace {
+
+/// Reads the samples of a grid from HDF5 or NPY and converts them to n - 1.
+GridSamples read_excess(const Keys& keys, const GridValues& values, const std::string& path) {
+  const std::string& stated = keys.read(values.grid_values);
+  const bool is_index = stated == "index";
+  GridSamples samples;
+  if (file_bytes(path).starts_with("\x93NUMPY")) {
+    const Frames planes = read_frames(keys.name(values.grid), path, {});
+    samples.where = {vector_of(keys.required(values.grid_origin)),
+                     vector_of(keys.required(values.grid_spacing)),
+                     {static_cast<int>(planes.count()), static_cast<int>(planes.rows),
+                      static_cast<int>(planes.columns)}};
+    samples.values = planes.values;
+    check(samples.where, samples.values.size(), 2);
+    check_range(samples);
+  } else {
+    samples = read_samples(path, is_index ? "index" : "excess");
+  }
+  constexpr double least_index = 0.9;
+  if (const double least = std::ranges::min(samples.values);
+      stated == "unstated" && least >= least_index)
+    throw InputError(path + ": all values are " + std::to_string(least) +
+                     " or more: if they are n, give grid_values = index, if n - 1, grid_values = "
+                     "excess");
+  if (is_index)
+    for (double& value : samples.values) value -= 1;
+  return samples;
+}
+
+}  // namespace
+
 SplineField make_field(const Keys& keys, const GridValues& values, const FieldUse&) {
-  return read_field(keys, keys.required(values.grid), read_spline_field);
+  return read_field(keys, keys.required(values.grid), [&](const std::string& path) {
+    const auto [where, excess] = read_excess(keys, values, path);
+    return SplineField(where, excess);
+  });
 }
 
 }  // namespace flatspeckle::grin

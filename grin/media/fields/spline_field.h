@@ -105,7 +105,8 @@ struct GridValues {
   using Field = SplineField;
   static constexpr const char* word = "grid";
   static constexpr bool is_medium = false;
-  std::string grid{};
+  std::string grid{}, grid_values = "unstated";
+  std::vector<double> grid_origin{}, grid_spacing{};
 };
 
 void add_keys(Keys& keys, GridValues& values);

@@ -32,6 +32,7 @@ struct FieldFacts {
   Vec3 centre = Vec3::Zero(), axis = Vec3::UnitZ();
   /// Surface of the ball that contains the field. The gradient of the index jumps there.
   std::optional<Sphere> rim = {};
+  double excess_beyond_rim = 0;  ///< index - 1 outside the rim
   std::optional<Box> grid = {};  ///< box outside which there is no field
 };
 

@@ -38,23 +38,6 @@ class GridDataset {
   std::string name_;
 };
 
-/// Checks that coordinates and values are far from overflow, and that neighbouring nodes differ by
-/// more than the rounding of coordinates.
-void check_range(const GridSamples& samples) {
-  const auto& [grid, values] = samples;
-  constexpr double least = 1e-100, most = 1e100, most_value = 1e6, rounding = 1e-12;
-  const auto high = std::max_element(values.begin(), values.end());
-  if (high != values.end() && *high > most_value)
-    throw InputError("sample of a grid", *high, "must be at most 1e6");
-  for (int a = 0; a < 3; ++a) {
-    const double farthest = std::max(std::abs(grid.origin[a]), std::abs(grid.end()[a]));
-    if (!(farthest < most)) throw InputError("end of a grid", farthest, "must be below 1e100");
-    if (grid.spacing[a] < std::max(least, rounding * farthest))
-      throw InputError("spacing of a grid", grid.spacing[a],
-                       "must be above 1e-100 and above the rounding of the coordinates");
-  }
-}
-
 }  // namespace
 
 void check(const FieldGrid& grid, std::size_t samples, int least_nodes) {
@@ -71,6 +54,21 @@ void check(const FieldGrid& grid, std::size_t samples, int least_nodes) {
     throw InputError("samples of a grid", samples, "must be one for each node");
 }
 
+void check_range(const GridSamples& samples) {
+  const auto& [grid, values] = samples;
+  constexpr double least = 1e-100, most = 1e100, most_value = 1e6, rounding = 1e-12;
+  const auto high = std::max_element(values.begin(), values.end());
+  if (high != values.end() && *high > most_value)
+    throw InputError("sample of a grid", *high, "must be at most 1e6");
+  for (int a = 0; a < 3; ++a) {
+    const double farthest = std::max(std::abs(grid.origin[a]), std::abs(grid.end()[a]));
+    if (!(farthest < most)) throw InputError("end of a grid", farthest, "must be below 1e100");
+    if (grid.spacing[a] < std::max(least, rounding * farthest))
+      throw InputError("spacing of a grid", grid.spacing[a],
+                       "must be above 1e-100 and above the rounding of the coordinates");
+  }
+}
+
 GridSamples read_samples(const std::filesystem::path& path, const std::string& dataset) {
   return guarded_read(path, [&] {
     const ResultReader file(path);
@@ -78,6 +76,16 @@ GridSamples read_samples(const std::filesystem::path& path, const std::string& d
     GridSamples read{samples.grid(), samples.values()};
     check_range(read);
     return read;
+  });
+}
+
+double host_index_in(const std::filesystem::path& path, const std::string& dataset) {
+  return guarded_read(path, [&] {
+    const ResultReader file(path);
+    if (!file.has_attribute(dataset, "host_index")) return 1.0;
+    const auto host = file.attribute<double>(dataset, "host_index");
+    if (!(host > 0 && host < 1e6)) throw InputError("host_index", host, "must be from 0 to 1e6");
+    return host;
   });
 }
 

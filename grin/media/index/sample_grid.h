@@ -30,11 +30,18 @@ struct GridSamples {
   FieldGrid where;
   std::vector<double> values;
 };
+/// Throws InputError for values near overflow and for nodes that are closer than the rounding of
+/// their coordinates.
+void check_range(const GridSamples& samples);
+
 /// Reads a dataset of an HDF5 file with axes x, y, z and its attributes "origin" and "spacing",
 /// three numbers each. Throws an InputError that names a dataset or attribute that is missing or
-/// has another shape. Also throws InputError for values near overflow and for nodes that are closer
-/// than the rounding of their coordinates.
+/// has another shape, and as check_range() does.
 GridSamples read_samples(const std::filesystem::path& path, const std::string& dataset);
+
+/// Returns the index around a field of `design`, the attribute host_index of its dataset; 1 if
+/// there is none. Throws InputError unless it is positive.
+double host_index_in(const std::filesystem::path& path, const std::string& dataset);
 
 /// Returns an object of type Grid, constructed from the samples in a file (read_samples). Every
 /// InputError names the file.

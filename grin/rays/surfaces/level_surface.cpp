@@ -303,6 +303,16 @@ Mat3 LevelSurface::curvature(const Vec3& x) const {
   return (jet.hessian - n * (n.transpose() * jet.hessian)) / gradient_norm;
 }
 
+Vec3 LevelSurface::projected(const Vec3& x) const {
+  constexpr int newton_steps = 4;
+  Vec3 at = x;
+  for (int i = 0; i < newton_steps; ++i) {
+    const Vec3 gradient = grid_->f().gradient(at).gradient;
+    at -= gradient * (grid_->f().excess(at) / gradient.squaredNorm());
+  }
+  return at;
+}
+
 double LevelSurface::crossing_distance(const Vec3& x, const Vec3& d, double sign) const {
   return distance_to_level(*grid_, x, d, sign);
 }

@@ -27,6 +27,9 @@ class LevelSurface {
   /// Returns d normal / d x, for displacements along the surface.
   Mat3 curvature(const Vec3& x) const;
 
+  /// Returns a point of the surface close to x, which must be within some cells of the surface.
+  Vec3 projected(const Vec3& x) const;
+
   /// Returns the distance from x along the unit vector d to the point where f changes its sign;
   /// infinity if f keeps its sign. sign: sign of f at x, 1 or -1. A point that is on the surface
   /// within rounding, or slightly beyond it, counts as on the side of `sign`. The crossing is then

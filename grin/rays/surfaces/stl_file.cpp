@@ -7,22 +7,13 @@
 #include <vector>
 
 #include "core/error.h"
-#include "core/keys/table_text.h"
-#include "grin/rays/surfaces/mesh_surface.h"
+#include "grin/rays/surfaces/mesh_file.h"
 
 namespace flatspeckle::grin {
 
 namespace {
 
 constexpr std::size_t stl_header = 80, bytes_per_triangle = 50;
-
-std::string contents(const std::string& key, const std::filesystem::path& path) {
-  try {
-    return file_bytes(path);
-  } catch (const InputError& error) {
-    throw InputError(key + " = " + error.what());
-  }
-}
 
 template <class Number>
 Number number_at(const std::string& bytes, std::size_t at) {
@@ -105,25 +96,18 @@ std::vector<Vec3> corners_of_text(const std::string& bytes) {
   return corners;
 }
 
-/// Returns a note for error messages if a file continues after the triangles that its header
-/// counts.
-std::string left_out(const std::string& bytes) {
+}  // namespace
+
+std::vector<Vec3> corners_of_stl(const std::string& bytes) {
+  return is_text(bytes) ? corners_of_text(bytes) : corners_of_binary(bytes);
+}
+
+std::string left_out_of_stl(const std::string& bytes) {
   const std::size_t size = bytes_of(counted_triangles(bytes));
   if (is_text(bytes) || bytes.size() <= size) return {};
   return " (" + std::to_string(bytes.size() - size) + " bytes after the " +
          std::to_string(counted_triangles(bytes)) +
          " triangles that the header counts are ignored)";
-}
-
-}  // namespace
-
-TriangleMesh read_stl(const std::string& key, const std::filesystem::path& path) {
-  const std::string bytes = contents(key, path);
-  try {
-    return closed_mesh(is_text(bytes) ? corners_of_text(bytes) : corners_of_binary(bytes));
-  } catch (const InputError& error) {
-    throw InputError(key, path.string(), error.what() + left_out(bytes));
-  }
 }
 
 }  // namespace flatspeckle::grin

@@ -90,6 +90,13 @@ inline double entry_distance(const LevelSurface& level, const Vec3& x, const Vec
   return level.crossing_distance(x, d, 1);
 }
 
+inline double exit_distance(const AsphericLens& lens, const Vec3& x, const Vec3& d) {
+  return lens.crossing_distance(x, d, true);
+}
+inline double entry_distance(const AsphericLens& lens, const Vec3& x, const Vec3& d) {
+  return lens.crossing_distance(x, d, false);
+}
+
 inline double exit_distance(const Surface& surface, const Vec3& x, const Vec3& d) {
   return std::visit([&](const auto& s) { return exit_distance(s, x, d); }, surface);
 }
@@ -100,7 +107,8 @@ inline double entry_distance(const Surface& surface, const Vec3& x, const Vec3& 
 /// Whether the inside of a surface is known to be convex.
 inline bool is_convex(const Surface& surface) {
   if (const auto* lens = std::get_if<Lens>(&surface)) return lens->is_convex();
-  return !std::holds_alternative<LevelSurface>(surface);
+  return !std::holds_alternative<LevelSurface>(surface) &&
+         !std::holds_alternative<AsphericLens>(surface);
 }
 
 }  // namespace flatspeckle::grin

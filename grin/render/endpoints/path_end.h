@@ -33,6 +33,7 @@ struct EndPosition {
   bool is_point = false;  ///< true for a point: paths cannot hit it
   /// True for a beam, which has a single direction: sampled paths neither hit it nor connect to it.
   bool is_beam = false;
+  bool surrounds = false;  ///< true for a light that covers the whole boundary
   /// For a position chosen for a connection from a given point: density with which it was chosen,
   /// divided by position_density; else 1.
   double choice = 1;

@@ -44,7 +44,8 @@ FaceLightEnd::FaceLightEnd(const FaceLight& light, const Stage& stage, const Ind
     : patch_(patch_of(light, stage.boundary)),
       radiance_(light.radiance),
       power_(pi * mean_index_squared(patch_, Regions(stage), index) * patch_.area() *
-             light.radiance) {}
+             light.radiance),
+      surrounds_(light.radius == everywhere) {}
 
 EndDirection FaceLightEnd::sample_direction(const EndPosition& at, RandomStream& random) const {
   return towards(at, random_turn(at.inward, 1 - std::sqrt(random.uniform()), random));

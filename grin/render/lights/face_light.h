@@ -30,11 +30,13 @@ class FaceLightEnd {
   EndDirection towards(const EndPosition& at, const Vec3& direction) const;
   EmissionChange by_index(const EndPosition&, const Vec3&) const { return {.weight = 2}; }
   bool contains(const Vec3& x) const { return patch_.contains(x); }
+  bool surrounds() const { return surrounds_; }
   Vec3 inward(const Vec3& x) const { return patch_.inward(x); }
 
  private:
   BoundaryPatch patch_;
   double radiance_, power_;
+  bool surrounds_;
 };
 
 struct FaceLightValues {

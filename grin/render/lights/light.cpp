@@ -82,13 +82,15 @@ void StageLights::settle_probabilities() {
 
 EndPosition StageLights::position(int light, const BoundaryPoint& at) const {
   return std::visit(
-      [&](const auto& end) -> EndPosition {
-        return {.point = {at.x, regions_.at(at.x)},
-                .inward = at.inward,
-                .position_density = source_[light].probability * end.density(at.x),
-                .light = light,
-                .is_point = end.is_point,
-                .is_beam = end.is_beam};
+      [&](const auto& end) {
+        EndPosition position{.point = {at.x, regions_.at(at.x)},
+                             .inward = at.inward,
+                             .position_density = source_[light].probability * end.density(at.x),
+                             .light = light,
+                             .is_point = end.is_point,
+                             .is_beam = end.is_beam};
+        if constexpr (requires { end.surrounds(); }) position.surrounds = end.surrounds();
+        return position;
       },
       source_[light].end);
 }
@@ -124,7 +126,7 @@ EndPosition StageLights::position_on(std::size_t beam, double u, double v) const
 }
 
 EndPosition StageLights::draw_position(RandomStream& random) const {
-  const double u = random.uniform();
+  const double u = source_.size() > 1 ? random.uniform() : 0;
   int light = 0;
   while (light + 1 < static_cast<int>(source_.size()) && u >= source_[light].probability_so_far)
     ++light;

@@ -15,6 +15,7 @@
 #include "grin/render/methods/moving_paths.h"
 #include "grin/render/transport/light_tally.h"
 #include "grin/render/transport/path_score.h"
+#include "grin/render/transport/scrambled_sobol.h"
 #include "grin/render/transport/split_tree.h"
 
 namespace flatspeckle::grin {
@@ -234,16 +235,22 @@ class ForwardWalk {
 class PathStreams {
  public:
   PathStreams(int paths, RandomStream& random)
-      : key_{random.bits(), random.bits()}, first_(random.uniform()), paths_(paths) {}
+      : key_{random.bits(), random.bits()},
+        points_(light_points(random)),
+        first_(random.uniform()),
+        paths_(paths) {}
 
   std::optional<FreshPath> next() {
     if (next_ == paths_) return std::nullopt;
-    const double place = (next_ + first_) / paths_;
-    return FreshPath{{key_[0], key_[1], static_cast<std::uint64_t>(next_++)}, place};
+    const auto number = static_cast<std::uint64_t>(next_++);
+    FreshPath path{{key_[0], key_[1], number}, (static_cast<double>(number) + first_) / paths_};
+    path.random.lead(points_.point(number));
+    return path;
   }
 
  private:
   std::uint64_t key_[2];
+  ScrambledSobol points_;
   double first_;
   int paths_, next_ = 0;
 };

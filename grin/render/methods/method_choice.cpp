@@ -33,7 +33,9 @@ double flown(const TransportCounts& counts, const Tracers& tracers, const Tracer
   constexpr double steps_alone = 20;
   constexpr double alone = 1.5;  // cost of a flight outside of lanes
   const double side_by_side = tracers.scene().leapfrogs ? 0.25 : 0.35;
+  constexpr double straight = 0.5;  // flights without connections along straight rays
   const auto all = static_cast<double>(counts.flights);
+  if (tracer.method == RenderMethod::forward && !tracers.plan().curved) return straight * all;
   if (tracer.method == RenderMethod::forward)
     return all * std::min(side_by_side + steps_alone / tracers.steps_of_flight(), alone);
   if (tracer.spreading == Spreading::all) return all;
@@ -89,19 +91,36 @@ class PictureSums {
   double light_ = 0, light_square_ = 0, apart_ = 0, apart_square_ = 0;
 };
 
+/// Sensor paths start in the same pixels in every group of a trial while this exists, so that the
+/// differences between groups are those of paths and not of pixels.
+class SamePixels {
+ public:
+  explicit SamePixels(Transport& transport) : transport_(transport) {
+    transport_.keeps_pixels = true;
+  }
+  ~SamePixels() { transport_.keeps_pixels = false; }
+  SamePixels(const SamePixels&) = delete;
+  SamePixels& operator=(const SamePixels&) = delete;
+
+ private:
+  Transport& transport_;
+};
+
 /// Runs a trial of a method; returns nullopt if its work exceeds most_work.
 std::optional<MethodTrial> tried(const Tracers& tracers, const Tracer& tracer, int pairs_per_group,
                                  double most_work) {
-  constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max() - 1;
+  constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max() - 1000;
   const TimeBins& bins = tracers.scene().bins;
   const auto pixels = static_cast<std::size_t>(tracer.transport->pixels());
-  RandomStream random(0, static_cast<std::uint64_t>(Stream::render), no_batch);
+  const SamePixels same(*tracer.transport);
   TransportCounts counts;
   std::vector<PictureSums> pictures(tracer.transport->sensors.begin(),
                                     tracer.transport->sensors.end());
   for (int group = 0; group < groups; ++group) {
     std::vector<Complex> values(pixels * static_cast<std::size_t>(bins.sums()));
     Film film(static_cast<int>(pixels), bins, values);
+    RandomStream random(0, static_cast<std::uint64_t>(Stream::render),
+                        no_batch - static_cast<std::uint64_t>(group));
     tracer.add(pairs_per_group, random, film, counts);
     if (work(counts, tracers, tracer) > most_work) return std::nullopt;
     std::vector<double> steady(pixels);
@@ -121,14 +140,18 @@ std::optional<MethodTrial> tried(const Tracers& tracers, const Tracer& tracer, i
 }
 
 /// Runs a trial with one light path and its sensor paths per group, then a trial with as many such
-/// pairs per group as `effort` times the usual work allows.
+/// pairs per group as `effort` times the usual work allows, or the whole pictures that this allows.
 std::optional<MethodTrial> tried(const Tracers& tracers, const Tracer& tracer, double effort) {
   const double usual = tracers.plan().curved ? 1 << 16 : 1 << 18;
   const double most = 2 * usual;
   if (!(tracer.flights_per_pair * tracers.cost_of_flight() * groups < most)) return std::nullopt;
   const auto few = tried(tracers, tracer, 1, most);
   if (!few) return few;
-  const auto pairs = static_cast<int>(effort * usual / few->work);
+  auto pairs = static_cast<int>(effort * usual / few->work);
+  int pixels = 1;
+  for (const SensorEnd& sensor : tracer.transport->sensors)
+    pixels = std::max(pixels, sensor.pixels().count());
+  if (pairs > pixels) pairs -= pairs % pixels;
   return pairs > 1 ? tried(tracers, tracer, pairs, 8 * effort * usual) : few;
 }
 
@@ -176,11 +199,6 @@ Needed needed(const MethodTrial& trial, const std::vector<double>& light) {
   return most;
 }
 
-bool is_pinhole(const Sensor& sensor) {
-  const auto* camera = std::get_if<Camera>(&sensor);
-  return camera && camera->lens_radius == 0;
-}
-
 /// Whether the index is constant over the whole stage.
 bool has_even_index(const RenderScene& scene) {
   const auto* const field = std::get_if<Homogeneous>(&scene.field);
@@ -193,10 +211,37 @@ bool has_even_index(const RenderScene& scene) {
   return true;
 }
 
-/// Whether sensor paths can hit this light, or connect to it without a factor 1/r^2.
+/// Lower bound of the distance from x to the nearest scattering medium; 0 in such a medium.
+double distance_to_scattering(const Stage& stage, const Vec3& x) {
+  double nearest = std::numeric_limits<double>::infinity();
+  double depth = 0;  // depth of x in the innermost clear body that contains it
+  for (const Body& body : stage.bodies)
+    if (!(body.medium.mu_s > 0)) depth = std::max(depth, -distance(body.surface, x));
+  if (stage.medium.mu_s > 0) nearest = depth;
+  for (const Body& body : stage.bodies)
+    if (body.medium.mu_s > 0) {
+      const double outside = distance(body.surface, x);
+      nearest = std::min(nearest, outside > 0 ? outside : std::min(depth, -outside));
+    }
+  return nearest;
+}
+
+/// Whether the variance of connections to this light is finite: sensor paths can hit the light, or
+/// connect to it without a factor 1/r^2, or never scatter near it.
 bool is_evenly_met(const RenderScene& scene, const Light& light) {
-  return std::holds_alternative<FaceLight>(light) ||
-         (std::holds_alternative<BeamLight>(light) && has_even_index(scene));
+  if (std::holds_alternative<FaceLight>(light)) return true;
+  if (std::holds_alternative<BeamLight>(light)) return has_even_index(scene);
+  if (const auto* point = std::get_if<PointLight>(&light))
+    return distance_to_scattering(scene.stage, point->x) > 0;
+  const auto& fibre = std::get<FibreLight>(light);
+  const double reach = fibre.spread == Spread::even ? fibre.radius : 3 * fibre.radius;
+  return distance_to_scattering(scene.stage, fibre.centre) > reach;
+}
+
+bool is_pinhole_in_scattering(const RenderScene& scene, const Sensor& sensor) {
+  const auto* camera = std::get_if<Camera>(&sensor);
+  return camera && camera->lens_radius == 0 &&
+         !(distance_to_scattering(scene.stage, camera->x) > 0);
 }
 
 }  // namespace
@@ -207,7 +252,9 @@ bool has_finite_variance(const RenderScene& scene, RenderMethod method) {
     return std::ranges::all_of(scene.lights,
                                [&](const Light& light) { return is_evenly_met(scene, light); });
   return method != RenderMethod::light ||
-         std::none_of(scene.sensors.begin(), scene.sensors.end(), is_pinhole);
+         std::ranges::none_of(scene.sensors, [&](const Sensor& sensor) {
+           return is_pinhole_in_scattering(scene, sensor);
+         });
 }
 
 namespace {
@@ -221,13 +268,14 @@ bool can_be_tried(const RenderScene& scene, RenderMethod method) {
           !render_plan(scene).scatters);
 }
 
-/// Lists the methods to try, bidirectional tracing first.
+/// Lists the methods to try, bidirectional tracing first. Forward tracing cannot compete where
+/// light tracing has a control variate, which trials do not include.
 std::vector<Candidate> candidates(const Tracers& tracers) {
   std::vector<Candidate> found;
   for (const RenderMethod method :
        {RenderMethod::bidirectional, RenderMethod::path, RenderMethod::light})
     if (can_be_tried(tracers.scene(), method)) found.push_back({tracers.make(method)});
-  if (tracers.plan().curved && can_be_forward(tracers.scene()))
+  if (can_be_forward(tracers.scene()) && !tracers.has_control_variate())
     found.push_back({tracers.make(RenderMethod::forward)});
   return found;
 }

@@ -21,11 +21,6 @@ std::string RenderPlan::describe() const {
 
 namespace {
 
-/// Samples the stratum of a sensor path, by which the paths of a batch are spread over the pixels.
-double stratum(int path, int paths, RandomStream& random) {
-  return (path + random.uniform()) / paths;
-}
-
 template <class Tree>
 PathKernel kernel_of(std::shared_ptr<const Transport> transport, std::shared_ptr<const Space> space,
                      bool random_phase) {
@@ -34,7 +29,7 @@ PathKernel kernel_of(std::shared_ptr<const Transport> transport, std::shared_ptr
     const auto add = [&](const Space& met, int first, int last) {
       Bidirectional<Tree> estimator(*transport, met, random, film, counts);
       for (int path = first; path < last; ++path) {
-        estimator.add(stratum(path, paths, random));
+        estimator.add(path, paths);
         if (expected_connections) estimator.append_expected_contributions(*expected_connections);
       }
     };

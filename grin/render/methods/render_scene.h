@@ -43,9 +43,16 @@ enum class RenderMethod { path, light, bidirectional, forward };
 std::vector<std::string> method_words();
 std::string method_word(RenderMethod method);
 
+/// Selects what target_error applies to: the mean over the pixels or the total power; each power
+/// within radii; or the picture, whose relative error is RMS error over RMS value.
+enum class RenderTarget { total, powers, picture };
+/// Key values of the targets, in the order of RenderTarget.
+std::vector<std::string> target_words();
+
 struct RenderRequest {
   std::optional<RenderMethod> method = {};  ///< nullopt: chosen for the scene
   std::int64_t max_scatterings = 0;         ///< 0: no limit
+  std::optional<RenderTarget> target = {};  ///< nullopt: usual_target() of each sensor
 };
 
 }  // namespace flatspeckle::grin

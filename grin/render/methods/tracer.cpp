@@ -109,13 +109,14 @@ Pilot pilot(Transport& transport, const PathKernel& kernel, const TimeBins& bins
   const int pixels = transport.pixels();
   std::vector<Complex> sums(static_cast<std::size_t>(pixels) * bins.sums());
   Film film(pixels, bins, sums);
-  RandomStream random(0, static_cast<std::uint64_t>(Stream::render), no_batch);
   const int limit = transport.max_scatterings;
   transport.max_scatterings = std::min(limit, pilot_scatterings);
   Pilot found;
   for (; found.pairs < pairs; found.pairs += at_once) {
     if (found.pairs >= fewest_pairs && found.counts.flights >= enough_flights) break;
     const std::uint64_t before = found.counts.flights;
+    RandomStream random(0, static_cast<std::uint64_t>(Stream::render),
+                        no_batch - static_cast<std::uint64_t>(found.pairs));
     kernel(at_once, random, film, found.counts, &found.expected_connections);
     found.is_cut |= found.counts.flights - before >= pilot_scatterings;
   }

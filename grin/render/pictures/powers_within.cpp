@@ -58,16 +58,16 @@ void scale_to(const std::vector<double>& errors, std::vector<double>& covariance
 
 }  // namespace
 
-std::optional<PowersWithin> powers_within(
-    const Sensor& sensor, std::size_t first_pixel, const TimeBins& bins, const GroupedSums& sums,
-    const std::function<Estimate(const GroupedSums&, const Estimator&)>& estimate) {
+std::optional<PowersWithin> powers_within(const Sensor& sensor, std::size_t number,
+                                          std::size_t first_pixel, const RenderJob& job,
+                                          const GroupedSums& sums) {
   const auto* disks = std::get_if<RadialDetector>(&sensor);
   if (!disks || disks->radii.empty()) return std::nullopt;
   const PixelRings rings = picture_of(*disks);
   std::vector<double> areas;
   for (int ring = 0; ring < disks->rings; ++ring) areas.push_back(rings.area(ring));
-  const Estimator theta = nested_powers(areas, first_pixel, bins);
-  PowersWithin found{disks->radii, estimate(sums, theta), {}};
+  const Estimator theta = nested_powers(areas, first_pixel, job.bins);
+  PowersWithin found{disks->radii, job.estimate_of(number, sums, theta), {}};
   if (sums.groups() < 2) {
     found.covariance.assign(areas.size() * areas.size(), found.power.error.front());
     return found;
@@ -77,15 +77,15 @@ std::optional<PowersWithin> powers_within(
   return found;
 }
 
-double largest_error(const PowersWithin& powers, double power_of_light) {
-  const double value = powers.power.value.back().real(), error = powers.power.error.back();
-  // required power in units of its error
-  const double least = powers.power.rare.back() == 0 ? 2 : 10;
-  if (!(value > 0 && least * error < value)) return std::numeric_limits<double>::infinity();
+double largest_error(const PowersWithin& powers) {
+  constexpr double few = 10;  // required power of an undersampled disk, in units of its error
   double largest = 0;
   for (std::size_t i = 0; i < powers.radii.size(); ++i) {
-    const double scale = std::max(powers.power.value[i].real(), 0.01 * power_of_light);
-    largest = std::max(largest, powers.power.error[i] / scale);
+    const double value = powers.power.value[i].real(), error = powers.power.error[i];
+    const bool is_rare = !powers.power.rare.empty() && powers.power.rare[i] != 0;
+    if (!(value > 0) || (is_rare && few * error > value))
+      return std::numeric_limits<double>::infinity();
+    largest = std::max(largest, error / value);
   }
   return largest;
 }

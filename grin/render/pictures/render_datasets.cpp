@@ -141,11 +141,11 @@ bool can_be(Termination termination, const RenderScene& scene, const RenderReque
   return termination != Termination::cut || request.max_scatterings > 0;
 }
 
-/// The pixels of one sensor, the number of the first among the pixels of all sensors, and the
-/// layout of their sums.
+/// The pixels of one sensor, the number of the sensor and of its first pixel among those of all
+/// sensors, and the layout of their sums.
 struct Pixels {
   SensorPixels of;
-  std::size_t first;
+  std::size_t sensor, first;
   TimeBins bins;
 
   std::size_t count() const { return static_cast<std::size_t>(of.grid.count()); }
@@ -177,17 +177,15 @@ Estimator of_all_pixels(const Pixels& pixels, const Estimator& theta) {
   };
 }
 
+Estimate scaled(Estimate one, double factor) {
+  for (Complex& value : one.value) value *= factor;
+  for (double& error : one.error) error *= factor;
+  return one;
+}
+
 Estimate bounded(Estimate whole) {
   bound_errors(whole, {1, 1});
   return whole;
-}
-
-Estimate steady_mean(const RenderJob& job, const GroupedSums& sums, const Pixels& pixels,
-                     double factor) {
-  const auto mean = [&](double samples, std::span<const Complex> all) {
-    return std::vector{factor / samples * sum(all.first(pixels.parts()))};
-  };
-  return bounded(job.estimate(sums, of_all_pixels(pixels, mean)));
 }
 
 void add_pulses(SensorResult& result, const RenderJob& job, const GroupedSums& sums,
@@ -227,13 +225,14 @@ void add_paths(SensorResult& result, const GroupedSums& sums, const Pixels& pixe
 
 SensorResult sensor_result(const DatasetTable& table, const Pixels& pixels, const RenderJob& job,
                            const RenderedPicture& all, const GroupedSums& sums) {
-  SensorResult result{.picture = {.bins = own_part(all.bins, pixels, pixels.bins.count),
-                                  .steady = own_part(all.steady, pixels, 1),
-                                  .before = own_part(all.before, pixels, 1),
-                                  .after = own_part(all.after, pixels, 1)},
-                      .mean = steady_mean(job, sums, pixels, 1)};
+  SensorResult result{
+      .picture = {.bins = own_part(all.bins, pixels, pixels.bins.count),
+                  .steady = own_part(all.steady, pixels, 1),
+                  .before = own_part(all.before, pixels, 1),
+                  .after = own_part(all.after, pixels, 1)},
+      .mean = bounded(sensor_mean(job, sums, pixels.sensor, pixels.first, pixels.of))};
   const bool has_total = has_row(table, "total");
-  if (has_total) result.total = steady_mean(job, sums, pixels, pixels.of.area);
+  if (has_total) result.total = scaled(result.mean, pixels.of.area);
   if (pixels.bins.count > 1) add_pulses(result, job, sums, pixels, has_total ? pixels.of.area : 1);
   if (pixels.bins.moments) add_paths(result, sums, pixels);
   return result;
@@ -256,12 +255,6 @@ void put_paths(const ResultGroup& group, const std::string& name, const Estimate
     for (std::size_t i = square; i < pairs.value.size(); i += 2) append(one, part(pairs, i, 1));
     group.put(name + (square ? "_path_square" : "_path"), one);
   }
-}
-
-Estimate scaled(Estimate one, double factor) {
-  for (Complex& value : one.value) value *= factor;
-  for (double& error : one.error) error *= factor;
-  return one;
 }
 
 void write_gradients(const ResultGroup& group, const SensorPixels& pixels, bool has_total,
@@ -419,8 +412,9 @@ const DatasetTable render_table{
           "it, or, for path tracing, that of bidirectional tracing; largest over the sensors"}},
     .attributes = {
         {"", "length_unit", "float64", "metres in a unit of length, if given"},
-        {"", "mesh_volume", "float64", "volume enclosed by body_mesh"},
-        {"", "body_volume", "float64", "volume of the smooth body that replaces body_mesh"},
+        {"", "mesh_volume", "float64",
+         "volume enclosed by body_mesh and mesh, whose triangles are curved between creases"},
+        {"", "body_volume", "float64", "volume of the smooth bodies that replace them"},
         {"parameter", "names", "texts",
          "mu_s, mu_a and g, as far as the medium has them (gradient); numbers of the index "
          "field (gradient_by)"}}};
@@ -432,12 +426,10 @@ RenderResult render_result(const RenderScene& scene, const RenderJob& job,
   RenderResult result;
   std::size_t first = 0;
   for (const Sensor& sensor : scene.sensors) {
-    const Pixels pixels{pixels_of(sensor), first, job.bins};
+    const Pixels pixels{pixels_of(sensor), result.size(), first, job.bins};
     result.push_back(sensor_result(table_of(sensor), pixels, job, all, sums));
     widen_errors(checks[result.size() - 1], pixels.of.area, result.back());
-    result.back().within = powers_within(
-        sensor, first, job.bins, sums,
-        [&](const GroupedSums& of, const Estimator& theta) { return job.estimate(of, theta); });
+    result.back().within = powers_within(sensor, pixels.sensor, first, job, sums);
     if (job.bins.derivatives > 0 || job.bins.by_field > 0)
       result.back().gradients = power_gradients(sensor, first, job.bins, sums);
     first += pixels.count();
@@ -449,11 +441,16 @@ void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& j
                   const RenderResult& result, const std::optional<double>& length_unit) {
   const ResultGroup root(file, render_table);
   if (length_unit) root.attribute("length_unit", *length_unit);
+  double mesh_volume = 0, body_volume = 0;
   for (const Body& body : scene.stage.bodies)
     if (const auto* level = std::get_if<LevelSurface>(&body.surface)) {
-      root.attribute("mesh_volume", level->meant_volume());
-      root.attribute("body_volume", level->volume());
+      mesh_volume += level->meant_volume();
+      body_volume += level->volume();
     }
+  if (mesh_volume > 0) {
+    root.attribute("mesh_volume", mesh_volume);
+    root.attribute("body_volume", body_volume);
+  }
   if (const auto names = gradient_names(scene); !names.empty()) {
     root.number("parameter", names.size());
     root.attribute("parameter", "names", names);

@@ -67,14 +67,29 @@ int paths_per_batch(const Tracer& tracer, bool scatters, double cost_of_flight, 
       std::max(std::bit_floor(short_enough), std::bit_ceil(static_cast<std::size_t>(many))));
 }
 
+/// Returns the number of paths per batch for which every batch has equally many sensor paths in
+/// each pixel of the largest picture, so that pixels have no noise of counts; at least `paths`.
+/// Light that can hit its sensors needs no sensor paths in light tracing, and pictures of very long
+/// paths would take too long.
+int paths_of_whole_pictures(const Tracer& tracer, int paths) {
+  constexpr double most_flights = 1 << 26;
+  const bool is_light = tracer.transport->strategies.short_sensor;
+  int pixels = 1;
+  for (const SensorEnd& sensor : tracer.transport->sensors)
+    if (!is_light || !sensor.can_be_hit()) pixels = std::max(pixels, sensor.pixels().count());
+  const int whole = (paths + pixels - 1) / pixels * pixels;
+  return whole * tracer.flights_per_pair < most_flights ? whole : paths;
+}
+
 std::string described(const RenderScene& scene, const RenderRequest& request, RenderMethod method) {
   std::string text = method_word(method);
   if (!request.method && !scene.sensors.empty()) text += " (chosen by a pilot)";
   if (!has_finite_variance(scene, method))
-    text += " (no finite variance with " +
-            std::string(method == RenderMethod::path ? "points, fibres or refracted beams"
-                                                     : "a pinhole") +
-            ": errors are unreliable)";
+    text +=
+        std::string(" (no finite variance with ") +
+        (method == RenderMethod::path ? "points or fibres in scattering media, or refracted beams"
+                                      : "a pinhole in a scattering medium") +
+        ": errors are unreliable)";
   return text + ": ";
 }
 
@@ -154,28 +169,29 @@ double few_of(const std::vector<SensorEnd>& sensors) {
   return have_neighbours ? few_of_pixels : few_of_values;
 }
 
-using Estimating = std::function<Estimate(const GroupedSums&, const Estimator&)>;
-
 /// Relative error of a picture; infinite if it is dark, since its error is then not known.
 double error_of_light(const Estimate& light) {
   const bool is_lit = std::ranges::any_of(light.value, [](Complex x) { return x.real() > 0; });
   return is_lit ? relative_error(light) : std::numeric_limits<double>::infinity();
 }
 
-/// Returns the largest relative error over the sensors, whose units differ.
-double largest_error(const Transport& transport, const std::vector<Sensor>& kinds,
-                     const TimeBins& bins, const Estimate& picture, const GroupedSums& sums,
-                     const Estimating& estimate) {
+/// Returns the largest relative error of what the target of a run applies to, over the sensors,
+/// whose units differ.
+double largest_error(const RenderJob& job, const std::vector<Sensor>& kinds,
+                     const std::optional<RenderTarget>& target, const Estimate& picture,
+                     const GroupedSums& sums) {
   double largest = 0;
   std::size_t first = 0;
   for (std::size_t i = 0; i < kinds.size(); ++i) {
-    const PixelGrid pixels = transport.sensors[i].pixels();
-    const auto count = static_cast<std::size_t>(pixels.count());
-    if (const auto powers = powers_within(kinds[i], first, bins, sums, estimate)) {
-      largest = std::max(largest, largest_error(*powers, transport.lights.power()));
+    const SensorPixels pixels = pixels_of(kinds[i]);
+    const auto count = static_cast<std::size_t>(pixels.grid.count());
+    const RenderTarget of = target.value_or(usual_target(kinds[i]));
+    if (of == RenderTarget::powers) {
+      largest = std::max(largest, largest_error(*powers_within(kinds[i], i, first, job, sums)));
     } else {
-      Estimate own = part(picture, first, count);
-      bound_errors(own, pixels);
+      Estimate own = of == RenderTarget::total ? sensor_mean(job, sums, i, first, pixels)
+                                               : part(picture, first, count);
+      bound_errors(own, of == RenderTarget::total ? PixelGrid{} : pixels.grid);
       largest = std::max(largest, error_of_light(own));
     }
     first += count;
@@ -222,20 +238,21 @@ std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& su
       sums,
       [&](double samples, std::span<const Complex> of) {
         auto values = sample_mean(samples, of.subspan(job.first_of_checks(), 2 * count));
-        for (std::size_t i = 0; i < count; ++i) values.push_back(values[i] - values[count + i]);
+        for (std::size_t i = 0; i < count; ++i) values.push_back(values[i] + values[count + i]);
         return values;
       },
       few_of_values);
   std::vector<LightCheck> checks(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const double mean = all.value[i].real(), other = all.value[count + i].real();
-    const bool is_known = is_enough && other > 0 && all.rare[count + i] == 0,
-               is_undersampled = all.rare[i] != 0 && all.error[i] > mean / 2;
-    if (is_known && !is_undersampled)
-      checks[i] = {{std::abs(all.value[2 * count + i].real()),
-                    errors * all.error[2 * count + i] + all.error[i] + rounding * other},
-                   mean,
-                   other};
+    const std::size_t off = count + i, other = 2 * count + i;
+    const double mean = all.value[i].real();
+    checks[i] = {{}, mean, all.value[other].real()};
+    checks[i].is_known = is_enough && checks[i].other > 0 && all.rare[other] == 0;
+    checks[i].differs = all.error[off] > rounding * mean;
+    const bool is_undersampled = all.rare[i] != 0 && all.error[i] > mean / 2;
+    if (!checks[i].is_known || is_undersampled) continue;
+    checks[i].off = std::abs(all.value[off].real());
+    checks[i].limit = errors * all.error[off] + all.error[i] + rounding * checks[i].other;
   }
   return checks;
 }
@@ -243,7 +260,7 @@ std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& su
 std::optional<Invariant> worst_light(const std::vector<LightCheck>& checks) {
   std::optional<Invariant> worst;
   for (const LightCheck& each : checks)
-    if (each.other > 0 && (!worst || each.is_worse_than(*worst)))
+    if (each.limit > 0 && (!worst || each.is_worse_than(*worst)))
       worst = Invariant{each.off / each.other, each.limit / each.other};
   return worst;
 }
@@ -274,12 +291,33 @@ void bound_errors(Estimate& picture, const PixelGrid& grid) {
   for (std::size_t i = 0; i < size; ++i) {
     const bool is_known = values[i] != 0 && undersampled_around[i] <= values_around[i] / 2 &&
                           undersampled_lit_around[i] <= lit_around[i] / 2;
-    picture.rare[i] = !is_known;
+    const bool is_dark = values_around[i] == 0 && of_all > 0;
+    picture.rare[i] = !is_known && !is_dark;
     if (is_known) continue;
     const double bound =
         values_around[i] > 0 ? unseen(variances_around[i], values_around[i]) : of_all;
     picture.error[i] = std::max(2 * picture.error[i], bound);
   }
+}
+
+RenderTarget usual_target(const Sensor& sensor) {
+  const auto* disks = std::get_if<RadialDetector>(&sensor);
+  if (disks && !disks->radii.empty()) return RenderTarget::powers;
+  return pixels_of(sensor).grid.count() > 1 ? RenderTarget::picture : RenderTarget::total;
+}
+
+Estimate sensor_mean(const RenderJob& job, const GroupedSums& sums, std::size_t sensor,
+                     std::size_t first_pixel, const SensorPixels& pixels) {
+  const auto parts = static_cast<std::size_t>(job.bins.parts());
+  const auto stride = static_cast<std::size_t>(job.bins.sums());
+  const auto mean = [&](double samples, std::span<const Complex> all) {
+    Complex sum = 0;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(pixels.grid.count()); ++i)
+      for (const Complex part : all.subspan((first_pixel + i) * stride, parts))
+        sum += pixels.share(i) * part;
+    return std::vector{sum / samples};
+  };
+  return job.estimate_of(sensor, sums, mean);
 }
 
 std::string sensor_name(const RenderScene& scene, std::size_t sensor) {
@@ -288,6 +326,10 @@ std::string sensor_name(const RenderScene& scene, std::size_t sensor) {
 
 std::string method_word(RenderMethod method) {
   return method_words().at(static_cast<std::size_t>(method));
+}
+
+std::vector<std::string> target_words() {
+  return {"total", "powers", "picture"};
 }
 
 std::vector<std::string> method_words() {
@@ -314,6 +356,11 @@ void check(const RenderScene& scene, const RenderRequest& request) {
       transport_of(scene, request, request.method.value_or(RenderMethod::bidirectional));
   check_path_lengths(scene.stage, transport->max_scatterings);
   if (request.method == RenderMethod::forward) check_forward(scene);
+  if (request.target == RenderTarget::powers &&
+      !std::ranges::all_of(scene.sensors, [](const Sensor& sensor) {
+        return usual_target(sensor) == RenderTarget::powers;
+      }))
+    throw InputError("target", "powers", "requires radii for every sensor");
   if (scene.bins.derivatives > 0 && request.method != RenderMethod::forward)
     throw InputError("gradient: requires method = forward");
   if (!scene.parameters.empty() && request.method != RenderMethod::forward)
@@ -370,7 +417,7 @@ struct RenderBatch {
     }
     for (std::size_t i = 0; i < job.sensors; ++i) {
       sums[i] += means[i];
-      sums[job.sensors + i] += film.hits[i];
+      sums[job.sensors + i] += film.hits[i] - means[i];
     }
   }
 };
@@ -396,9 +443,14 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.sensors = scene.sensors.size();
   job.batches.size = job.first_of_map() + (map ? sums_per_cell * cells(*scene.map) : 0) +
                      (job.has_control_variate ? 1 : 0);
-  const int paths =
+  const int least =
       paths_per_batch(tracer, tracers.plan().scatters, tracers.cost_of_flight(), job.batches.size);
+  const int paths =
+      tracer.method == RenderMethod::forward ? least : paths_of_whole_pictures(tracer, least);
   job.batches.samples_per_batch = paths;
+  constexpr std::uint64_t fewest_batches = 32;
+  job.batches.trusted_batches =
+      std::max(trusted_batches * static_cast<std::uint64_t>(least) / paths, fewest_batches);
   job.batches.deterministic = !tracers.plan().scatters;
   if (tracer.method == RenderMethod::forward)
     job.batches.trusted_batches = 64;  // no path has a high weight
@@ -409,31 +461,43 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   const EntrySums steady_sums{static_cast<std::size_t>(pixels),
                               static_cast<std::size_t>(scene.bins.sums()),
                               static_cast<std::size_t>(scene.bins.parts())};
-  job.batches.relative_error =
-      [=, checked = job, kinds = scene.sensors, bins = scene.bins, cells = scene.map,
-       steady = steady_picture(job.pictures, scene.bins),
-       has_control_variate = job.has_control_variate, few = job.few_of_pictures,
-       first_of_map = job.first_of_map()](const GroupedSums& sums) {
-        if (!std::ranges::all_of(light_checks(checked, sums), &LightCheck::holds))
-          return std::numeric_limits<double>::infinity();
-        const Estimate picture = has_control_variate
-                                     ? controlled_jackknife(sums, steady, sums.size() - 1, few)
-                                     : jackknife(sums, steady_sums, few);
-        const auto estimate = [&](const GroupedSums& of, const Estimator& theta) {
-          return has_control_variate ? controlled_jackknife(of, theta, of.size() - 1, few_of_values)
-                                     : jackknife(of, theta, few_of_values);
-        };
-        const double of_pictures =
-            largest_error(*tracer.transport, kinds, bins, picture, sums, estimate);
-        return cells ? std::max(of_pictures, error_of_light(fluence(sums, first_of_map, *cells)))
-                     : of_pictures;
-      };
+  job.batches.relative_error = [=, layout = job, kinds = scene.sensors, cells = scene.map,
+                                steady = steady_picture(job.pictures, scene.bins),
+                                target = request.target](const GroupedSums& sums) {
+    if (!std::ranges::all_of(light_checks(layout, sums), &LightCheck::holds))
+      return std::numeric_limits<double>::infinity();
+    const double few = layout.few_of_pictures;
+    const Estimate picture = layout.has_control_variate ? layout.estimate(sums, steady, few)
+                                                        : jackknife(sums, steady_sums, few);
+    const double of_pictures = largest_error(layout, kinds, target, picture, sums);
+    return cells
+               ? std::max(of_pictures, error_of_light(fluence(sums, layout.first_of_map(), *cells)))
+               : of_pictures;
+  };
   return job;
 }
 
 Estimate RenderJob::estimate(const GroupedSums& sums, const Estimator& theta, double few) const {
-  return has_control_variate ? controlled_jackknife(sums, theta, sums.size() - 1, few)
-                             : jackknife(sums, theta, few);
+  return estimate_with({}, sums, theta, few);
+}
+
+Estimate RenderJob::estimate_of(std::size_t sensor, const GroupedSums& sums,
+                                const Estimator& theta) const {
+  const LightCheck check = light_checks(*this, sums)[sensor];
+  const std::optional<std::size_t> difference =
+      check.is_known && check.differs && check.holds()
+          ? std::optional(first_of_checks() + sensors + sensor)
+          : std::nullopt;
+  return estimate_with(difference, sums, theta, few_of_values);
+}
+
+Estimate RenderJob::estimate_with(std::optional<std::size_t> control, const GroupedSums& sums,
+                                  const Estimator& theta, double few) const {
+  std::vector<std::size_t> controls;
+  if (has_control_variate) controls.push_back(sums.size() - 1);
+  if (control) controls.push_back(*control);
+  return controls.empty() ? jackknife(sums, theta, few)
+                          : controlled_jackknife(sums, theta, controls, few);
 }
 
 RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {

@@ -28,16 +28,18 @@ inline constexpr double few_of_pixels = 12;
 /// undersampled if more than half of the entries with light around it are flagged, or if flagged
 /// entries have more than half of the light there. The flag of the entry alone is not used: an
 /// entry that paths of high weight have missed by chance has a small error. Entries that no path
-/// has hit are also undersampled, since they are not known to be dark. The error of an undersampled
-/// entry becomes twice its value, but at least the bound for missed contributions that are as large
-/// as those around it.
+/// has hit are also undersampled if there is light around them. The error of an undersampled entry
+/// is doubled, but is at least the bound for missed contributions that are as large as those around
+/// it. Entries without light around them are dark: their error is the bound for contributions as
+/// large as those of the whole picture.
 void bound_errors(Estimate& picture, const PixelGrid& grid);
 
 /// A render that is divided into batches. A sample is one light path and one path from each sensor.
 /// The sums of a batch, with imaginary part 0, are: [pixel][TimeBins::sums], sensor after sensor;
-/// then [Termination], if light paths are traced to their ends; then TransportCounts; then means
-/// over the pixels of each sensor, and independent estimates of them (LightCheck); then the sums of
-/// a map (MapKernel); and last the control variate (DepthImportance::ControlVariate).
+/// then [Termination], if light paths are traced to their ends; then TransportCounts; then the
+/// means over the pixels of each sensor, and what independent estimates of them exceed them by
+/// (LightCheck); then the sums of a map (MapKernel); and last the control variate
+/// (DepthImportance::ControlVariate).
 struct RenderJob {
   BatchJob batches;
   TimeBins bins;
@@ -53,7 +55,15 @@ struct RenderJob {
   /// number of groups below which an entry is undersampled.
   Estimate estimate(const GroupedSums& sums, const Estimator& theta,
                     double few = few_of_values) const;
+  /// Estimates means or powers of one sensor. Where light paths hit the sensor often enough, the
+  /// difference between the two estimates of its mean (LightCheck) is a further control variate, so
+  /// that the better of the two determines the error.
+  Estimate estimate_of(std::size_t sensor, const GroupedSums& sums, const Estimator& theta) const;
   double few_of_pictures = few_of_values;
+
+ private:
+  Estimate estimate_with(std::optional<std::size_t> control, const GroupedSums& sums,
+                         const Estimator& theta, double few) const;
 };
 
 /// Counters of all batches in the sums, including those of resumed runs.
@@ -66,12 +76,22 @@ TransportCounts transport_counts(const RenderJob& job, const GroupedSums& sums);
 /// Both are 0 if too few paths hit.
 struct LightCheck : Invariant {
   double mean = 0, other = 0;
+  /// Whether enough paths hit the sensor; whether the two means differ by more than rounding.
+  bool is_known = false, differs = false;
 };
 /// Returns the check of each sensor.
 std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& sums);
 /// Returns the worst of the checks that have enough paths, relative to the light that hits the
 /// sensor; nullopt if none has.
 std::optional<Invariant> worst_light(const std::vector<LightCheck>& checks);
+
+/// Returns what target_error applies to by default: powers if the sensor lists radii, the total of
+/// a sensor of one pixel, else the picture.
+RenderTarget usual_target(const Sensor& sensor);
+
+/// Returns the mean over the pixels of a sensor. first_pixel: its first pixel in the sums.
+Estimate sensor_mean(const RenderJob& job, const GroupedSums& sums, std::size_t sensor,
+                     std::size_t first_pixel, const SensorPixels& pixels);
 
 /// Throws InputError for lights and sensors that do not fit the stage, for media in which paths
 /// take too long to end, and for a random phase of a field without sound.

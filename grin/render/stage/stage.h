@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "grin/media/scattering/scattering_medium.h"
@@ -12,6 +13,9 @@ namespace flatspeckle::grin {
 using Part = int;
 inline constexpr Part around = 0;
 
+/// Effect of the surface of a body on light. `render` has bodies that refract alone.
+enum class BodyFace { refracts, reflects, absorbs };
+
 /// A body in the stage with its own index and medium. At its surface light is refracted and
 /// reflected by Fresnel's laws if the index jumps.
 struct Body {
@@ -19,6 +23,8 @@ struct Body {
   ScatteringMedium medium = {};
   std::optional<double> excess = {};  ///< index - 1; nullopt: the index field fills the body
   const char* keys = "body_";         ///< prefix of the keys that define the body, for messages
+  BodyFace face = BodyFace::refracts;
+  std::string note = {};  ///< note for the user on how the surface was made, if there is one
 };
 
 /// The volume in which light propagates. Light that reaches the boundary leaves the scene without

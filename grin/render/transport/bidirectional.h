@@ -8,6 +8,7 @@
 #include "grin/render/transport/beam_connection.h"
 #include "grin/render/transport/film.h"
 #include "grin/render/transport/path_vertex.h"
+#include "grin/render/transport/scrambled_sobol.h"
 #include "grin/render/transport/subpath.h"
 #include "grin/render/transport/transport_counts.h"
 
@@ -61,13 +62,15 @@ class Bidirectional {
         tree_(make_tree(transport, film)),
         expected_(transport.sensors.size()) {}
 
-  /// Adds one light path and one path from each sensor; `stratum` in (0, 1) selects the pixel.
-  void add(double stratum) {
+  /// Adds one light path and one path from each sensor. path: number of the pair among the `paths`
+  /// pairs of the batch, over which the paths of a sensor are spread evenly to its pixels.
+  void add(int path, int paths) {
     std::fill(expected_.begin(), expected_.end(), ExpectedConnection());
+    random_.lead(light_points(random_).point(path));
     walk_from_light();
     const bool meets_nothing = transport_.lights.are_beams() &&
                                !transport_.strategies.connects_beams && vertices_.kept().empty();
-    if (!meets_nothing) for_each_sensor([&] { walk_from_sensor(stratum); });
+    if (!meets_nothing) for_each_sensor([&] { walk_from_sensor(path, paths); });
   }
 
   /// Appends expected and actual contributions of the last paths, for each sensor.
@@ -99,7 +102,7 @@ class Bidirectional {
     vertices_.clear();
     const EndPosition end = transport_.lights.sample_position(space_, random_);
     const PathVertex start = end_vertex(transport_.strategies, end);
-    connect_to_sensors(start);
+    if (transport_.light_choice(end) > 0) connect_to_sensors(start);
     const EndDirection first = transport_.lights.sample_direction(end, random_);
     const auto choice = [&](const EndPosition& at, const PathPoint& from) {
       return sensor_choice(at, from);
@@ -121,14 +124,32 @@ class Bidirectional {
       if (vertex.vertices < last_kept) vertices_.offer(vertex, random_);
     };
     LightTally tally(film_.energy);
-    walk(transport_, space_, never_chosen, start, first, transport_.strategies.short_light, random_,
-         counts_, tree_, tally, collided, left);
+    walk(transport_, space_, light_choice(), start, first, transport_.strategies.short_light,
+         random_, counts_, tree_, tally, collided, left);
     tally.end_path();
   }
 
-  void walk_from_sensor(double stratum) {
+  /// Returns the stratum, in (0, 1), by which a sensor path selects its pixel. If each pixel has
+  /// the same number of paths in a batch, the first random numbers of the path are stratified too,
+  /// over all batches.
+  double stratum_of(int path, int paths) {
+    const int pixels = sensor().pixels().count();
+    const auto points_of = [&](int number) {
+      return ScrambledSobol(random_.seed(), (static_cast<std::uint64_t>(at_) << 32) + number);
+    };
+    if (paths % pixels != 0) {
+      const bool is_kept = transport_.keeps_pixels && paths < pixels;
+      return (path + (is_kept ? points_of(path).point(0)[0] : random_.uniform())) / paths;
+    }
+    const int each = paths / pixels, pixel = path / each;
+    random_.lead(points_of(pixel).point(random_.batch() * each + path % each));
+    return (pixel + 0.5) / pixels;
+  }
+
+  void walk_from_sensor(int path, int paths) {
     if (transport_.strategies.short_sensor && sensor().can_be_hit())
       return;  // a short sensor path would end at its endpoint, the sensor
+    const double stratum = stratum_of(path, paths);
     const EndPosition end = sensor().sample_position(space_, random_, stratum);
     const PathVertex start = end_vertex(transport_.strategies, end);
     const EndDirection first = sensor().sample_direction(end, random_, stratum);
@@ -137,7 +158,7 @@ class Bidirectional {
       return sensor_choice(at, from);
     };
     const auto left = [&](const PathVertex& last, const PathVertex& before) {
-      arrive(transport_.lights, never_chosen, last, before, transport_.strategies.most_light(),
+      arrive(transport_.lights, light_choice(), last, before, transport_.strategies.most_light(),
              [&](const EndHit&) { return pixel_; });
     };
     const double last_kept = sample_last_kept();
@@ -161,6 +182,10 @@ class Bidirectional {
   }
   double sensor_choice(const EndPosition& end, const PathPoint& from) const {
     return sensor().choice(end, from.x) * considered_probability(from);
+  }
+
+  auto light_choice() const {
+    return [this](const EndPosition& at, const PathPoint&) { return transport_.light_choice(at); };
   }
 
   /// Samples how many of a path's first vertices are kept for connections to the other path: those
@@ -209,6 +234,7 @@ class Bidirectional {
   void connect_to_light(const PathVertex& z) {
     const EndPosition end = transport_.lights.sample_position(space_, random_);
     if (end.is_beam) return connect_to_beam(end, z);
+    if (transport_.light_choice(end) == 0) return;
     const PathVertex y = end_vertex(transport_.strategies, end);
     connect_to_endpoint(y, z);
   }

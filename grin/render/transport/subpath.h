@@ -15,8 +15,8 @@ inline bool short_path_goes_on(const Space& space, const PathVertex& here) {
   return here.end->is_beam || (here.end->is_point && space.connects_through());
 }
 
-/// EndPosition::choice of lights: 1, since positions on lights are only sampled by
-/// sample_position() and never chosen for a given point.
+/// EndPosition::choice of lights whose positions are only sampled by sample_position() and never
+/// chosen for a given point: 1.
 inline constexpr auto never_chosen = [](const EndPosition&, const PathPoint&) { return 1.0; };
 
 /// Traces a path from one of its endpoints through collisions until it leaves the stage, is

@@ -24,12 +24,20 @@ struct Transport {
   /// Thresholds of Russian roulette for connections to beams, by sensor.
   std::vector<double> beam_levels = connection_levels;
   bool absorbs = stage.absorbs();  ///< whether some medium absorbs
+  /// Whether sensor paths start in the same pixels in every batch that has fewer paths than pixels.
+  bool keeps_pixels = false;
 
   /// Number of pixels of all sensors.
   int pixels() const {
     int count = 0;
     for (const SensorEnd& sensor : sensors) count += sensor.pixels().count();
     return count;
+  }
+
+  /// EndPosition::choice of a light: 0 if the light covers the whole boundary, so that sensor paths
+  /// hit it wherever they leave the stage. No path is connected to such a light.
+  double light_choice(const EndPosition& end) const {
+    return end.surrounds && !strategies.short_sensor ? 0 : 1;
   }
 
   const ScatteringMedium& medium(Part part) const { return stage.medium_in(part); }

@@ -8,14 +8,18 @@
 
 #include "core/keys/number_text.h"
 #include "grin/media/geometry/vector_values.h"
+#include "grin/rays/surfaces/mesh_file.h"
 #include "grin/rays/surfaces/mesh_surface.h"
 #include "grin/render/stage/stage.h"
+#include "grin/render/values/glass.h"
 
 namespace flatspeckle::grin {
 
 namespace {
 
 using Numbers = std::span<const double>;
+
+constexpr std::size_t asphere_numbers = 13;
 
 ScatteringMedium medium_of(const std::string& keys, double mu_s, double mu_a, double g) {
   if (!(mu_s >= 0)) throw InputError(keys + "mu_s", mu_s, "must not be negative");
@@ -38,6 +42,7 @@ double volume(const Surface& surface) {
     return 4 * std::numbers::pi / 3 * std::pow(sphere->radius, 3);
   if (const auto* level = std::get_if<LevelSurface>(&surface)) return level->volume();
   if (const auto* lens = std::get_if<Lens>(&surface)) return lens->volume();
+  if (const auto* lens = std::get_if<AsphericLens>(&surface)) return lens->volume();
   const auto [low, high] = bounds(surface);
   return (high - low).prod();
 }
@@ -67,20 +72,111 @@ IndexRange index_range(const SceneField& field, const Surface& region, const std
   return range;
 }
 
-LevelSurface mesh_body(const Keys& keys, const FieldBodyValues& values, const std::string& file,
-                       const Surface* stage) {
-  const TriangleMesh mesh = read_stl(keys.name(values.body_mesh), file);
+/// Makes the body of a mesh. key: the name of the key that names the file.
+GivenBody mesh_body(const Keys& keys, const std::string& key, const MeshValues& values,
+                    const std::string& file, const Surface* stage) {
+  const TriangleMesh mesh = read_mesh(key, file, keys.read(values.weld));
   const Box box = bounds(mesh);
   if (stage && !lies_in(box, *stage))
-    throw InputError(keys.name(values.body_mesh) + ": from " + listed(box.low) + " to " +
-                     listed(box.high) + ", must be inside of the stage");
-  const std::string name = keys.name(values.body_mesh_spacing);
-  const std::optional<double>& spacing = keys.read(values.body_mesh_spacing);
+    throw InputError(key + ": from " + listed(box.low) + " to " + listed(box.high) +
+                     ", must be inside of the stage");
+  const std::string name = keys.name(values.spacing);
+  const std::optional<double>& spacing = keys.read(values.spacing);
+  constexpr double finer = 3;
+  const CurvedMesh curved =
+      curved_mesh(mesh, keys.read(values.crease), spacing.value_or(first_spacing(mesh)) / finer);
   try {
-    return spacing ? mesh_surface(mesh, *spacing, name) : mesh_surface(mesh, name);
+    const LevelSurface surface =
+        spacing ? mesh_surface(curved.mesh, *spacing, name) : mesh_surface(curved, name);
+    return {surface, note_on(key + " = " + file, surface, curved)};
   } catch (const OverlapError& error) {
-    throw InputError(keys.name(values.body_mesh), file, error.what());
+    throw InputError(key, file, error.what());
   }
+}
+
+/// Adds the keys of a mesh's shape; their names begin with that of the key of its file.
+void add_mesh_keys(Keys& keys, const std::string& file_key, MeshValues& values) {
+  keys.add(file_key + "_spacing", values.spacing,
+           "Spacing of the grid of distances from the mesh that defines the smooth surface; edges "
+           "are rounded over one spacing (default: 1/64 of the longest side of the mesh, or less, "
+           "down to 1/256, if normals would otherwise be wrong by 0.01 rad (rms), the area by 5 % "
+           "or "
+           "the volume by 1 %)")
+      .positive()
+      .unit("length")
+      .only_of(file_key);
+  keys.add(file_key + "_crease", values.crease,
+           "Largest angle between the normals of two triangles that are taken as parts of one "
+           "curved surface; edges of larger angles stay sharp; 0: all triangles are plane")
+      .from(0, 1.5)
+      .unit("rad")
+      .only_of(file_key);
+  keys.add(file_key + "_weld", values.weld,
+           "Corners up to this distance apart are merged if the surface is not closed otherwise "
+           "(default: 1e-5 of the size of the mesh)")
+      .not_negative()
+      .unit("length")
+      .only_of(file_key);
+}
+
+std::vector<Body> make_mesh_bodies(const Keys& keys, const PlainBodyValues& values) {
+  std::vector<Body> bodies;
+  const auto& files = keys.read(values.mesh);
+  if (files.empty()) return bodies;
+  const auto materials = parts_of(keys.required(values.mesh_material), 4);
+  if (materials.size() != files.size())
+    throw InputError("mesh_material", number_text(values.mesh_material),
+                     "requires index mu_s mu_a g for each mesh");
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const auto [surface, note] =
+        mesh_body(keys, keys.name(values.mesh), values.mesh_shape, files[i], nullptr);
+    bodies.push_back(body_of("mesh_material, ", surface, materials[i]));
+    bodies.back().note = note;
+  }
+  return bodies;
+}
+
+std::vector<Body> make_aspheres(const Keys& keys, const PlainBodyValues& values) {
+  const auto rows = parts_of(keys.read(values.asphere), asphere_numbers);
+  const auto& terms = keys.read(values.asphere_terms);
+  constexpr std::size_t terms_each = 6;
+  if (!terms.empty() && terms.size() != terms_each * rows.size())
+    throw InputError("asphere_terms: requires six coefficients for each asphere");
+  std::vector<Body> bodies;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Numbers row = rows[i];
+    const auto face = [&](std::size_t at) {
+      const double radius = row[4 + 2 * at];
+      AsphericFace shape{radius == 0 ? 0 : 1 / radius, row[5 + 2 * at]};
+      for (std::size_t k = 0; k < 3 && !terms.empty(); ++k)
+        shape.terms[k] = terms[terms_each * i + 3 * at + k];
+      return shape;
+    };
+    const auto lens = AsphericLens::make(vector_of(row), positive("asphere, radius", row[3]),
+                                         face(0), face(1), positive("asphere, thickness", row[8]));
+    if (!lens)
+      throw InputError("asphere", number_text({row.begin(), row.begin() + 9}),
+                       "faces must extend to the radius and must not meet within it");
+    bodies.push_back(body_of("asphere, ", *lens, row.subspan(9)));
+  }
+  return bodies;
+}
+
+/// Sets the index of lenses, the last bodies of the list, to that of their glass at the wavelength.
+void fill_with_glass(const Keys& keys, const PlainBodyValues& values,
+                     const std::optional<double>& length_unit, std::vector<Body>& bodies) {
+  const auto& glasses = keys.read(values.lens_glass);
+  if (glasses.empty()) return;
+  const std::size_t lenses = values.lens.size() / (lens_numbers + 4);
+  if (glasses.size() != lenses)
+    throw InputError("lens_glass: requires a glass for each lens, or - for the index of the lens");
+  if (!length_unit) throw InputError("lens_glass: requires length_unit, such as mm");
+  constexpr double micrometres = 1e6;
+  const double wavelength = keys.required(values.wavelength) * *length_unit * micrometres;
+  for (std::size_t i = 0; i < lenses; ++i)
+    if (glasses[i] != "-")
+      bodies[bodies.size() - lenses + i].excess =
+          glass_index(keys.name(values.lens_glass), glasses[i], wavelength) - 1;
 }
 
 }  // namespace
@@ -109,10 +205,47 @@ void add_keys(Keys& keys, PlainBodyValues& values) {
                "centre is at larger z, 0 for a plane")
       .each_of(lens_numbers + 4, lens)
       .units("length length length length length length length 1 1/length 1/length 1");
+  const std::string asphere =
+      "x y z radius front front_conic back back_conic thickness index mu_s mu_a g";
+  keys.add("asphere", values.asphere,
+           asphere +
+               ": a lens of conicoids, as lens; conic constants are 0 for spheres, -1 for "
+               "paraboloids")
+      .each_of(asphere_numbers, asphere)
+      .units("length length length length length 1 length 1 length 1 1/length 1/length 1");
+  keys.add("asphere_terms", values.asphere_terms,
+           "a4 a6 a8 of the front and a4 a6 a8 of the back of each asphere: coefficients of rho^4, "
+           "rho^6 and rho^8 in z")
+      .each_of(6, "a4 a6 a8 of the front, a4 a6 a8 of the back")
+      .only_of("asphere");
+  keys.add("lens_glass", values.lens_glass,
+           "Glass of each lens, which replaces its index: nd/Vd (index and Abbe number, as "
+           "1.5168/64.17), six coefficients of Sellmeier B1/B2/B3/C1/C2/C3 (C in square "
+           "micrometres), " +
+               glass_names() + ", or - to keep the index; requires wavelength")
+      .only_of("lens");
+  keys.add("wavelength", values.wavelength,
+           "Wavelength in vacuum, for lens_glass and, with image_plane, the Strehl ratio and the "
+           "modulation transfer function")
+      .positive()
+      .unit("length")
+      .swept();
+  keys.add(
+          "mesh", values.mesh,
+          "STL, OBJ or PLY files: closed surfaces of triangles, each a body with its own index and "
+          "medium (mesh_material); each is replaced by a smooth surface")
+      .file();
+  keys.add("mesh_material", values.mesh_material,
+           "index mu_s mu_a g of each mesh, in the order of mesh")
+      .each_of(4, "index mu_s mu_a g")
+      .units("1 1/length 1/length 1")
+      .only_of("mesh");
+  add_mesh_keys(keys, "mesh", values.mesh_shape);
 }
 
-std::vector<Body> make_plain_bodies(const Keys& keys, const PlainBodyValues& values) {
-  std::vector<Body> bodies;
+std::vector<Body> make_plain_bodies(const Keys& keys, const PlainBodyValues& values,
+                                    const std::optional<double>& length_unit) {
+  std::vector<Body> bodies = make_mesh_bodies(keys, values);
   for (const Numbers row : parts_of(keys.read(values.ball), 8))
     bodies.push_back(body_of("ball, ", Sphere{vector_of(row), positive("ball, radius", row[3])},
                              row.subspan(4)));
@@ -125,6 +258,8 @@ std::vector<Body> make_plain_bodies(const Keys& keys, const PlainBodyValues& val
   }
   for (const Numbers row : parts_of(keys.read(values.lens), lens_numbers + 4))
     bodies.push_back(body_of("lens, ", lens_of("lens", row), row.subspan(lens_numbers)));
+  fill_with_glass(keys, values, length_unit, bodies);
+  for (Body& body : make_aspheres(keys, values)) bodies.push_back(std::move(body));
   return bodies;
 }
 
@@ -177,16 +312,10 @@ void add_body_keys(Keys& keys, FieldBodyValues& values) {
       .each_of(lens_numbers, lens_words)
       .unit("length");
   keys.add("body_mesh", values.body_mesh,
-           "STL file, binary or text: the index field fills only the inside of this closed surface "
-           "of triangles, which is replaced by a smooth surface")
+           "STL, OBJ or PLY file, binary or text: the index field fills only the inside of this "
+           "closed surface of triangles, which is replaced by a smooth surface")
       .file();
-  keys.add("body_mesh_spacing", values.body_mesh_spacing,
-           "Spacing of the grid of distances from the mesh that defines the smooth surface; edges "
-           "are rounded over one spacing (default: 1/64 of the longest side of the mesh, or less, "
-           "down to 1/256, if the volume would be wrong by 1 % otherwise)")
-      .positive()
-      .unit("length")
-      .only_of("body_mesh");
+  add_mesh_keys(keys, "body_mesh", values.body_mesh_shape);
 }
 
 void add_index_around(Keys& keys, FieldBodyValues& values) {
@@ -200,8 +329,8 @@ std::optional<Surface> one_surface(const std::string& name, const std::string& k
   return given.front();
 }
 
-std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& values,
-                                  const Surface* stage) {
+std::optional<GivenBody> given_body(const Keys& keys, const FieldBodyValues& values,
+                                    const Surface* stage) {
   std::vector<Surface> given;
   for (const Box& box : boxes_of(keys, values.body_box)) given.push_back(box);
   for (const Sphere& sphere : spheres_of(keys, values.body_sphere)) given.push_back(sphere);
@@ -209,9 +338,9 @@ std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& value
     given.push_back(lens_of(keys.name(values.body_lens), numbers));
   const std::string& file = keys.read(values.body_mesh);
   const auto body = one_surface("body", body_key_names, given);
-  if (file.empty()) return body;
+  if (file.empty()) return body ? std::optional(GivenBody{*body}) : std::nullopt;
   if (body) throw InputError(std::string(body_key_names) + ": give one body");
-  return mesh_body(keys, values, file, stage);
+  return mesh_body(keys, keys.name(values.body_mesh), values.body_mesh_shape, file, stage);
 }
 
 IndexRange check_field(const SceneField& field, const Surface& region, const std::string& name) {

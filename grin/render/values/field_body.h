@@ -14,15 +14,29 @@
 
 namespace flatspeckle::grin {
 
-/// Values of the keys of bodies with constant index and medium, one body per row of numbers.
+/// Values of the keys on how a mesh becomes a smooth surface.
+struct MeshValues {
+  std::optional<double> spacing{}, weld{};
+  double crease = 0.52;
+};
+
+/// Values of the keys of bodies with constant index and medium, one body per row of numbers or
+/// mesh.
 struct PlainBodyValues {
-  std::vector<double> ball{}, block{}, lens{};
+  std::vector<double> ball{}, block{}, lens{}, asphere{}, asphere_terms{};
+  std::vector<std::string> mesh{};
+  std::vector<double> mesh_material{};
+  std::vector<std::string> lens_glass{};
+  std::optional<double> wavelength{};
+  MeshValues mesh_shape{};
 };
 
 void add_keys(Keys& keys, PlainBodyValues& values);
 
+/// Makes the bodies. length_unit: metres in a unit of length, if known, which glasses require.
 /// Throws InputError for numbers out of range.
-std::vector<Body> make_plain_bodies(const Keys& keys, const PlainBodyValues& values);
+std::vector<Body> make_plain_bodies(const Keys& keys, const PlainBodyValues& values,
+                                    const std::optional<double>& length_unit);
 /// Throws InputError for a body that is not within a region. name: what the message calls the
 /// region.
 void check_within(const Body& body, const Surface& region, const std::string& name);
@@ -45,7 +59,7 @@ inline constexpr const char* body_key_names = "body_box, body_sphere, body_lens,
 struct FieldBodyValues {
   std::vector<double> body_box{}, body_sphere{}, body_lens{};
   std::string body_mesh{};
-  std::optional<double> body_mesh_spacing{};
+  MeshValues body_mesh_shape{};
   double index_around = 1;
 };
 
@@ -58,10 +72,16 @@ void add_index_around(Keys& keys, FieldBodyValues& values);
 /// given.
 std::optional<Surface> one_surface(const std::string& name, const std::string& keys,
                                    const std::vector<Surface>& given);
+/// Surface of a body, and a note for the user on how it was made, if there is one.
+struct GivenBody {
+  Surface surface;
+  std::string note = {};
+};
+
 /// Returns the body given, if any. stage: boundary of the stage, or null. A mesh that extends
 /// beyond it is rejected before it is processed.
-std::optional<Surface> given_body(const Keys& keys, const FieldBodyValues& values,
-                                  const Surface* stage = nullptr);
+std::optional<GivenBody> given_body(const Keys& keys, const FieldBodyValues& values,
+                                    const Surface* stage = nullptr);
 
 /// Returns the range of the index of a field in a region. name: what messages call the region.
 /// Throws InputError for a field that does not cover the region, or has an index that is not

@@ -138,6 +138,12 @@ std::vector<std::string> words_for_methods() {
   return words;
 }
 
+std::vector<std::string> words_for_targets() {
+  std::vector<std::string> words = target_words();
+  words.insert(words.begin(), chosen);
+  return words;
+}
+
 TimeBins time_bins(const Keys& keys, const RenderValues& values) {
   constexpr double most = 100'000;
   const auto& bins = keys.read(values.path_bins);
@@ -331,7 +337,8 @@ FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexF
     throw InputError(
         "stage is not given: light needs a boundary through which it leaves (stage_box or "
         "stage_sphere)");
-  const auto given = given_body(keys, values, &*boundary);
+  const auto from_keys = given_body(keys, values, &*boundary);
+  const auto given = from_keys ? std::optional(from_keys->surface) : std::nullopt;
   const double reach = reach_of(given ? *given : *boundary);
   const FieldUse use{.reach = reach, .any_phase = any_phase, .length_unit = length_unit};
   FilledStage filled{
@@ -339,9 +346,10 @@ FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexF
   Stage& stage = filled.stage;
   if (const auto body = body_of(filled.field, *boundary, given)) {
     stage.bodies.push_back({*body, medium_in(keys, values.body_medium, *body, "body")});
+    if (from_keys) stage.bodies.back().note = from_keys->note;
     stage.excess_around = keys.read(values.index_around) - 1;
   }
-  for (Body& body : make_plain_bodies(keys, values.plain_bodies)) {
+  for (Body& body : make_plain_bodies(keys, values.plain_bodies, length_unit)) {
     check_within(body, *boundary, "stage");
     stage.bodies.push_back(std::move(body));
   }
@@ -403,6 +411,12 @@ void add_keys(Keys& keys, RenderRequestValues& values) {
       .one_of(words_for_methods())
       .formerly("analog", "forward")
       .gone("; photon_map is a baseline of `bench error`");
+  keys.add("target", values.target,
+           "What target_error applies to. total: the mean over the pixels or the total power; "
+           "powers: "
+           "each power within radii; picture: RMS error of the pixels over their RMS value; auto: "
+           "powers with radii, total for a single pixel, else picture")
+      .one_of(words_for_targets());
   keys.add("max_scatterings", values.max_scatterings,
            "Largest number of scatterings of a path; longer paths are left out; 0: no limit")
       .from(0, std::numeric_limits<int>::max());
@@ -450,6 +464,10 @@ RenderRequest make_render_request(const Keys& keys, const RenderRequestValues& v
   if (const auto& method = keys.read(values.method); method != chosen)
     request.method =
         static_cast<RenderMethod>(std::find(words.begin(), words.end(), method) - words.begin());
+  const auto targets = target_words();
+  if (const auto& target = keys.read(values.target); target != chosen)
+    request.target = static_cast<RenderTarget>(std::find(targets.begin(), targets.end(), target) -
+                                               targets.begin());
   return request;
 }
 

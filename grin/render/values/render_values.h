@@ -50,7 +50,7 @@ struct RenderValues {
 };
 /// Values of the keys of the method.
 struct RenderRequestValues {
-  std::string method = "auto";
+  std::string method = "auto", target = "auto";
   std::int64_t max_scatterings = 0;
 };
 

@@ -70,14 +70,14 @@ void write_deconvolved(ResultFile& file, const RecoveryTask& task,
 }
 
 void write_phased(ResultFile& file, const RecoveryTask& task,
-                  const std::vector<PhasedPicture>& all) {
+                  const std::vector<RetrievedPicture>& all) {
   const ResultGroup root(file, recovery_table);
   root.put("phased_picture",
-           of_each(all, task.lags, [](const PhasedPicture& one) { return one.picture; }));
+           of_each(all, task.lags, [](const RetrievedPicture& one) { return one.picture; }));
   const std::size_t steps = all.front().residual.size();
   root.number("phase_iteration", steps);
   root.put("phase_residual",
-           of_each(all, steps, [](const PhasedPicture& one) { return one.residual; }));
+           of_each(all, steps, [](const RetrievedPicture& one) { return one.residual; }));
 }
 
 }  // namespace flatspeckle::mc

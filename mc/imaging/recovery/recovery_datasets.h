@@ -60,6 +60,6 @@ void write_deconvolved(ResultFile& file, const RecoveryTask& task,
 
 /// Writes pictures by phase retrieval, in addition to the output of write_recovery().
 void write_phased(ResultFile& file, const RecoveryTask& task,
-                  const std::vector<PhasedPicture>& all);
+                  const std::vector<RetrievedPicture>& all);
 
 }  // namespace flatspeckle::mc

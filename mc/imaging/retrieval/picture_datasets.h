@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/result/result_group.h"
-#include "mc/imaging/retrieval/picture_retrieval.h"
+#include "mc/imaging/recovery/phase_retrieval.h"
 #include "mc/imaging/retrieval/picture_statistics.h"
 
 namespace flatspeckle::mc {

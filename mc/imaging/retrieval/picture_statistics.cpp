@@ -6,6 +6,7 @@
 #include <numeric>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "core/error.h"
 #include "core/numbers/fourier.h"
@@ -167,36 +168,11 @@ std::pair<double, double> beyond_object(Correlation& correlation) {
   return {mean, std::sqrt(std::max(0.0, squares / count - mean * mean))};
 }
 
-}  // namespace
-
-PictureStatistics picture_statistics(const Frames& frames, std::size_t first, std::size_t count,
-                                     std::size_t lags, const CameraNoise& noise) {
-  const double share = 1 / static_cast<double>(count),
-               width = static_cast<double>(
-                   std::min(2 * lags,
-                            std::max<std::size_t>(32, std::min(frames.rows, frames.columns) / 32)));
+/// Computes the statistics from an autocorrelation. white: camera noise in its value at lag 0.
+PictureStatistics statistics_of(Correlation correlation, double white) {
   PictureStatistics found;
-  Correlation correlation(lags);
-  double variance = 0;
-  for (std::size_t number = first; number < first + count; ++number) {
-    const auto frame = frames.frame(number);
-    const auto envelope = envelope_of(frame, frames.rows, frames.columns, width);
-    std::vector<double> rest(frame.size());
-    const double mean = mean_of(frame);
-    double shot = 0;
-    for (std::size_t p = 0; p < rest.size(); ++p) {
-      rest[p] = frame[p] / envelope[p] - 1;
-      shot += noise_variance(noise, envelope[p] / mean);
-    }
-    found.white += share * shot / static_cast<double>(rest.size());
-    variance += share * std::inner_product(rest.begin(), rest.end(), rest.begin(), 0.0) /
-                static_cast<double>(rest.size());
-    add_autocorrelation(rest, frames.rows, frames.columns, share, correlation);
-  }
-  constexpr double rounding = 1e-10;
-  if (variance > 0) found.variance = {std::abs(correlation.at(0, 0) / variance - 1), rounding};
-  if (noise.photons == 0) found.white = excess_at_zero(correlation);
-  correlation.at(0, 0) -= found.white;
+  found.white = white;
+  correlation.at(0, 0) -= white;
   double pedestal = 0;
   std::tie(pedestal, found.noise) = beyond_object(correlation);
   double above_half = 0;
@@ -208,6 +184,49 @@ PictureStatistics picture_statistics(const Frames& frames, std::size_t first, st
   });
   found.contrast = std::sqrt(std::max(0.0, correlation.at(0, 0)));
   found.grain = std::sqrt(4 * above_half / std::numbers::pi);
+  return found;
+}
+
+}  // namespace
+
+double picture_envelope_width(std::size_t pixels, std::size_t lags) {
+  return static_cast<double>(std::min(2 * lags, std::max<std::size_t>(32, pixels / 32)));
+}
+
+std::vector<double> picture_without_envelope(std::span<const double> picture, std::size_t rows,
+                                             std::size_t columns, double width) {
+  const auto envelope = envelope_of(picture, rows, columns, width);
+  std::vector<double> rest(picture.size());
+  for (std::size_t p = 0; p < rest.size(); ++p) rest[p] = picture[p] / envelope[p] - 1;
+  return rest;
+}
+
+PictureStatistics picture_statistics(const Frames& frames, std::size_t first, std::size_t count,
+                                     std::size_t lags, const CameraNoise& noise) {
+  const double share = 1 / static_cast<double>(count),
+               width = picture_envelope_width(std::min(frames.rows, frames.columns), lags);
+  Correlation correlation(lags);
+  double variance = 0, white = 0;
+  for (std::size_t number = first; number < first + count; ++number) {
+    const auto frame = frames.frame(number);
+    const auto envelope = envelope_of(frame, frames.rows, frames.columns, width);
+    std::vector<double> rest(frame.size());
+    const double mean = mean_of(frame);
+    double shot = 0;
+    for (std::size_t p = 0; p < rest.size(); ++p) {
+      rest[p] = frame[p] / envelope[p] - 1;
+      shot += noise_variance(noise, envelope[p] / mean);
+    }
+    white += share * shot / static_cast<double>(rest.size());
+    variance += share * std::inner_product(rest.begin(), rest.end(), rest.begin(), 0.0) /
+                static_cast<double>(rest.size());
+    add_autocorrelation(rest, frames.rows, frames.columns, share, correlation);
+  }
+  if (noise.photons == 0) white = excess_at_zero(correlation);
+  const double at_zero = correlation.at(0, 0);
+  PictureStatistics found = statistics_of(std::move(correlation), white);
+  constexpr double rounding = 1e-10;
+  if (variance > 0) found.variance = {std::abs(at_zero / variance - 1), rounding};
   return found;
 }
 

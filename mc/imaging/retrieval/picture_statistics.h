@@ -29,6 +29,15 @@ struct PictureStatistics {
   Invariant variance;
 };
 
+/// Returns the width, in pixels, of the Gaussian average that picture_statistics() takes as the
+/// envelope of a frame. pixels: rows or columns of the frame, whichever are fewer.
+double picture_envelope_width(std::size_t pixels, std::size_t lags);
+
+/// Returns a picture divided by its envelope, minus 1. width: that of the Gaussian average. Throws
+/// InputError if the envelope is not positive.
+std::vector<double> picture_without_envelope(std::span<const double> picture, std::size_t rows,
+                                             std::size_t columns, double width);
+
 /// Computes the statistics of frames of one object; their autocorrelations are averaged. lags:
 /// longest extent of the object in pixels; twice the lags must be less than rows and columns. If
 /// the number of photons is not known (noise.photons = 0), the camera's noise is the excess of the

@@ -4,12 +4,14 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "core/algebra/dense.h"
 #include "core/error.h"
 #include "core/numbers/symmetric.h"
 #include "core/result/result_group.h"
 #include "mc/imaging/recovery/frame_statistics.h"
+#include "mc/imaging/retrieval/picture_statistics.h"
 
 namespace flatspeckle::mc {
 
@@ -19,6 +21,8 @@ const DatasetTable separation_table{
         {"frame", Data::numbers, "", "1", "number of the frame"},
         {"frame_name", Data::text, "frame", "", "column of the frame"},
         {"pixel", Data::numbers, "", "1", "number of the pixel along the line"},
+        {"pattern_row", Data::numbers, "", "1", "row of the frames, if they are pictures"},
+        {"pattern_column", Data::numbers, "", "1", "column of the frames, if they are pictures"},
         {"source", Data::numbers, "", "1", "number of the source"},
         {"singular_value", Data::real, "frame", "1",
          "singular values of the frames divided by their mean, largest first; the camera's noise "
@@ -32,10 +36,14 @@ const DatasetTable separation_table{
          "relative change by which a common factor of all brightness would fit the frames best"},
         {"source_pattern", Data::real, "source pixel", "1",
          "speckle pattern of each source, mean 1"},
+        {"source_picture", Data::real, "source pattern_row pattern_column", "1",
+         "speckle pattern of each source in frames that are pictures, mean 1"},
         {"source_brightness", Data::real, "frame source", "1",
          "brightness in units of the mean of all frames"},
         {"source_x", Data::real, "source", "1",
          "position in pixels from the first source of the group, not mirrored"},
+        {"source_y", Data::real, "source", "1",
+         "position in rows from the first source of the group, if frames are pictures"},
         {"source_group", Data::count, "source", "1",
          "sources with the same number have known relative positions; 0: the largest group"}}};
 
@@ -48,11 +56,20 @@ void write_separation(ResultFile& file, const std::vector<std::string>& names,
   root.put("noise_level", found.count.threshold);
   root.put("source_count", static_cast<std::uint64_t>(found.count.sources));
   if (found.places.x.empty()) return;
-  root.number("pixel", static_cast<std::size_t>(found.factors.pattern.rows()));
   root.number("source", found.places.x.size());
+  const auto pixels = static_cast<std::size_t>(found.factors.pattern.rows());
+  const auto patterns = row_major(found.factors.pattern.transpose());
+  if (found.rows > 1) {
+    root.number("pattern_row", found.rows);
+    root.number("pattern_column", pixels / found.rows);
+    root.put("source_picture", patterns);
+    root.put("source_y", found.places.y);
+  } else {
+    root.number("pixel", pixels);
+    root.put("source_pattern", patterns);
+  }
   root.put("factor_residual", found.factors.residual);
   root.check("invariants/scale", found.factors.scale);
-  root.put("source_pattern", row_major(found.factors.pattern.transpose()));
   root.put("source_brightness", row_major(found.factors.brightness));
   root.put("source_x", found.places.x);
   root.put("source_group", column(found.places.group, std::identity()));
@@ -131,11 +148,16 @@ std::size_t sources_of(const SeparationTask& task, const SourceCount& count, std
 }
 
 /// Returns the mean grain size of the patterns.
-double grain_of_patterns(const MatrixXd& patterns, std::size_t lags) {
+double grain_of_patterns(const MatrixXd& patterns, std::size_t lags, std::size_t rows) {
   double sum = 0;
   for (Index s = 0; s < patterns.cols(); ++s) {
-    const std::vector<double> pattern(patterns.col(s).begin(), patterns.col(s).end());
-    sum += frame_statistics(pattern, lags).grain;
+    std::vector<double> pattern(patterns.col(s).begin(), patterns.col(s).end());
+    if (rows == 1) {
+      sum += frame_statistics(pattern, lags).grain;
+      continue;
+    }
+    const Frames frame{rows, pattern.size() / rows, std::move(pattern)};
+    sum += picture_statistics(frame, 0, 1, lags, {}).grain;
   }
   return sum / static_cast<double>(patterns.cols());
 }
@@ -177,8 +199,9 @@ SeparatedSources separated_sources(std::span<const std::vector<double>> frames,
   const std::size_t sources = sources_of(task, found.count, frames.size());
   if (sources == 0) return found;
   found.factors = nonnegative_factors(light, {.sources = sources});
-  found.grain = grain_of_patterns(found.factors.pattern, task.lags);
-  const auto shifts = pattern_shifts(found.factors.pattern, task.lags);
+  found.rows = task.rows;
+  found.grain = grain_of_patterns(found.factors.pattern, task.lags, task.rows);
+  const auto shifts = pattern_shifts(found.factors.pattern, task.lags, task.rows);
   found.places = source_places(sources, shifts, task.resolution_grains * found.grain);
   return found;
 }

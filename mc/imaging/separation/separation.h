@@ -44,19 +44,22 @@ NonnegativeFactors nonnegative_factors(const Eigen::MatrixXd& frames, const Fact
 /// Two sources whose patterns agree if one is shifted.
 struct PatternShift {
   std::size_t first = 0, second = 0;
-  double shift = 0;   ///< shift of the second pattern relative to the first, in pixels
-  double height = 0;  ///< correlation of the patterns at this shift; C_I for speckle
-  double noise = 0;   ///< standard deviation of the correlation at other shifts
+  double shift = 0;    ///< shift of the second pattern relative to the first along x, in pixels
+  double height = 0;   ///< correlation of the patterns at this shift; C_I for speckle
+  double noise = 0;    ///< standard deviation of the correlation at other shifts
+  double shift_y = 0;  ///< shift along y, in rows; 0 for lines
 };
 
 /// Finds all pairs of patterns, [pixel][source], whose correlation has a significant peak at a
-/// shift of less than `lags` pixels. Noise alone would produce such a peak in one of a hundred sets
-/// of patterns.
-std::vector<PatternShift> pattern_shifts(const Eigen::MatrixXd& patterns, std::size_t lags);
+/// shift of less than `lags` pixels along each axis. Noise alone would produce such a peak in one
+/// of a hundred sets of patterns. rows: number of rows of the pixels, [y][x]; 1 for lines.
+std::vector<PatternShift> pattern_shifts(const Eigen::MatrixXd& patterns, std::size_t lags,
+                                         std::size_t rows = 1);
 
 /// Positions of sources, in groups that are connected by pairs with known shifts.
 struct SourcePlaces {
-  std::vector<double> x;  ///< positions in pixels; the first source of each group is at 0
+  /// Positions in pixels; the first source of each group is at 0. On lines y is 0.
+  std::vector<double> x, y;
   /// Sources with the same number are connected; 0: the largest group.
   std::vector<std::size_t> group;
 };
@@ -92,6 +95,7 @@ struct SeparationTask {
   std::size_t lags = 0;          ///< longest shift between two patterns that is searched, in pixels
   std::size_t sources = 0;       ///< number of sources; 0: determined from the singular values
   double resolution_grains = 1;  ///< tolerance in grains within which shifts agree
+  std::size_t rows = 1;          ///< rows of the frames, [y][x]; 1 for lines
 };
 
 /// Sources separated from frames.
@@ -99,10 +103,11 @@ struct SeparatedSources {
   SourceCount count;
   NonnegativeFactors factors;
   SourcePlaces places;
-  double grain = 0;  ///< mean grain size of the patterns in pixels
+  double grain = 0;      ///< mean grain size of the patterns in pixels
+  std::size_t rows = 1;  ///< rows of the frames
 
-  /// Returns the sources of the largest group, in pixels. brightness: mean over the frames, with
-  /// mean 1 over the sources.
+  /// Returns the sources of the largest group on a line, in pixels. brightness: mean over the
+  /// frames, with mean 1 over the sources.
   LineObject object() const;
 };
 

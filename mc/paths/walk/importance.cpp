@@ -183,6 +183,11 @@ std::size_t DiffusionImportance::interval(double z) const {
   return std::min(static_cast<std::size_t>(z / step_), log_importance_.size() - 2);
 }
 
+double score_level(double g, int dimension) {
+  const double square = std::min(g * g, 0.9);
+  return 2 * (1 + square) / std::pow(1 - square, dimension - 1);
+}
+
 ExpectedContribution::ExpectedContribution(const Scene& scene,
                                            const std::vector<Endpoint>& endpoints)
     : domain_(scene.domain),
@@ -206,6 +211,7 @@ ExpectedContribution::ExpectedContribution(const Scene& scene,
   // The lobe of the phase function is made no narrower than the angle between the representative
   // endpoints.
   g_ = std::copysign(std::min(std::abs(g_), std::max(0.0, 1 - spacing)), g_);
+  level_ = score_level(scene.medium.g, dimension_) / score_level(g_, dimension_);
   for (Vec w : chosen) towards_.push_back(-w);
 }
 
@@ -217,7 +223,7 @@ double ExpectedContribution::operator()(Vec x, Vec arrival) const {
     if (g_ != 0)
       value *=
           dimension_ == 2 ? relative_lobe<2>(g_, arrival, w) : relative_lobe<3>(g_, arrival, w);
-    largest = std::max(largest, value);
+    largest = std::max(largest, level_ * value);
   }
   return largest;
 }

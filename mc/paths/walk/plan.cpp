@@ -28,14 +28,6 @@ bool can_detect_backscattering(const CovarianceRequest& request, const Domain& d
   });
 }
 
-/// Returns the score level (Plan::score_level) of a thick medium: twice the mean square of the
-/// phase function divided by the square of its mean. Measurements in 2D show that this is near the
-/// optimum, which is flat.
-double score_level(double g, int dimension) {
-  const double square = std::min(g * g, 0.9);
-  return 2 * (1 + square) / std::pow(1 - square, dimension - 1);
-}
-
 /// Returns the score level of a scene. In a thin medium every path contributes little, so the level
 /// is reduced in proportion to the fraction of free flights that end inside the medium; otherwise
 /// no path would be scored.

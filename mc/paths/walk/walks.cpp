@@ -400,7 +400,7 @@ void with_any_scattering(const Scene& scene, Plan::Phase phase, F f) {
 
 std::vector<Complex> sphere_amplitudes(const Scene& scene) {
   const BulkMedium& medium = scene.medium;
-  if (medium.has_scatterers) return amplitudes_in_space(medium.t_matrix, scene.k);
+  if (medium.has_scatterers) return correlated_amplitudes_in_space(medium, scene.k);
   const auto intervals =
       16384 * (1 + static_cast<std::size_t>(scene.k * scene.scatterer.radius / 10));
   std::vector<Complex> values;

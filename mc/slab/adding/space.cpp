@@ -95,14 +95,26 @@ void set_phase(BulkMedium& medium, const Scatterer& scatterer, const ScattererVa
   set_phase(medium, grin::TwoTermPhase{{*terms.g}, {*terms.g_back}, *terms.forward_share});
 }
 
-/// Returns the phase function of points, or of spheres with a T-matrix (C56, C57).
+/// Sets the phase function of points, or of spheres with a T-matrix (C56, C57), with the structure
+/// factor of their positions (C16).
 void set_wave_phase(BulkMedium& medium, double k) {
-  const auto sampled = grin::phase_of_amplitudes(amplitudes_in_space(medium.t_matrix, k));
-  medium.space_phase = {
-      [t = medium.t_matrix, k, per = 1 / medium.cross_sections.scattering](double cosine) {
-        return per * std::norm(amplitude_in_space(t, k, cosine));
-      },
-      [sampled](RandomStream& random) { return sampled.one_minus_cosine(random); }};
+  const auto sampled = grin::phase_of_amplitudes(correlated_amplitudes_in_space(medium, k));
+  const auto sample = [sampled](RandomStream& random) { return sampled.one_minus_cosine(random); };
+  const auto alone = [t = medium.t_matrix, k](double cosine) {
+    return std::norm(amplitude_in_space(t, k, cosine));
+  };
+  if (medium.structure.independent())
+    medium.space_phase = {[alone, per = 1 / medium.cross_sections.scattering](double cosine) {
+                            return per * alone(cosine);
+                          },
+                          sample};
+  else
+    medium.space_phase = {[alone, k, structure = medium.structure,
+                           per = medium.density / medium.mu_s](double cosine) {
+                            return per * alone(cosine) *
+                                   structure(k * std::sqrt(2 * std::max(0.0, 1 - cosine)));
+                          },
+                          sample};
 }
 
 using std::numbers::pi;

@@ -1,0 +1,110 @@
+#include "apps/results/array_files.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <png.h>
+#include <sstream>
+
+#include "core/error.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+/// Writes a header and then the bytes of a file.
+void write_bytes(const std::filesystem::path& path, const std::string& header, const void* bytes,
+                 std::size_t count) {
+  std::ofstream file(path, std::ios::binary);
+  file << header;
+  file.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(count));
+  file.close();
+  if (!file) throw IoError("cannot write " + path.string());
+}
+
+static_assert(std::endian::native == std::endian::little);
+
+double big_endian(double value) {
+  std::uint64_t bits;
+  std::memcpy(&bits, &value, sizeof bits);
+  bits = __builtin_bswap64(bits);
+  std::memcpy(&value, &bits, sizeof bits);
+  return value;
+}
+
+/// Returns the value that 99.5 % of the pixels do not exceed, or the largest if that is 0.
+double white_of(std::vector<double> values) {
+  const auto place = values.begin() +
+                     static_cast<std::ptrdiff_t>(0.995 * (static_cast<double>(values.size()) - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place > 0 ? *place : *std::max_element(values.begin(), values.end());
+}
+
+}  // namespace
+
+void write_npy(const std::filesystem::path& path, const NumberArray& array) {
+  std::ostringstream text;
+  text << "{'descr': '<f8', 'fortran_order': False, 'shape': (";
+  for (const std::size_t extent : array.shape) text << extent << ", ";
+  text << "), }";
+  std::string header = text.str();
+  constexpr std::size_t before = 10, alignment = 64;
+  while ((before + header.size() + 1) % alignment != 0) header += ' ';
+  header += '\n';
+  const auto length = static_cast<std::uint16_t>(header.size());
+  std::string magic("\x93NUMPY\x01\x00", 8);
+  magic += static_cast<char>(length & 255);
+  magic += static_cast<char>(length >> 8);
+  write_bytes(path, magic + header, array.values.data(), array.values.size() * sizeof(double));
+}
+
+void write_pfm(const std::filesystem::path& path, const GreyPicture& picture) {
+  std::vector<float> pixels;
+  for (std::size_t row = picture.rows; row-- > 0;)  // from the bottom
+    for (std::size_t column = 0; column < picture.columns; ++column)
+      pixels.push_back(static_cast<float>(picture.values[row * picture.columns + column]));
+  std::ostringstream header;
+  header << "Pf\n" << picture.columns << ' ' << picture.rows << "\n-1.0\n";
+  write_bytes(path, header.str(), pixels.data(), pixels.size() * sizeof(float));
+}
+
+void write_png(const std::filesystem::path& path, const GreyPicture& picture) {
+  constexpr double gamma = 2.2, top = 255;
+  const double white = white_of(picture.values);
+  std::vector<png_byte> pixels;
+  for (const double value : picture.values) {
+    const double light = white > 0 ? std::clamp(value / white, 0.0, 1.0) : 0;
+    pixels.push_back(static_cast<png_byte>(std::lround(top * std::pow(light, 1 / gamma))));
+  }
+  png_image image{};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = static_cast<png_uint_32>(picture.columns);
+  image.height = static_cast<png_uint_32>(picture.rows);
+  image.format = PNG_FORMAT_GRAY;
+  if (png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), 0, nullptr) == 0)
+    throw IoError("cannot write " + path.string() + ": " + image.message);
+}
+
+void write_vtk(const std::filesystem::path& path, const std::string& name, const NumberArray& array,
+               const std::vector<double>& origin, const std::vector<double>& spacing) {
+  const auto& n = array.shape;
+  std::ostringstream header;
+  header.precision(17);
+  header << "# vtk DataFile Version 3.0\n"
+         << name << "\nBINARY\nDATASET STRUCTURED_POINTS\n"
+         << "DIMENSIONS " << n[0] << ' ' << n[1] << ' ' << n[2] << "\nORIGIN " << origin[0] << ' '
+         << origin[1] << ' ' << origin[2] << "\nSPACING " << spacing[0] << ' ' << spacing[1] << ' '
+         << spacing[2] << "\nPOINT_DATA " << array.values.size() << "\nSCALARS " << name
+         << " double 1\nLOOKUP_TABLE default\n";
+  std::vector<double> values;  // x varies fastest
+  for (std::size_t k = 0; k < n[2]; ++k)
+    for (std::size_t j = 0; j < n[1]; ++j)
+      for (std::size_t i = 0; i < n[0]; ++i)
+        values.push_back(big_endian(array.values[(i * n[1] + j) * n[2] + k]));
+  write_bytes(path, header.str(), values.data(), values.size() * sizeof(double));
+}
+
+}  // namespace flatspeckle::apps

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace flatspeckle::apps {
+
+/// Real numbers in row-major order, to be written in formats that other programs read.
+struct NumberArray {
+  std::vector<std::size_t> shape;
+  std::vector<double> values;
+};
+
+/// A picture, rows from the top.
+struct GreyPicture {
+  std::size_t rows, columns;
+  std::vector<double> values;
+};
+
+// The following functions write files. They throw IoError.
+
+/// NumPy format, version 1, float64.
+void write_npy(const std::filesystem::path& path, const NumberArray& array);
+/// Portable float map of one channel, 32 bits.
+void write_pfm(const std::filesystem::path& path, const GreyPicture& picture);
+/// PNG of 8 bits for display. Values are divided by the one that 99.5 % of the pixels do not
+/// exceed, cut off at 1, and raised to the power 1/2.2.
+void write_png(const std::filesystem::path& path, const GreyPicture& picture);
+/// Legacy VTK file of structured points. array: [x][y][z]; origin, spacing: three numbers each.
+void write_vtk(const std::filesystem::path& path, const std::string& name, const NumberArray& array,
+               const std::vector<double>& origin, const std::vector<double>& spacing);
+
+}  // namespace flatspeckle::apps

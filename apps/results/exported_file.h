@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace flatspeckle::apps {
+
+/// Writes a dataset of a result in the format that the ending of `to` names: .npy, .pfm, .png or
+/// .vtk. The datasets ball_spline, radial_spline and excess of `design` are written as the index at
+/// `nodes` points along each axis. Returns a line that describes the file. Throws InputError for a
+/// dataset that the format cannot contain, and IoError.
+std::string export_file(const std::filesystem::path& result, const std::string& dataset,
+                        const std::filesystem::path& to, std::int64_t nodes);
+
+/// Whether a dataset is a field of `design`, which export_file() samples.
+bool is_designed_field(const std::string& dataset);
+
+}  // namespace flatspeckle::apps
