@@ -110,7 +110,7 @@ class Run:
                 self.image = file["image"][()].ravel()
                 self.mean, self.mean_error = file["mean"][()], file["mean_error"][()]
                 self.is_rare = "mean_rare" in file and bool(np.any(file["mean_rare"][()]))
-                self.cpu_s = float(file["trace/cpu_s"][()][-1])
+                self.cpu_s = float(file.attrs["cpu_s"])
 
 
 def spread(runs):

@@ -178,7 +178,8 @@ TwoKernels frequencies(const Scene& scene) {
           kernel_of(mc::covariance_job(scene, plan, first_seed))};
 }
 
-/// Returns a box of points in space, with 64 views around it.
+/// Returns a box of points in space, with 64 views at least pi/3 from backscattering, whose
+/// enhancement falls slowly with the angle.
 Scene points_in_space() {
   SceneSpec spec;
   spec.dimension = 3;
@@ -187,7 +188,7 @@ Scene points_in_space() {
   spec.count = 1257;
   Scene scene = mc::in_space(make_scene(spec), spec);
   std::vector<View> views;
-  for (int v = 0; v < 64; ++v) views.push_back(far_view(std::acos((v - 31.5) / 32), 2.4 * v));
+  for (int v = 0; v < 64; ++v) views.push_back(far_view(std::acos(1 - 1.5 * (v + 0.5) / 64), 2.4 * v));
   scene.request = intensity_request({0}, views);
   return scene;
 }
