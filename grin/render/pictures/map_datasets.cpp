@@ -1,6 +1,7 @@
 #include "grin/render/pictures/map_datasets.h"
 
 #include "core/result/result_group.h"
+#include "grin/render/methods/tracer.h"
 #include "grin/render/pictures/render_job.h"
 
 namespace flatspeckle::grin {

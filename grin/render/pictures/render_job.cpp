@@ -21,35 +21,6 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// Returns, for each entry, the sum over the entry and its neighbours along one axis.
-std::vector<double> sums_along(const std::vector<double>& values, std::size_t stride,
-                               std::size_t length) {
-  constexpr std::size_t reach = 2;
-  std::vector<double> sums(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const std::size_t place = i / stride % length;
-    const std::size_t from = i - std::min(place, reach) * stride;
-    const std::size_t to = i + std::min(length - 1 - place, reach) * stride;
-    for (std::size_t k = from; k <= to; k += stride) sums[i] += values[k];
-  }
-  return sums;
-}
-
-std::vector<double> sums_around(const std::vector<double>& values, const PixelGrid& grid) {
-  const auto rows = static_cast<std::size_t>(grid.rows);
-  const auto columns = static_cast<std::size_t>(grid.columns);
-  const std::size_t bins = values.size() / (rows * columns);
-  return sums_along(sums_along(sums_along(values, 1, bins), bins, columns), bins * columns, rows);
-}
-
-/// Error bound for contributions that may have been missed. Contributions of size c have a variance
-/// of c times their sum, from which c follows. If three of them are expected, with sum 3 c, none
-/// arrives with probability 1/20. As this is the probability of a deviation by two standard errors,
-/// the error is 1.5 c.
-double unseen(double variance, double sum) {
-  return sum > 0 ? 1.5 * variance / sum : 0;
-}
-
 /// Returns the number of paths per batch. It is large enough that summing pictures takes little of
 /// the time, and small enough that a batch ends soon and the batches required for errors are soon
 /// available; it is smaller for long paths. It is a power of two, so that rounding errors of the
@@ -268,36 +239,6 @@ std::optional<Invariant> worst_light(const std::vector<LightCheck>& checks) {
 TransportCounts transport_counts(const RenderJob& job, const GroupedSums& sums) {
   const std::vector<Complex> all = sums.total();
   return TransportCounts::of(std::span(all).subspan(job.first_of_counts(), TransportCounts::size));
-}
-
-void bound_errors(Estimate& picture, const PixelGrid& grid) {
-  const std::size_t size = picture.value.size();
-  const std::vector<double> values = real_parts(picture.value);
-  std::vector<double> variances(size), undersampled(size), undersampled_lit(size), lit(size);
-  for (std::size_t i = 0; i < size; ++i) {
-    variances[i] = picture.error[i] * picture.error[i];
-    undersampled[i] = picture.rare[i] ? values[i] : 0;
-    lit[i] = values[i] != 0;
-    undersampled_lit[i] = picture.rare[i] ? lit[i] : 0;
-  }
-  const double of_all = unseen(std::reduce(variances.begin(), variances.end()),
-                               std::reduce(values.begin(), values.end()));
-  if (!std::isfinite(of_all)) return;  // there is only one batch
-  const auto values_around = sums_around(values, grid);
-  const auto variances_around = sums_around(variances, grid);
-  const auto undersampled_around = sums_around(undersampled, grid);
-  const auto undersampled_lit_around = sums_around(undersampled_lit, grid),
-             lit_around = sums_around(lit, grid);
-  for (std::size_t i = 0; i < size; ++i) {
-    const bool is_known = values[i] != 0 && undersampled_around[i] <= values_around[i] / 2 &&
-                          undersampled_lit_around[i] <= lit_around[i] / 2;
-    const bool is_dark = values_around[i] == 0 && of_all > 0;
-    picture.rare[i] = !is_known && !is_dark;
-    if (is_known) continue;
-    const double bound =
-        values_around[i] > 0 ? unseen(variances_around[i], values_around[i]) : of_all;
-    picture.error[i] = std::max(2 * picture.error[i], bound);
-  }
 }
 
 RenderTarget usual_target(const Sensor& sensor) {

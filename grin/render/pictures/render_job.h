@@ -10,29 +10,10 @@
 #include "core/result/invariant.h"
 #include "core/run/runner.h"
 #include "grin/render/methods/render_scene.h"
-#include "grin/render/sensors/pixel_grid.h"
+#include "grin/render/pictures/picture_errors.h"
 #include "grin/render/transport/transport_counts.h"
 
 namespace flatspeckle::grin {
-
-/// An error is undersampled (Estimate::rare) if fewer than this effective number of the 256 groups
-/// contribute to it. With path weights as unequal as in a graded fibre, values from fewer groups
-/// deviate by more than two errors too often.
-inline constexpr double few_of_values = 36;
-/// The corresponding number for pixels of pictures, whose neighbours are considered as well
-/// (bound_errors).
-inline constexpr double few_of_pixels = 12;
-
-/// Recomputes the undersampled flags (Estimate::rare) of a picture [row][column][bin] from
-/// neighbourhoods, and replaces the errors of undersampled entries by upper bounds. An entry is
-/// undersampled if more than half of the entries with light around it are flagged, or if flagged
-/// entries have more than half of the light there. The flag of the entry alone is not used: an
-/// entry that paths of high weight have missed by chance has a small error. Entries that no path
-/// has hit are also undersampled if there is light around them. The error of an undersampled entry
-/// is doubled, but is at least the bound for missed contributions that are as large as those around
-/// it. Entries without light around them are dark: their error is the bound for contributions as
-/// large as those of the whole picture.
-void bound_errors(Estimate& picture, const PixelGrid& grid);
 
 /// A render that is divided into batches. A sample is one light path and one path from each sensor.
 /// The sums of a batch, with imaginary part 0, are: [pixel][TimeBins::sums], sensor after sensor;
