@@ -58,7 +58,7 @@ void scale_to(const std::vector<double>& errors, std::vector<double>& covariance
 
 }  // namespace
 
-std::optional<PowersWithin> powers_within(const Sensor& sensor, std::size_t number,
+std::optional<PowersWithin> powers_within(const Sensor& sensor, const LightCheck& check,
                                           std::size_t first_pixel, const RenderJob& job,
                                           const GroupedSums& sums) {
   const auto* disks = std::get_if<RadialDetector>(&sensor);
@@ -67,7 +67,7 @@ std::optional<PowersWithin> powers_within(const Sensor& sensor, std::size_t numb
   std::vector<double> areas;
   for (int ring = 0; ring < disks->rings; ++ring) areas.push_back(rings.area(ring));
   const Estimator theta = nested_powers(areas, first_pixel, job.bins);
-  PowersWithin found{disks->radii, job.estimate_of(number, sums, theta), {}};
+  PowersWithin found{disks->radii, job.estimate_of(check, sums, theta), {}};
   if (sums.groups() < 2) {
     found.covariance.assign(areas.size() * areas.size(), found.power.error.front());
     return found;

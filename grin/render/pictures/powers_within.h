@@ -16,9 +16,9 @@ struct PowersWithin {
   std::vector<double> covariance;  ///< covariance [disk][disk] of the errors
 };
 
-/// Returns the powers of a sensor that lists radii (RadialDetector), nullopt for others. number:
-/// number of the sensor; first_pixel: its first pixel in the sums of a batch.
-std::optional<PowersWithin> powers_within(const Sensor& sensor, std::size_t number,
+/// Returns the powers of a sensor that lists radii (RadialDetector), nullopt for others. check:
+/// check of the sensor; first_pixel: its first pixel in the sums of a batch.
+std::optional<PowersWithin> powers_within(const Sensor& sensor, const LightCheck& check,
                                           std::size_t first_pixel, const RenderJob& job,
                                           const GroupedSums& sums);
 

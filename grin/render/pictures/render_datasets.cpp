@@ -141,11 +141,11 @@ bool can_be(Termination termination, const RenderScene& scene, const RenderReque
   return termination != Termination::cut || request.max_scatterings > 0;
 }
 
-/// The pixels of one sensor, the number of the sensor and of its first pixel among those of all
-/// sensors, and the layout of their sums.
+/// The pixels of one sensor, the number of the first among the pixels of all sensors, and the
+/// layout of their sums.
 struct Pixels {
   SensorPixels of;
-  std::size_t sensor, first;
+  std::size_t first;
   TimeBins bins;
 
   std::size_t count() const { return static_cast<std::size_t>(of.grid.count()); }
@@ -224,13 +224,13 @@ void add_paths(SensorResult& result, const GroupedSums& sums, const Pixels& pixe
 }
 
 SensorResult sensor_result(const DatasetTable& table, const Pixels& pixels, const RenderJob& job,
-                           const RenderedPicture& all, const GroupedSums& sums) {
-  SensorResult result{
-      .picture = {.bins = own_part(all.bins, pixels, pixels.bins.count),
-                  .steady = own_part(all.steady, pixels, 1),
-                  .before = own_part(all.before, pixels, 1),
-                  .after = own_part(all.after, pixels, 1)},
-      .mean = bounded(sensor_mean(job, sums, pixels.sensor, pixels.first, pixels.of))};
+                           const RenderedPicture& all, const LightCheck& check,
+                           const GroupedSums& sums) {
+  SensorResult result{.picture = {.bins = own_part(all.bins, pixels, pixels.bins.count),
+                                  .steady = own_part(all.steady, pixels, 1),
+                                  .before = own_part(all.before, pixels, 1),
+                                  .after = own_part(all.after, pixels, 1)},
+                      .mean = bounded(sensor_mean(job, sums, check, pixels.first, pixels.of))};
   const bool has_total = has_row(table, "total");
   if (has_total) result.total = scaled(result.mean, pixels.of.area);
   if (pixels.bins.count > 1) add_pulses(result, job, sums, pixels, has_total ? pixels.of.area : 1);
@@ -426,10 +426,11 @@ RenderResult render_result(const RenderScene& scene, const RenderJob& job,
   RenderResult result;
   std::size_t first = 0;
   for (const Sensor& sensor : scene.sensors) {
-    const Pixels pixels{pixels_of(sensor), result.size(), first, job.bins};
-    result.push_back(sensor_result(table_of(sensor), pixels, job, all, sums));
-    widen_errors(checks[result.size() - 1], pixels.of.area, result.back());
-    result.back().within = powers_within(sensor, pixels.sensor, first, job, sums);
+    const LightCheck& check = checks[result.size()];
+    const Pixels pixels{pixels_of(sensor), first, job.bins};
+    result.push_back(sensor_result(table_of(sensor), pixels, job, all, check, sums));
+    widen_errors(check, pixels.of.area, result.back());
+    result.back().within = powers_within(sensor, check, first, job, sums);
     if (job.bins.derivatives > 0 || job.bins.by_field > 0)
       result.back().gradients = power_gradients(sensor, first, job.bins, sums);
     first += pixels.count();

@@ -1,6 +1,7 @@
 #include "grin/render/pictures/render_job.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -148,9 +149,9 @@ double error_of_light(const Estimate& light) {
 
 /// Returns the largest relative error of what the target of a run applies to, over the sensors,
 /// whose units differ.
-double largest_error(const RenderJob& job, const std::vector<Sensor>& kinds,
-                     const std::optional<RenderTarget>& target, const Estimate& picture,
-                     const GroupedSums& sums) {
+double largest_error(const RenderJob& job, const std::vector<LightCheck>& checks,
+                     const std::vector<Sensor>& kinds, const std::optional<RenderTarget>& target,
+                     const Estimate& picture, const GroupedSums& sums) {
   double largest = 0;
   std::size_t first = 0;
   for (std::size_t i = 0; i < kinds.size(); ++i) {
@@ -158,9 +159,10 @@ double largest_error(const RenderJob& job, const std::vector<Sensor>& kinds,
     const auto count = static_cast<std::size_t>(pixels.grid.count());
     const RenderTarget of = target.value_or(usual_target(kinds[i]));
     if (of == RenderTarget::powers) {
-      largest = std::max(largest, largest_error(*powers_within(kinds[i], i, first, job, sums)));
+      largest =
+          std::max(largest, largest_error(*powers_within(kinds[i], checks[i], first, job, sums)));
     } else {
-      Estimate own = of == RenderTarget::total ? sensor_mean(job, sums, i, first, pixels)
+      Estimate own = of == RenderTarget::total ? sensor_mean(job, sums, checks[i], first, pixels)
                                                : part(picture, first, count);
       bound_errors(own, of == RenderTarget::total ? PixelGrid{} : pixels.grid);
       largest = std::max(largest, error_of_light(own));
@@ -217,13 +219,15 @@ std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& su
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t off = count + i, other = 2 * count + i;
     const double mean = all.value[i].real();
-    checks[i] = {{}, mean, all.value[other].real()};
-    checks[i].is_known = is_enough && checks[i].other > 0 && all.rare[other] == 0;
-    checks[i].differs = all.error[off] > rounding * mean;
-    const bool is_undersampled = all.rare[i] != 0 && all.error[i] > mean / 2;
-    if (!checks[i].is_known || is_undersampled) continue;
-    checks[i].off = std::abs(all.value[off].real());
-    checks[i].limit = errors * all.error[off] + all.error[i] + rounding * checks[i].other;
+    LightCheck& check = checks[i];
+    check = {{}, mean, all.value[other].real(), job.first_of_checks() + off};
+    const bool is_known = is_enough && check.other > 0 && all.rare[other] == 0,
+               is_undersampled = all.rare[i] != 0 && all.error[i] > mean / 2;
+    if (is_known && !is_undersampled) {
+      check.off = std::abs(all.value[off].real());
+      check.limit = errors * all.error[off] + all.error[i] + rounding * check.other;
+    }
+    check.is_control = is_known && all.error[off] > rounding * mean && check.holds();
   }
   return checks;
 }
@@ -247,7 +251,7 @@ RenderTarget usual_target(const Sensor& sensor) {
   return pixels_of(sensor).grid.count() > 1 ? RenderTarget::picture : RenderTarget::total;
 }
 
-Estimate sensor_mean(const RenderJob& job, const GroupedSums& sums, std::size_t sensor,
+Estimate sensor_mean(const RenderJob& job, const GroupedSums& sums, const LightCheck& check,
                      std::size_t first_pixel, const SensorPixels& pixels) {
   const auto parts = static_cast<std::size_t>(job.bins.parts());
   const auto stride = static_cast<std::size_t>(job.bins.sums());
@@ -258,7 +262,7 @@ Estimate sensor_mean(const RenderJob& job, const GroupedSums& sums, std::size_t 
         sum += pixels.share(i) * part;
     return std::vector{sum / samples};
   };
-  return job.estimate_of(sensor, sums, mean);
+  return job.estimate_of(check, sums, mean);
 }
 
 std::string sensor_name(const RenderScene& scene, std::size_t sensor) {
@@ -405,12 +409,13 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.batches.relative_error = [=, layout = job, kinds = scene.sensors, cells = scene.map,
                                 steady = steady_picture(job.pictures, scene.bins),
                                 target = request.target](const GroupedSums& sums) {
-    if (!std::ranges::all_of(light_checks(layout, sums), &LightCheck::holds))
+    const std::vector<LightCheck> checks = light_checks(layout, sums);
+    if (!std::ranges::all_of(checks, &LightCheck::holds))
       return std::numeric_limits<double>::infinity();
     const double few = layout.few_of_pictures;
     const Estimate picture = layout.has_control_variate ? layout.estimate(sums, steady, few)
                                                         : jackknife(sums, steady_sums, few);
-    const double of_pictures = largest_error(layout, kinds, target, picture, sums);
+    const double of_pictures = largest_error(layout, checks, kinds, target, picture, sums);
     return cells
                ? std::max(of_pictures, error_of_light(fluence(sums, layout.first_of_map(), *cells)))
                : of_pictures;
@@ -419,26 +424,17 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
 }
 
 Estimate RenderJob::estimate(const GroupedSums& sums, const Estimator& theta, double few) const {
-  return estimate_with({}, sums, theta, few);
+  return has_control_variate ? controlled_jackknife(sums, theta, std::array{sums.size() - 1}, few)
+                             : jackknife(sums, theta, few);
 }
 
-Estimate RenderJob::estimate_of(std::size_t sensor, const GroupedSums& sums,
+Estimate RenderJob::estimate_of(const LightCheck& check, const GroupedSums& sums,
                                 const Estimator& theta) const {
-  const LightCheck check = light_checks(*this, sums)[sensor];
-  const std::optional<std::size_t> difference =
-      check.is_known && check.differs && check.holds()
-          ? std::optional(first_of_checks() + sensors + sensor)
-          : std::nullopt;
-  return estimate_with(difference, sums, theta, few_of_values);
-}
-
-Estimate RenderJob::estimate_with(std::optional<std::size_t> control, const GroupedSums& sums,
-                                  const Estimator& theta, double few) const {
+  if (!check.is_control) return estimate(sums, theta);
   std::vector<std::size_t> controls;
   if (has_control_variate) controls.push_back(sums.size() - 1);
-  if (control) controls.push_back(*control);
-  return controls.empty() ? jackknife(sums, theta, few)
-                          : controlled_jackknife(sums, theta, controls, few);
+  controls.push_back(check.difference);
+  return controlled_jackknife(sums, theta, controls, few_of_values);
 }
 
 RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {

@@ -15,6 +15,8 @@
 
 namespace flatspeckle::grin {
 
+struct LightCheck;
+
 /// A render that is divided into batches. A sample is one light path and one path from each sensor.
 /// The sums of a batch, with imaginary part 0, are: [pixel][TimeBins::sums], sensor after sensor;
 /// then [Termination], if light paths are traced to their ends; then TransportCounts; then the
@@ -39,12 +41,9 @@ struct RenderJob {
   /// Estimates means or powers of one sensor. Where light paths hit the sensor often enough, the
   /// difference between the two estimates of its mean (LightCheck) is a further control variate, so
   /// that the better of the two determines the error.
-  Estimate estimate_of(std::size_t sensor, const GroupedSums& sums, const Estimator& theta) const;
+  Estimate estimate_of(const LightCheck& check, const GroupedSums& sums,
+                       const Estimator& theta) const;
   double few_of_pictures = few_of_values;
-
- private:
-  Estimate estimate_with(std::optional<std::size_t> control, const GroupedSums& sums,
-                         const Estimator& theta, double few) const;
 };
 
 /// Counters of all batches in the sums, including those of resumed runs.
@@ -57,8 +56,10 @@ TransportCounts transport_counts(const RenderJob& job, const GroupedSums& sums);
 /// Both are 0 if too few paths hit.
 struct LightCheck : Invariant {
   double mean = 0, other = 0;
-  /// Whether enough paths hit the sensor; whether the two means differ by more than rounding.
-  bool is_known = false, differs = false;
+  std::size_t difference = 0;  ///< index of the difference in the sums of a batch
+  /// Whether the difference is a control variate: enough paths hit the sensor, and the two means
+  /// agree but differ by more than rounding.
+  bool is_control = false;
 };
 /// Returns the check of each sensor.
 std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& sums);
@@ -71,7 +72,7 @@ std::optional<Invariant> worst_light(const std::vector<LightCheck>& checks);
 RenderTarget usual_target(const Sensor& sensor);
 
 /// Returns the mean over the pixels of a sensor. first_pixel: its first pixel in the sums.
-Estimate sensor_mean(const RenderJob& job, const GroupedSums& sums, std::size_t sensor,
+Estimate sensor_mean(const RenderJob& job, const GroupedSums& sums, const LightCheck& check,
                      std::size_t first_pixel, const SensorPixels& pixels);
 
 /// Throws InputError for lights and sensors that do not fit the stage, for media in which paths

@@ -20,7 +20,8 @@ class ScrambledSobol {
   /// Returns point `number`, in (0, 1)^4.
   std::array<double, 4> point(std::uint64_t number) const {
     // the order of the points is scrambled too, so that points of two sequences do not go together
-    const std::uint32_t index = scrambled(reversed(static_cast<std::uint32_t>(number)), 0);
+    const std::uint32_t index =
+        reversed(scrambled(reversed(static_cast<std::uint32_t>(number)), 0));
     std::array<double, 4> point;
     for (std::uint32_t axis = 0; axis < 4; ++axis)
       point[axis] = (reversed(scrambled(reversed_sobol(index, axis), axis + 1)) + 0.5) * 0x1p-32;
@@ -82,12 +83,10 @@ class ScrambledSobol {
     }
     return all;
   }
-  /// Returns a coordinate of Sobol point `index`, with bits in reversed order. `index` has its bits
-  /// in reversed order too.
+  /// Returns a coordinate of Sobol point `index`, with bits in reversed order.
   static std::uint32_t reversed_sobol(std::uint32_t index, std::uint32_t axis) {
     static constexpr Directions v = directions();
     std::uint32_t x = 0;
-    index = reversed(index);
     for (int bit = 0; index != 0; index >>= 1, ++bit)
       if (index & 1u) x ^= v[axis][bit];
     return x;

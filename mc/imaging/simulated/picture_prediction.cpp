@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/numbers/fourier.h"
+#include "core/numbers/normal.h"
 #include "core/run/runner.h"
 #include "mc/imaging/imaging.h"
 #include "mc/paths/dynamics/brownian.h"
@@ -245,9 +246,7 @@ class FrameModel {
   /// Draws one part of a circular Gaussian field of mean intensity 1, times sqrt(2).
   std::vector<double> gaussian_field(RandomStream& random) const {
     std::vector<double> values(transform_.rows() * transform_.columns());
-    for (double& value : values)
-      value = std::sqrt(-2 * std::log(random.uniform())) *
-              std::cos(2 * std::numbers::pi * random.uniform());
+    for (double& value : values) value = standard_normal(random);
     filter(values, field_);
     return values;
   }

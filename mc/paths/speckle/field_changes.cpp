@@ -2,20 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
+#include "core/numbers/normal.h"
+
 namespace flatspeckle::mc {
-
-namespace {
-
-/// Samples a normal variable of variance 1 (Box and Muller).
-double standard_normal(RandomStream& random) {
-  const double radius = std::sqrt(-2 * std::log(random.uniform()));
-  return radius * std::cos(2 * std::numbers::pi * random.uniform());
-}
-
-}  // namespace
 
 void ChangeTally::scattering(Vec x, Vec from, Vec to) {
   turn += motion->diffusion(x) * one_minus_cosine(from, to);

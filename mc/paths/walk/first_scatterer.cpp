@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "core/numbers/normal.h"
 #include "grin/media/scattering/free_flight.h"
 #include "grin/media/scattering/start_directions.h"
 #include "mc/paths/bent/graded_endpoints.h"
@@ -68,11 +69,6 @@ double half_extent(const Domain& box, Vec w) {
 double gaussian_share(double low, double high, double sigma) {
   const double scale = 1 / (std::numbers::sqrt2 * sigma);
   return (std::erf(high * scale) - std::erf(low * scale)) / 2;
-}
-
-double sample_gaussian(RandomStream& random) {
-  const double radius = std::sqrt(-2 * std::log(random.uniform()));
-  return radius * std::cos(2 * pi * random.uniform());
 }
 
 /// Whether two point sources or beams are so close that paths from one also sample the other well.
@@ -250,7 +246,7 @@ double BeamRays::sample(const Across& of, RandomStream& random) const {
   constexpr double little = 0.2;
   while (true) {
     if (of.share > little) {
-      const double across = sigma_ * sample_gaussian(random);
+      const double across = sigma_ * standard_normal(random);
       if (across > of.low && across < of.high) return across;
       continue;
     }
