@@ -222,7 +222,8 @@ struct ExportValues {
 void add_keys(Keys& keys, ExportValues& values) {
   keys.add("to", values.to,
            "File to write instead of CSV; its ending is the format. .npy: numbers of one dataset; "
-           ".pfm: a picture, 32-bit floats; .png: a picture for display; .vtk or .npy of "
+           ".pfm: a picture, 32-bit floats; .png: a picture for display; .tif: a picture or "
+           "several frames, 32-bit floats, which recover and other programs read; .vtk or .npy of "
            "ball_spline, radial_spline or excess: the index of a designed field");
   keys.add("nodes", values.nodes,
            "Number of points along each axis at which the index of a designed field is written")

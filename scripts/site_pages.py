@@ -19,7 +19,7 @@ DOCS = ROOT / "docs"
 # Pages of the sidebar, in this order; a test checks that every guide is included.
 CHAPTERS = {
     "First": ["start_speckle", "start_graphics", "start_tissue", "start_sound", "tour", "questions", "tutorials", "gallery"],
-    "Speckle": ["monte_carlo", "exact_solver", "media", "dynamics", "sweeps", "experiments", "imaging", "pictures", "fit"],
+    "Speckle": ["monte_carlo", "exact_solver", "media", "dynamics", "tissue", "sweeps", "experiments", "imaging", "pictures", "fit"],
     "Rays and light": ["rays", "design", "render"],
     "Reference": ["commands", "scenes", "keys", "format", "conventions", "python", "library"],
     "About": ["report/report", "development", "contributing", "changelog", "theory"],

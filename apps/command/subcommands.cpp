@@ -6,7 +6,9 @@ namespace flatspeckle::apps {
 
 std::unique_ptr<Experiment> solve_experiment();
 std::unique_ptr<Experiment> covariance_experiment();
+std::unique_ptr<Experiment> matrix_experiment();
 std::unique_ptr<Experiment> flux_experiment();
+std::unique_ptr<Experiment> reflectance_experiment();
 std::unique_ptr<Experiment> field_experiment();
 std::unique_ptr<Experiment> image_experiment();
 std::unique_ptr<Experiment> trace_experiment();
@@ -37,8 +39,16 @@ std::span<const SubcommandEntry> subcommands() {
        "Covariance and intensity of the speckle field of a scene", covariance_experiment},
       {"validate", "Monte Carlo and a reference method on one scene, compared entry by entry",
        validate},
+      {"matrix", "transmission matrices of random slabs with a period: eigenchannels, correlations",
+       nullptr,
+       "Transmission matrices of random slabs with a period: eigenchannels, conductance, tilt "
+       "correlations and focusing",
+       matrix_experiment},
       {"flux", "reflected, transmitted and absorbed power, intensity only", nullptr,
        "Reflected, transmitted and absorbed power of a scene: intensity only", flux_experiment},
+      {"reflectance", "diffuse light at distances from a beam, and its field correlation", nullptr,
+       "Diffuse reflectance of layers at distances from a beam, and its field correlation",
+       reflectance_experiment},
       {"sweep", "memory-effect curves over medium parameters; with --of any result over any keys",
        sweep, nullptr, nullptr, ""},
       {"merge", "combine the shards of a sweep into one result", merge},

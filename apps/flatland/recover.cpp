@@ -62,7 +62,8 @@ void add_keys(Keys& keys, RecoverKeys& values) {
       .positive();
   mc::add_average_key(keys, values.average);
   keys.add("recovery", values.recovery,
-           "search: recover points; phases: also retrieve a picture that has the frame's "
+           "search: recover points, from the peaks of their pairs in the autocorrelation; phases: "
+           "also retrieve a picture that has the frame's "
            "autocorrelation, by hybrid input-output and error reduction; sources: locate blinking "
            "points from all frames of one medium, by non-negative factorisation; bispectrum: "
            "retrieve "
@@ -245,6 +246,19 @@ Make sources_of(const Keys& keys, const RecoverKeys& values, const Frames& read)
   };
 }
 
+void print_points(const std::vector<mc::RecoveredPicture>& all) {
+  std::printf("%-8s %-9s %-8s %-10s %s\n", "frame", "contrast", "grain", "explained",
+              "points (x, y in pixels; rotated by 180 degrees or not)");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto& [statistics, retrieved, points] = all[i];
+    std::printf("%-8zu %-9.3f %-8.2f %-10.3f", i, statistics.contrast, statistics.grain,
+                points.explained);
+    for (std::size_t n = 0; n < points.x.size(); ++n)
+      std::printf(" (%.1f, %.1f)", points.x[n], points.y[n]);
+    std::puts("");
+  }
+}
+
 void print_pictures(const std::vector<mc::RecoveredPicture>& all) {
   std::printf("%-8s %-9s %-8s %-10s %-9s %s\n", "frame", "contrast", "grain", "noise", "residual",
               "agreement of starts");
@@ -254,12 +268,12 @@ void print_pictures(const std::vector<mc::RecoveredPicture>& all) {
                 all[i].retrieved.agreement);
 }
 
-/// Returns the function that retrieves a picture from each frame, and writes the result.
+/// Returns the function that retrieves a picture or points from each frame, and writes the result.
 Make pictures_of(const Keys& keys, const RecoverKeys& values, const Frames& frames) {
   const bool oriented = keys.read(values.recovery) == "bispectrum";
-  if (values.recovery == "search")
-    throw InputError("recovery", values.recovery,
-                     "requires frames of one line; pictures take phases, bispectrum or sources");
+  const std::size_t sought =
+      values.recovery == "search" ? static_cast<std::size_t>(keys.required(values.points)) : 0;
+  const double resolution = sought > 0 ? keys.read(values.resolution) : 0;
   const std::size_t pixels = std::min(frames.rows, frames.columns);
   mc::CameraNoise noise;
   read_camera_keys(keys, values.noise, noise);
@@ -269,7 +283,7 @@ Make pictures_of(const Keys& keys, const RecoverKeys& values, const Frames& fram
   if (oriented) {  // it has one start
     task.iterations = keys.read(values.phases.iterations);
     task.sparsity = keys.read(values.phases.sparsity);
-  } else {
+  } else if (sought == 0) {
     task = mc::phase_task(keys, values.phases);
   }
   return [=](ResultFile& file) {
@@ -277,16 +291,22 @@ Make pictures_of(const Keys& keys, const RecoverKeys& values, const Frames& fram
     std::vector<std::string> names;
     for (std::size_t i = 0; i < frames.count(); i += average) {
       auto statistics = mc::picture_statistics(frames, i, average, lags, noise);
-      auto retrieved = oriented
-                           ? mc::oriented_picture(frames, i, average, statistics, lags, task)
-                           : mc::retrieved_picture(statistics.autocorrelation, {lags, lags}, task);
-      all.push_back({std::move(statistics), std::move(retrieved)});
+      mc::RecoveredPicture one;
+      if (sought > 0)
+        one.points = mc::picture_points(statistics, lags, sought, resolution * statistics.grain);
+      else
+        one.retrieved = oriented
+                            ? mc::oriented_picture(frames, i, average, statistics, lags, task)
+                            : mc::retrieved_picture(statistics.autocorrelation, {lags, lags}, task);
+      one.statistics = std::move(statistics);
+      all.push_back(std::move(one));
       names.push_back(names_of(frames)[i]);
     }
-    mc::write_pictures(file, names, lags, all);
-    print_pictures(all);
-    return Made{oriented ? "bispectrum of windows of each frame, error reduction"
-                         : "autocorrelation of each frame, phase retrieval",
+    mc::write_pictures(file, names, lags, sought, all);
+    sought > 0 ? print_points(all) : print_pictures(all);
+    return Made{sought > 0 ? "autocorrelation of each frame, search for points"
+                : oriented ? "bispectrum of windows of each frame, error reduction"
+                           : "autocorrelation of each frame, phase retrieval",
                 static_cast<double>(all.size())};
   };
 }

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <iostream>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <sstream>
@@ -12,6 +11,7 @@
 #include "apps/command/experiment.h"
 #include "apps/flatland/map_settings.h"
 #include "apps/flatland/own_places.h"
+#include "apps/flatland/solver_keys.h"
 #include "apps/flatland/space_solve.h"
 #include "apps/results/wavelengths.h"
 #include "core/error.h"
@@ -23,12 +23,14 @@
 #include "core/run/interrupt.h"
 #include "core/run/progress.h"
 #include "core/run/stopwatch.h"
+#include "flatland/scene/periodic_placement.h"
 #include "flatland/scene/scene.h"
 #include "flatland/scene/scene_datasets.h"
 #include "wave_solver/clusters/cluster_solution.h"
 #include "wave_solver/graded/graded_fields.h"
 #include "wave_solver/layered/layer_fields.h"
 #include "wave_solver/maps/field_map.h"
+#include "wave_solver/periodic/matrix_job.h"
 #include "wave_solver/solutions/wave_solution.h"
 
 namespace flatspeckle::apps {
@@ -36,19 +38,13 @@ namespace flatspeckle::apps {
 namespace {
 
 /// Values of the keys of the subcommand `solve`.
-struct SolveKeys {
+struct SolveKeys : SolverKeys {
   SceneSpec spec;
   MapSettings map;
   SpectrumSettings spectrum;
-  double tolerance = wave::SolveOptions().tolerance;
-  std::string solver = "auto", cluster;
-  std::optional<double> t_matrix_gap;
+  std::string cluster;
+  std::optional<double> t_matrix_gap, period;
 };
-
-const std::map<std::string, wave::Method> solvers = {{"auto", wave::Method::automatic},
-                                                     {"dense", wave::Method::dense},
-                                                     {"fast", wave::Method::fast},
-                                                     {"krylov", wave::Method::krylov}};
 
 void add_solve_keys(Keys& keys, SolveKeys& values) {
   add_scatterer_keys(keys, values.spec);
@@ -66,12 +62,14 @@ void add_solve_keys(Keys& keys, SolveKeys& values) {
   add_space_solve_keys(keys, values.spec);
   add_map_keys(keys, values.map);
   add_spectrum_keys(keys, values.spectrum);
-  keys.group("Solver");
-  keys.add("tolerance", values.tolerance, "Relative accuracy of the fields").between(0, 1);
-  keys.add(
-          "solver", values.solver,
-          "fast: direct, for thousands of unknowns or more; krylov: iterative, for weak scattering")
-      .one_of({"auto", "dense", "fast", "krylov"});
+  add_solver_keys(keys, values);
+  keys.group("Periodic cell");
+  keys.add("period", values.period,
+           "The placement repeats along x with this period; the result is the scattering matrix "
+           "between its channels")
+      .positive()
+      .unit("length");
+  add_period_phase_key(keys, values);
   keys.group("Clusters");
   keys.add("t_matrix_gap", values.t_matrix_gap,
            "Also write the T-matrix of the whole placement, for sources at least this far from the "
@@ -168,7 +166,7 @@ wave::WaveSolution solved(const SolveKeys& values, const Placement& placement, d
                           const std::optional<wave::MapGrid>& grid,
                           const std::vector<Vec>& sensors) {
   wave::SolveOptions options{.tolerance = values.tolerance, .sensors = sensors};
-  options.method = solvers.at(values.solver);
+  options.method = solver_method(values.solver);
   if (grid)
     for (const Vec& point : wave::map_sensors(*grid, placement)) options.sensors.push_back(point);
   return wave::solve(placement, 2 * std::numbers::pi / wavelength, values.spec.light_angles,
@@ -266,6 +264,7 @@ class SolveExperiment : public OneShot {
     if (keys.read(values_.spec.medium_index)) return read_layered(keys);
     keys.read(values_.tolerance);
     keys.read(values_.solver);
+    if (keys.read(values_.period)) return read_periodic(keys);
     if (!values_.spec.near_sources.empty())
       throw InputError(
           "near_sources", values_.spec.near_sources,
@@ -309,6 +308,23 @@ class SolveExperiment : public OneShot {
       require_phase("near_sensors", sensor, 2 * std::numbers::pi / shortest);
     }
     if (wavelengths_->index) require_index_from_table(spec, placement_);
+  }
+
+  void read_periodic(const Keys& keys) {
+    const SceneSpec& spec = values_.spec;
+    keys.read(values_.period_phase);
+    keys.read(spec.wavelength);
+    if (has_own_places(spec)) {
+      placement_ = placement_of_file(keys, spec);
+      return;
+    }
+    scene_ = make_scene(keys, spec);
+    if (scene_->domain.kind != Domain::Kind::box || scene_->domain.width != *values_.period)
+      throw InputError("period", *values_.period,
+                       "must be the width of the box in which the placement is drawn");
+    if (!scene_->medium.has_scatterers) refuse_bulk(spec);
+    RandomStream random(seed(), static_cast<std::uint64_t>(Stream::placement), 0);
+    placement_ = draw_periodic_placement(*scene_, random);
   }
 
   void read_space(const Keys& keys) {
@@ -386,12 +402,13 @@ class SolveExperiment : public OneShot {
     if (graded_) return make_graded(file, prints);
     if (layered_) return make_layered(file, prints);
     if (cluster_) return make_clusters(file, prints);
+    if (values_.period) return make_periodic(file, prints);
     return wavelengths_->values.empty() ? make_fields(file, prints) : make_spectrum(file, prints);
   }
 
   Made make_space(ResultFile& file, bool prints) const {
     wave::SolveOptions options{.tolerance = values_.tolerance, .sensors = {}};
-    options.method = solvers.at(values_.solver);
+    options.method = solver_method(values_.solver);
     const std::string plan = write_space_solution(
         file, placement_, 2 * std::numbers::pi / values_.spec.wavelength, *space_, options, prints);
     write_scene(file);
@@ -430,7 +447,7 @@ class SolveExperiment : public OneShot {
   Made make_clusters(ResultFile& file, bool prints) const {
     const wave::ClusterSolution solution(
         cluster_->t_matrix, places_, values_.spec.light_angles,
-        {values_.tolerance, sensors_.points, true, solvers.at(values_.solver)});
+        {values_.tolerance, sensors_.points, true, solver_method(values_.solver)});
     wave::write_solution(file, solution, sensors_.angles, sensors_.points);
     const double wavelength = 2 * std::numbers::pi / cluster_->t_matrix.k;
     ResultGroup(file, scene_table).attribute("wavelength", wavelength);
@@ -439,6 +456,24 @@ class SolveExperiment : public OneShot {
          << " unknowns: " << solution.method();
     if (prints)
       std::printf("%s\nresidual %.1e\n", plan.str().c_str(), solution.diagnosis().residual);
+    return Made{plan.str(), 1};
+  }
+
+  Made make_periodic(ResultFile& file, bool prints) const {
+    wave::SolveOptions options{.tolerance = values_.tolerance, .sensors = {}};
+    options.method = solver_method(values_.solver);
+    const auto found =
+        wave::scattering_matrix(placement_, 2 * std::numbers::pi / values_.spec.wavelength,
+                                {*values_.period, values_.period_phase}, options);
+    wave::write_scattering_matrix(file, found);
+    wave::write_placement(file, placement_);
+    write_scene(file);
+    std::ostringstream plan;
+    plan << placement_.size() << " scatterers a period, " << found.channels.size()
+         << " channels on each side, " << found.unknowns << " unknowns: " << found.method;
+    if (prints)
+      std::printf("%s\nresidual %.1e; errors of power %.1e, of reciprocity %.1e\n",
+                  plan.str().c_str(), found.residual, found.power.off, found.reciprocity.off);
     return Made{plan.str(), 1};
   }
 

@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <memory>
 #include <png.h>
 #include <sstream>
+#include <tiffio.h>
 
 #include "core/error.h"
 
@@ -86,6 +88,29 @@ void write_png(const std::filesystem::path& path, const GreyPicture& picture) {
   image.format = PNG_FORMAT_GRAY;
   if (png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), 0, nullptr) == 0)
     throw IoError("cannot write " + path.string() + ": " + image.message);
+}
+
+void write_tiff(const std::filesystem::path& path, const NumberArray& array) {
+  const std::size_t columns = array.shape.back(), rows = array.shape[array.shape.size() - 2];
+  std::vector<float> pixels(array.values.begin(), array.values.end());
+  TIFFSetErrorHandler(nullptr);
+  const std::unique_ptr<TIFF, void (*)(TIFF*)> file(TIFFOpen(path.c_str(), "w"), TIFFClose);
+  bool written = file != nullptr;
+  for (std::size_t row = 0; written && row * columns < pixels.size(); ++row) {
+    if (row % rows == 0) {
+      TIFFSetField(file.get(), TIFFTAG_IMAGEWIDTH, static_cast<std::uint32_t>(columns));
+      TIFFSetField(file.get(), TIFFTAG_IMAGELENGTH, static_cast<std::uint32_t>(rows));
+      TIFFSetField(file.get(), TIFFTAG_BITSPERSAMPLE, 32);
+      TIFFSetField(file.get(), TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
+      TIFFSetField(file.get(), TIFFTAG_SAMPLESPERPIXEL, 1);
+      TIFFSetField(file.get(), TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+      TIFFSetField(file.get(), TIFFTAG_ROWSPERSTRIP, static_cast<std::uint32_t>(rows));
+    }
+    written = TIFFWriteScanline(file.get(), &pixels[row * columns],
+                                static_cast<std::uint32_t>(row % rows)) == 1;
+    if (row % rows == rows - 1) written = written && TIFFWriteDirectory(file.get()) == 1;
+  }
+  if (!written) throw IoError("cannot write " + path.string());
 }
 
 void write_vtk(const std::filesystem::path& path, const std::string& name, const NumberArray& array,

@@ -28,6 +28,8 @@ void write_pfm(const std::filesystem::path& path, const GreyPicture& picture);
 /// PNG of 8 bits for display. Values are divided by the one that 99.5 % of the pixels do not
 /// exceed, cut off at 1, and raised to the power 1/2.2.
 void write_png(const std::filesystem::path& path, const GreyPicture& picture);
+/// TIFF of 32-bit floats: one page for each frame. array: [row][column] or [frame][row][column].
+void write_tiff(const std::filesystem::path& path, const NumberArray& array);
 /// Legacy VTK file of structured points. array: [x][y][z]; origin, spacing: three numbers each.
 void write_vtk(const std::filesystem::path& path, const std::string& name, const NumberArray& array,
                const std::vector<double>& origin, const std::vector<double>& spacing);

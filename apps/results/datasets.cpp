@@ -14,13 +14,13 @@ extern const DatasetTable provenance_table, scene_table, layers_table, density_t
 
 namespace wave {
 extern const DatasetTable solution_table, space_solution_table, spectrum_table, cluster_table,
-    cluster_solution_table, graded_table, map_table;
+    cluster_solution_table, graded_table, map_table, matrix_table, scattering_matrix_table;
 }
 
 namespace mc {
 extern const DatasetTable diffusion_table, mean_table, intensity_table, full_table, pairs_table,
     moves_table, reflection_theory_table, gradient_table, delays_table, contrast_table,
-    frequency_table, numerical_table, flux_table, field_table, imaging_table, picture_table,
+    frequency_table, numerical_table, flux_table, distance_table, field_table, imaging_table, picture_table,
     blinking_table, simulated_picture_table, recovery_table, recovered_picture_table,
     contrast_map_table, separation_table, fit_table, plan_table;
 }
@@ -123,7 +123,10 @@ std::vector<const DatasetTable*> all_tables() {
                                              &wave::cluster_solution_table,
                                              &wave::graded_table,
                                              &wave::map_table,
+                                             &wave::scattering_matrix_table,
+                                             &wave::matrix_table,
                                              &mc::flux_table,
+                                             &mc::distance_table,
                                              &mc::field_table,
                                              &mc::imaging_table,
                                              &mc::picture_table,

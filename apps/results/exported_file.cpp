@@ -75,6 +75,14 @@ GreyPicture picture_of(const ResultReader& file, const std::string& dataset) {
   return picture;
 }
 
+/// Returns a dataset of two axes, or of three for several frames.
+NumberArray frames_of(const ResultReader& file, const std::string& dataset) {
+  NumberArray array = array_of(file, dataset);
+  if ((array.shape.size() != 2 && array.shape.size() != 3) || array.values.empty())
+    throw InputError("export", dataset, "must have two or three axes, to be written as frames");
+  return array;
+}
+
 std::string text_of(const grin::Vec3& x) {
   return number_text({x[0], x[1], x[2]});
 }
@@ -111,11 +119,13 @@ std::string export_file(const std::filesystem::path& result, const std::string& 
     write_pfm(to, picture_of(file, dataset));
   } else if (ending == ".png") {
     write_png(to, picture_of(file, dataset));
+  } else if (ending == ".tif" || ending == ".tiff") {
+    write_tiff(to, frames_of(file, dataset));
   } else if (ending == ".vtk") {
     throw InputError("to", to.string(),
                      "is for fields of design: ball_spline, radial_spline, excess");
   } else {
-    throw InputError("to", to.string(), "must end with .npy, .pfm, .png or .vtk");
+    throw InputError("to", to.string(), "must end with .npy, .pfm, .png, .tif, .tiff or .vtk");
   }
   return to.string() + ": " + dataset;
 }

@@ -6,8 +6,8 @@
 
 namespace flatspeckle::apps {
 
-/// Writes a dataset of a result in the format that the ending of `to` names: .npy, .pfm, .png or
-/// .vtk. The datasets ball_spline, radial_spline and excess of `design` are written as the index at
+/// Writes a dataset of a result in the format that the ending of `to` names: .npy, .pfm, .png,
+/// .tif (or .tiff) or .vtk. The datasets ball_spline, radial_spline and excess of `design` are written as the index at
 /// `nodes` points along each axis. Returns a line that describes the file. Throws InputError for a
 /// dataset that the format cannot contain, and IoError.
 std::string export_file(const std::filesystem::path& result, const std::string& dataset,

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <numeric>
 
 #include "core/contract.h"
 #include "core/error.h"
@@ -11,35 +13,91 @@ namespace flatspeckle {
 
 namespace {
 
-/// Returns, for each entry of theta, the coefficient by which the mean of the control variate is
-/// subtracted; 0 if the control variate is not used for the entry.
-std::vector<double> coefficients(const GroupedSums& sums, const Estimator& theta,
-                                 std::size_t control) {
-  // Least fraction of the variance that the control variate must explain: ten times the mean
-  // fraction for a variable that is independent of theta.
+/// A linear combination of control variates that is orthogonal to others over the groups.
+struct OrthogonalControl {
+  std::vector<double> factors;     ///< by control
+  std::vector<double> deviations;  ///< of the means of the groups from the mean of all
+};
+
+/// Returns the sum of products over the groups, weighted by their numbers of samples.
+double product(const GroupedSums& sums, std::span<const double> a, std::span<const double> b) {
+  double sum = 0;
+  for (std::size_t group = 0; group < sums.groups(); ++group)
+    sum += sums.group_samples(group) * a[group] * b[group];
+  return sum;
+}
+
+/// Orthogonalises control variates in their order (modified Gram-Schmidt). Those that are constant,
+/// or are a linear combination of earlier ones to rounding, are left out, as are those whose mean
+/// is not 0 within its error: samples of high values are missing.
+std::vector<OrthogonalControl> orthogonal(const GroupedSums& sums,
+                                          std::span<const std::size_t> controls) {
+  constexpr double smallest = 1e-20;  // of the sum of squares that may be left
+  const std::vector<Complex> total = sums.total();
+  std::vector<OrthogonalControl> found;
+  for (std::size_t i = 0; i < controls.size(); ++i) {
+    OrthogonalControl control{std::vector<double>(controls.size()), {}};
+    control.factors[i] = 1;
+    const double mean = total[controls[i]].real() / sums.total_samples();
+    for (std::size_t group = 0; group < sums.groups(); ++group)
+      control.deviations.push_back(
+          sums.group_sums(group)[controls[i]].real() / sums.group_samples(group) - mean);
+    const double whole = product(sums, control.deviations, control.deviations);
+    const double error = std::sqrt(whole / static_cast<double>(sums.groups()) / sums.total_samples());
+    if (std::abs(mean) > outlier_errors(sums.groups()) * error) continue;
+    for (const OrthogonalControl& other : found) {
+      const double share = product(sums, control.deviations, other.deviations) /
+                           product(sums, other.deviations, other.deviations);
+      for (std::size_t k = 0; k < controls.size(); ++k)
+        control.factors[k] -= share * other.factors[k];
+      for (std::size_t group = 0; group < sums.groups(); ++group)
+        control.deviations[group] -= share * other.deviations[group];
+    }
+    if (product(sums, control.deviations, control.deviations) > smallest * whole)
+      found.push_back(std::move(control));
+  }
+  return found;
+}
+
+/// Returns the factors by which the means of the control variates are subtracted from the entries
+/// of theta, by [control][entry]; 0 for those that are not used.
+std::vector<std::vector<double>> control_factors(const GroupedSums& sums, const Estimator& theta,
+                                                 std::span<const std::size_t> controls) {
+  // Least fraction of the variance that a control variate must explain: ten times the mean fraction
+  // for a variable that is independent of theta.
   const double least_fraction = 10 / static_cast<double>(sums.groups());
-  const double samples = sums.total_samples();
-  const std::vector<Complex> total = sums.total(), mean = theta(samples, total);
-  const double control_mean = total[control].real() / samples;
-  std::vector<double> shared(mean.size()), square(mean.size());
-  double control_square = 0;
+  const std::vector<Complex> mean = theta(sums.total_samples(), sums.total());
+  const std::vector<OrthogonalControl> found = orthogonal(sums, controls);
+  std::vector<std::vector<double>> shared(found.size(), std::vector<double>(mean.size()));
+  std::vector<double> left(mean.size());
   for (std::size_t group = 0; group < sums.groups(); ++group) {
     const double size = sums.group_samples(group);
-    const auto of_group = sums.group_sums(group);
-    const std::vector<Complex> value = theta(size, of_group);
-    const double off = of_group[control].real() / size - control_mean;
-    control_square += size * off * off;
+    const auto value = theta(size, sums.group_sums(group));
     for (std::size_t i = 0; i < mean.size(); ++i) {
       const double deviation = (value[i] - mean[i]).real();
-      shared[i] += size * deviation * off;
-      square[i] += size * deviation * deviation;
+      left[i] += size * deviation * deviation;
+      for (std::size_t k = 0; k < found.size(); ++k)
+        shared[k][i] += size * deviation * found[k].deviations[group];
     }
   }
+  std::vector<std::vector<double>> factors(controls.size(), std::vector<double>(mean.size()));
+  std::vector<double> square;
+  for (const OrthogonalControl& control : found)
+    square.push_back(product(sums, control.deviations, control.deviations));
+  std::vector<std::size_t> order(found.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
   for (std::size_t i = 0; i < mean.size(); ++i) {
-    const bool is_correlated = shared[i] * shared[i] > least_fraction * square[i] * control_square;
-    shared[i] = is_correlated ? shared[i] / control_square : 0;
+    const auto explained = [&](std::size_t k) { return shared[k][i] * shared[k][i] / square[k]; };
+    // those that explain little may be clear once the others have reduced the variance
+    std::ranges::sort(order, std::greater(), explained);
+    for (const std::size_t k : order) {
+      if (!(explained(k) > least_fraction * left[i])) break;
+      left[i] -= explained(k);
+      for (std::size_t c = 0; c < controls.size(); ++c)
+        factors[c][i] += shared[k][i] / square[k] * found[k].factors[c];
+    }
   }
-  return shared;
+  return factors;
 }
 
 std::size_t most_groups(std::size_t size) {
@@ -76,15 +134,15 @@ Estimate controlled_jackknife(const GroupedSums& sums, Estimator theta,
                               std::span<const std::size_t> controls, double few) {
   constexpr std::size_t many = 32;
   if (sums.groups() < many) return jackknife(sums, theta, few);
-  for (const std::size_t control : controls)
-    theta = [before = theta, of_control = coefficients(sums, theta, control), control](
-                double samples, std::span<const Complex> all) {
-      std::vector<Complex> value = before(samples, all);
+  const auto factors = control_factors(sums, theta, controls);
+  const auto controlled = [&](double samples, std::span<const Complex> all) {
+    std::vector<Complex> value = theta(samples, all);
+    for (std::size_t k = 0; k < controls.size(); ++k)
       for (std::size_t i = 0; i < value.size(); ++i)
-        value[i] -= of_control[i] * all[control] / samples;
-      return value;
-    };
-  return jackknife(sums, theta, few);
+        value[i] -= factors[k][i] * all[controls[k]] / samples;
+    return value;
+  };
+  return jackknife(sums, controlled, few);
 }
 
 GroupedSums::GroupedSums(std::size_t size) : size_(size), most_groups_(most_groups(size)) {

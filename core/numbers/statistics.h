@@ -117,9 +117,9 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta, double few);
 Estimate jackknife(const GroupedSums& sums, const EntrySums& of, double few = few_groups);
 
 /// Computes the jackknife of a theta that is linear in the sums, with control variates: the sums of
-/// indices `controls`, whose expectations are 0, one after the other. Their coefficients follow
-/// from regressions over the groups, whose bias is of the order of 1 / samples. A control variate
-/// is used only if there are at least 32 groups and it clearly reduces the variance.
+/// indices `controls`, whose expectations are 0. Their coefficients follow from a regression over
+/// the groups, whose bias is of the order of 1 / samples. A control variate is used only if there
+/// are at least 32 groups and what it adds to the others clearly reduces the variance.
 Estimate controlled_jackknife(const GroupedSums& sums, Estimator theta,
                               std::span<const std::size_t> controls, double few = few_groups);
 

@@ -35,17 +35,18 @@ const std::vector<Column> scatterer_columns = {{"g", &SceneSpec::g},
                                                {"medium_index", &SceneSpec::medium_index}};
 
 std::vector<std::string> all_columns() {
-  std::vector<std::string> names = {"thickness", "index_re", "index_im", "diffusion", "flow"};
+  std::vector<std::string> names = {"thickness", "index_re", "index_im", "diffusion",
+                                    "flow",      "mu_s",     "mu_a"};
   for (const auto* columns : {&densities, &scatterer_columns})
     for (const Column& column : *columns) names.emplace_back(column.name);
   return names;
 }
 
 /// File that the key `layers` names, with one line for each layer; the first layer begins at z = 0.
-/// Its columns are the thickness, one of optical_depth, mean_free_path and density, and those
-/// properties of the scatterers that differ between layers (g, albedo, radius, index_re and
-/// index_im, phase_shift). The columns diffusion and flow are factors on the diffusion coefficient
-/// and the flow velocity of the scene.
+/// Its columns are the thickness, one of optical_depth, mean_free_path, density and mu_s (with
+/// mu_a, in place of albedo), and those properties of the scatterers that differ between layers (g,
+/// albedo, radius, index_re and index_im, phase_shift). The columns diffusion and flow are factors
+/// on the diffusion coefficient and the flow velocity of the scene.
 class LayerTable {
  public:
   /// Reads the key and the file. Throws InputError.
@@ -58,12 +59,18 @@ class LayerTable {
     if (!table_.has("thickness")) throw InputError(path_ + ": column thickness is missing");
     for (const double thickness : table_.column("thickness"))
       if (!(thickness > 0)) throw InputError(path_ + ", thickness", thickness, "must be positive");
-    const auto given = std::ranges::count_if(
-        densities, [&](const Column& column) { return table_.has(column.name); });
+    const auto given =
+        std::ranges::count_if(densities,
+                              [&](const Column& column) { return table_.has(column.name); }) +
+        table_.has("mu_s");
     if (given != 1)
       throw InputError(path_ +
-                       ": give exactly one of the columns optical_depth, mean_free_path, "
-                       "density");
+                       ": give exactly one of the columns optical_depth, mean_free_path, density, "
+                       "mu_s");
+    if (table_.has("mu_a") && !table_.has("mu_s"))
+      throw InputError(path_ + ": the column mu_a requires a column mu_s");
+    if (table_.has("mu_s") && table_.has("albedo"))
+      throw InputError(path_ + ": the columns mu_s and mu_a replace albedo: leave it out");
     if (table_.has("index_im") && !table_.has("index_re"))
       throw InputError(path_ + ": the column index_im requires a column index_re");
     refuse_twice(keys, spec);
@@ -103,6 +110,7 @@ class LayerTable {
                          "has a column " + column + "; leave out the key " + keys.name(member));
     };
     for (const Column& column : scatterer_columns) refuse(column.name, spec.*column.member);
+    refuse("mu_s", spec.albedo);
     refuse("radius", spec.diameter);
     refuse("index_re", spec.index);
     refuse("index_re", spec.particle_index);
@@ -113,7 +121,7 @@ class LayerTable {
   double clear() const {
     constexpr double share = 1e-15;
     double all = 0;
-    for (const char* name : {"optical_depth", "density"})
+    for (const char* name : {"optical_depth", "density", "mu_s", "mu_a"})
       if (table_.has(name))
         for (const double value : table_.column(name)) all += value;
     if (!(all > 0)) throw InputError("at least one layer must scatter or absorb");
@@ -132,6 +140,11 @@ class LayerTable {
       if (table_.has(column.name)) own.*column.member = table_.column(column.name)[layer];
     };
     for (const Column& column : densities) take(column);
+    if (table_.has("mu_s")) {
+      const double mu_s = coefficient("mu_s", layer), mu_t = mu_s + coefficient("mu_a", layer);
+      own.optical_depth = mu_t * *own.depth;
+      if (mu_t > 0) own.albedo = mu_s / mu_t;
+    }
     for (auto* extinction : {&own.optical_depth, &own.density})
       if (*extinction == 0.0) *extinction = clear();
     for (const Column& column : scatterer_columns) take(column);
@@ -147,6 +160,13 @@ class LayerTable {
     if (motion.diffusion < 0)
       throw InputError("diffusion", motion.diffusion, "must not be negative");
     return {scene.scatterer, scene.medium, motion, own.medium_index.value_or(1)};
+  }
+
+  /// Returns mu_s or mu_a of a layer; 0 without a column.
+  double coefficient(const char* name, std::size_t layer) const {
+    const double value = table_.has(name) ? table_.column(name)[layer] : 0;
+    if (!(value >= 0)) throw InputError(name, value, "must not be negative");
+    return value;
   }
 
   std::string path_;

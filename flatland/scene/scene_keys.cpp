@@ -179,7 +179,8 @@ void add_profile_keys(Keys& keys, SceneSpec& spec) {
   keys.add("layers", spec.layers,
            "CSV with a line for each layer; the first layer starts at z = 0. Columns: thickness; "
            "one of "
-           "optical_depth, mean_free_path and density; and those of g, albedo, radius, index_re, "
+           "optical_depth, mean_free_path, density and mu_s (with mu_a, in place of albedo); and "
+           "those of g, albedo, radius, index_re, "
            "index_im, phase_shift that differ between layers")
       .file()
       .only_of("layered media, instead of depth and density");

@@ -88,14 +88,19 @@ void write_theory(const ResultGroup& root, const Scene& scene, const Dynamics& d
 
 }  // namespace
 
+void write_delay_axis(ResultFile& file, const Dynamics& dynamics) {
+  const ResultGroup root(file, delays_table);
+  file.bind("DELAY", {dynamics.diffusion ? "s" : "1"});
+  root.put("delay", dynamics.delays);
+  root.attribute("delay", "k2_diffusion", dynamics.motion.diffusion);
+  if (dynamics.diffusion) root.attribute("delay", "diffusion", *dynamics.diffusion);
+}
+
 void write_delays(ResultFile& file, const Scene& scene, const Dynamics& dynamics,
                   const DelayEstimates& found) {
   const ResultGroup root(file, delays_table);
   const Motion& motion = dynamics.motion;
-  file.bind("DELAY", {dynamics.diffusion ? "s" : "1"});
-  root.put("delay", dynamics.delays);
-  root.attribute("delay", "k2_diffusion", motion.diffusion);
-  if (dynamics.diffusion) root.attribute("delay", "diffusion", *dynamics.diffusion);
+  write_delay_axis(file, dynamics);
   if (scene.request.has_reference()) {
     root.put("delayed_covariance", found.changes.covariance);
     return root.put("delayed_correlation", found.changes.correlation);

@@ -26,6 +26,8 @@ DelayEstimates delay_estimates(const CovarianceRequest& request, const PathJob& 
                                const GroupedSums& sums, const Dynamics& dynamics);
 
 extern const DatasetTable delays_table;
+/// Writes the delays, and the diffusion constant to which they refer.
+void write_delay_axis(ResultFile& file, const Dynamics& dynamics);
 /// Writes the covariances and correlations after each delay and, for light transmitted or reflected
 /// by a slab whose scatterers only diffuse, the correlations of diffusion theory. The axes of the
 /// request must have been written before.

@@ -25,8 +25,7 @@ STAGE = {"field": "parabolic", "index": 1.5, "alpha": 0.5, "stage_box": [-1, -1,
          "mu_s": 0.5, "point_light": [0, 0, 1, 1], "path_bins": [1, 9, 4], "path_moments": True,
          "pixels": [30, 20]}
 
-GRADIENT = {"gradient": True, "method": "forward"}
-
+GRADIENT = {"gradient": True, "method": "forward", "delays": [0, 0.1]}
 
 
 def wedge():
@@ -46,6 +45,7 @@ FILES = {
     "sources_3d.csv": "x,y,z\n1,1,-3\n2,0,-4\n",
     "sensors_3d.csv": "x,y,z\n1,1,15\n2,0,14\n",
     "line.csv": "x,z\n" + "".join(f"{0.5 * i},14\n" for i in range(10)),
+    "tissue.csv": "thickness,mu_s,mu_a,g,diffusion\n2,10,0.02,0.9,0.5\n100,5,0.01,0.8,1\n",
     "layers.csv": "thickness,density\n3,0.05\n3,0.25\n4,0.15\n",
     "blobs.csv": "x,z,radius,amplitude\n-2,4,2,-1\n5,7,1.5,2\n",
     "disks.csv": "x,z,radius\n0,0,0.3\n1,2,0.2\n",
@@ -121,6 +121,8 @@ RUNS = {
                                    "threads": None}),
     "recover_picture": ("recover", {"frames": "frame_picture.csv", "frame_axes": "picture", "longest": 10, "starts": 2,
                                     "phase_iterations": 8, "samples": None, "threads": None}),
+    "recover_points": ("recover", {"frames": "frame_picture.csv", "frame_axes": "picture", "longest": 10, "recovery": "search",
+                                   "points": 2, "samples": None, "threads": None}),
     "contrast_map": ("contrast", {"frames": "frame_picture.csv", "frame_axes": "picture", "exposure": 0.01, "samples": None,
                                   "threads": None}),
     "recover_reference": ("recover", {"frames": "frames.csv", "reference": "frames.csv", "points": 2,
@@ -173,8 +175,13 @@ RUNS = {
                                          "scatterer": "tm", "wavelengths": [0.9, 1.1]}),
     "solve_near": ("solve", {"placement": "disks.csv", "near_sensors": "sensors.csv",
                              "scatterer": "tm"}),
+    "cell": ("solve", {"width": 9.3, "period": 9.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2}),
+    "matrices": ("matrix", {"width": 9.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2, "shifts": 3, "samples": 4}),
     "motif": ("solve", {"placement": "disks.csv", "scatterer": "tm", "t_matrix_gap": 3}),
     "solve_copies": ("solve", {"placement": "places.csv", "cluster": "motif.h5", **FAR}),
+    "reflectance": ("reflectance", {"layers": "tissue.csv", "medium_index": 1.4, "distances": [5, 10], "ring_width": 1,
+                                    "delays": [0, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2], "exposures": [1e-2], "gradient": True,
+                                    "length_unit": "mm", "tolerance": 0.05, "samples": None}),
     "flux": ("flux", {**BOX, "angle_bins": 600}),
     "flux_faces": ("flux", {**SLAB, "medium_index": 1.33, "tolerance": 1e-3, "samples": None}),
     "field": ("field", {"width": 20, "depth": 10, "mean_free_path": 10, "view_angles": SINES,

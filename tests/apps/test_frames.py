@@ -143,7 +143,7 @@ class Refused(RefusingTest):
     def test_keys(self):
         frame = np.arange(96 * 80, dtype=np.uint16).reshape(80, 96) % 251 + 1
         write_all(self.folder, frame)
-        for words, keys in ((["recovery = search"], {"recovery": "search"}), (["frame_axes"], {"frame_axes": "picture"}),
+        for words, keys in ((["points"], {"recovery": "search"}), (["frame_axes"], {"frame_axes": "picture"}),
                             (["longest"], {"longest": 30}), (["points"], {"points": 3}),
                             (["region = 0 0 100 10, binning = 1"], {"region": [0, 0, 100, 10]}), (["region"], {"region": [1, 2, 3]}),
                             (["dark"], {"dark": "small.npy"}), (["average"], {"average": 2})):

@@ -16,7 +16,7 @@ ROOT = DATA.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 BLOCK = re.compile(r"```(sh|python)\n(.*?)```|((?:^    [^\n]*\S[^\n]*\n)+)", re.DOTALL | re.MULTILINE)
 WRITES = re.compile(r"^import .*(savetxt|np\.save\(|, \"wb?\"\))", re.DOTALL | re.MULTILINE)  # writes a file for later commands
-RESOLVE = ("solve", "place", "covariance", "validate", "field", "image", "recover", "fit", "flux", "sweep", "trace",
+RESOLVE = ("solve", "place", "covariance", "validate", "field", "image", "recover", "fit", "flux", "reflectance", "sweep", "trace",
            "render", "design", "optimise")
 # Commands that are not run: they prepare the machine, need several machines, or hours.
 APART = re.compile(r"^\s*(scripts/|cmake|ctest|cpack|mpirun|octave-cli|#SBATCH|build/|bench_|export )|--method mc|merge |bench |"

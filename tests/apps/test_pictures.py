@@ -25,6 +25,7 @@ class Images(ProgramTest):
         found = self.image(object_picture="letter.png", object_width=0.027, repeats=1, average=6, photons=3000, starts=12,
                            phase_iterations=200, prediction_draws=12, paths_per_field=3000, quantum_efficiency=0.5, read_noise=3, full_well=20000, bit_depth=12)
         self.assertEqual(found["frames"].shape, (6, 128, 128))
+        self.call("export", "image.h5", "frames", to="frames.tif")
         self.assertTrue(np.all(found["frames"] == np.round(found["frames"])))
         np.testing.assert_allclose(found["frames"].mean() * 20000 / 4095, 1500, rtol=0.02)
         self.assertEqual(np.count_nonzero(LETTER), len(found["point_x"]))
@@ -36,13 +37,26 @@ class Images(ProgramTest):
         self.assertGreater(found["similarity"].max(), 0.5)
         self.assertLess(abs(found["predicted_similarity"] - found["similarity"].mean()), 0.3)
         noise = np.hypot(3, 20000 / 4095 / 12**0.5)
-        self.call("recover", frames="image.h5", frame_dataset="frames", average=6, photons=1500, read_noise=noise,
+        self.call("recover", frames="frames.tif", average=6, photons=1500, read_noise=noise,
                   longest=len(x) - 1, starts=12, phase_iterations=200, out="r.h5")
         again = datasets(self.folder / "r.h5")
         np.testing.assert_allclose(again["agreement"], found["agreement"], atol=1e-9)
         np.testing.assert_allclose(again["white_noise"], found["white_noise"], rtol=1e-9)
         peaks = [np.sort(file[0].ravel())[-20:] for file in (again["phased_picture"], found["recovered_picture"])]
         np.testing.assert_allclose(*peaks, rtol=1e-6)
+
+    def test_sparse_points_are_found(self):
+        places = np.array([[0, 0], [0.035, 0.01], [-0.005, 0.0275], [0.015, -0.0125]])  # x, y
+        found = self.image(object_x=list(places[:, 0]), object_y=list(places[:, 1]), repeats=1, average=4, photons=3000)
+        for name, keys in {"a.h5": {}, "b.h5": {"points": 4}}.items():
+            self.call("recover", frames="image.h5", frame_dataset="frames", average=4, photons=3000, recovery="search",
+                      longest=len(found["place_x"]) - 1, **keys, out=name, status=0 if keys else 2)
+        points = datasets(self.folder / "b.h5")
+        self.assertGreater(points["explained"][0], 0.9)
+        at = np.column_stack([points["found_x"][0], points["found_y"][0]]) * 0.32 / 128
+        off = min(np.abs((sign * at - sign * at[i])[:, None] - (places - places[j])[None]).max(axis=2).min(axis=1).max()
+                  for sign in (1, -1) for i in range(4) for j in range(4))
+        self.assertLess(off, 0.0025)
 
     def test_depths_and_threads(self):
         """Points nearer to the box are farther apart in the picture; threads do not matter."""

@@ -104,6 +104,9 @@ KINDS = {
                                   "optical_depth": 2, "object_x": [-0.02, 0.02], "camera_pixels": 64,
                                   "camera_aperture": 0.4, "repeats": 2, "starts": 2, "phase_iterations": 8,
                                   "prediction_draws": 2, "prediction_paths": 2000, "paths_per_field": 500}),
+    "tissue": ("reflectance", {"depth": 100, "mean_free_path": 0.1, "g": 0.9, "albedo": 0.99, "distances": [5, 10], "ring_width": 1,
+                               "delays": [0, 1e-3], "tolerance": 0.05}),
+    "matrices": ("matrix", {"width": 9.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2, "shifts": 3, "samples": 4}),
     "near": ("solve", {"placement": DATA / "reference/g10/placement.csv", "scatterer": "soft",
                        "map": [-2, 2, -2, 2], "map_pixels": [6, 5]}),
 }
@@ -119,7 +122,7 @@ OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}
        "contrast_map": {"contrasts"}, "image_success": {"pictures"}, "image": {"frames", "blinks"}, "sources": {"blinks", "separated"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
        "design": {"lens", "display", "core"}, "design_methods": {"lens", "display", "core"},
        "render": {"picture", "pulse", "mixed"}, "render_time": {"pulse"},
-       "light_map": {"light"}, "ring_profile": {"rings", "mixed"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
+       "light_map": {"light"}, "matrix": {"matrices"}, "ring_profile": {"rings", "mixed"}, "tissue": {"tissue"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
 
 
 def run_script(name, *words, drawn="fitted"):

@@ -109,6 +109,7 @@ class AcceptedScenes(ProgramTest):
             for subcommand in (("sweep",) if tilts else ("solve",) if "\nmap = " in text else
                                ("field",) if "\nfields = " in text else
                                ("render",) if "\nsensor = " in text else
+                               ("reflectance",) if "\ndistances = " in text else
                                ("image",) if "\nobject_x = " in text else
                                ("trace",) if "\nmax_length = " in text else
                                ("design",) if "\ndesign = " in text else

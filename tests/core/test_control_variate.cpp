@@ -57,4 +57,23 @@ TEST_CASE("control variate: uncorrelated means and few batches are unchanged") {
   CHECK(controlled_jackknife(few, first_two, third).value[0] == jackknife(few, first_two).value[0]);
 }
 
+TEST_CASE("control variates: act together where each alone explains nothing") {
+  GroupedSums sums(4);
+  RandomStream random(3, 1, 0);
+  for (int i = 0; i < 400; ++i) {
+    const double shared = 20 * noise(random), own = noise(random);
+    sums.add(1, std::vector<Complex>{2 + 3 * own + 0.1 * noise(random), shared + own, shared - own,
+                                     2 * shared});
+  }
+  const auto first = [](double samples, std::span<const Complex> all) {
+    return sample_mean(samples, all.first(1));
+  };
+  constexpr std::size_t alone[] = {1}, all[] = {1, 2, 3};  // the third depends on the others
+  const double plain = jackknife(sums, first).error[0];
+  CHECK(controlled_jackknife(sums, first, alone).error[0] > 0.9 * plain);
+  const Estimate found = controlled_jackknife(sums, first, all);
+  CHECK(found.error[0] < 0.05 * plain);
+  CHECK(std::abs(found.value[0].real() - 2) < 4 * found.error[0]);
+}
+
 }  // namespace flatspeckle::test_control_variate

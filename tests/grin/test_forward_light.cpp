@@ -46,6 +46,30 @@ PowersWithin powers(const RenderScene& scene, RenderMethod method, double sample
 
 }  // namespace
 
+TEST_CASE("aimed light: the power between coaxial disks is exact, and its error small") {
+  const double radius = 0.3, distance = 4;
+  RenderScene scene{};
+  scene.step = 1;
+  scene.max_length = 1e9;
+  scene.stage.boundary = Box{{-2, -2, 0}, {2, 2, distance}};
+  scene.lights = {FaceLight{Vec3::Zero(), radius, 1}};
+  scene.sensors = {RadialDetector{{0, 0, distance}, radius, 1, pi / 2, {}}};
+  // view factor F of disks of equal radius: 1 + (1 - sqrt(4 R^2 + 1)) / (2 R^2), R = radius /
+  // distance
+  const double square = radius * radius / (distance * distance);
+  const double factor = 1 + (1 - std::sqrt(4 * square + 1)) / (2 * square);
+  const double samples = 20000;
+  const Rendered found = rendered(scene, RenderMethod::forward, samples);
+  const double area = pi * radius * radius, power = area * found.value(),
+               error = area * found.error();
+  const double expected = pi * area * factor;
+  CAPTURE(power);
+  CAPTURE(error);
+  CHECK(std::abs(power - expected) < 4 * error);
+  const double unaimed = expected * std::sqrt((1 - factor) / (factor * samples));
+  CHECK(error < 0.3 * unaimed);
+}
+
 TEST_CASE("forward tracing: powers agree with light tracing and bidirectional tracing") {
   const RenderScene scene = guide(0.3, 0.05, {0.3, 1, 2.5});
   const PowersWithin one = powers(scene, RenderMethod::forward, 60000, 1);

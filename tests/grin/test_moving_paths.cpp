@@ -32,7 +32,7 @@ Powers powers(const RenderValues& values, double samples) {
   return tests::powers(make_render_scene(values), samples);
 }
 
-const double usual_samples = is_night ? 120000 : 30000;
+const double usual_samples = is_night ? 120000 : 40000;
 
 /// Compares derivatives at these pixels with differences by this member of the values.
 template <class Member>

@@ -157,20 +157,21 @@ std::vector<Complex> transposed_product(const std::vector<Complex>& a, const Com
   return result;
 }
 
-DenseFactor::DenseFactor(Entries matrix, std::size_t unknowns)
-    : n_(unknowns), matrix_(std::move(matrix)), diagonal_(unknowns) {
+DenseFactor::DenseFactor(Entries matrix, std::size_t unknowns, bool symmetric)
+    : n_(unknowns), matrix_(std::move(matrix)), diagonal_(unknowns), symmetric_(symmetric) {
   blas_single_thread();
   for (std::size_t j = 0; j < n_; ++j) diagonal_[j] = matrix_[j * (n_ + 1)];
-  norm_ = frobenius_norm(matrix_, n_);
+  norm_ = symmetric ? frobenius_norm(matrix_, n_)
+                    : std::sqrt(squared_norm(matrix_.data(), matrix_.size()));
   if (!std::isfinite(norm_))
     throw std::runtime_error("the multiple-scattering equations are not finite");
-  factored_ = factor_symmetric(matrix_.data(), n_, n_);
+  factored_ = symmetric ? factor_symmetric(matrix_.data(), n_, n_) : factor_pivoted();
 }
 
 bool DenseFactor::factor_pivoted() {
   const auto n = static_cast<lapack_int>(n_);
-  lu_.resize(n_ * n_);
-  for (std::size_t j = 0; j < n_; ++j) {
+  lu_.assign(matrix_.begin(), matrix_.end());
+  for (std::size_t j = 0; symmetric_ && j < n_; ++j) {
     lu_[j * (n_ + 1)] = matrix_[j * (n_ + 1)] = diagonal_[j];
     for (std::size_t i = 0; i < j; ++i) lu_[j * n_ + i] = lu_[i * n_ + j] = matrix_[j * n_ + i];
   }
@@ -195,6 +196,11 @@ void DenseFactor::solve_once(std::vector<Complex>& x) const {
 std::vector<Complex> DenseFactor::residual(const std::vector<Complex>& b,
                                            const std::vector<Complex>& x) const {
   std::vector<Complex> r = b;
+  if (!symmetric_) {
+    multiply(CblasNoTrans, CblasNoTrans, n_, x.size() / n_, n_, -1, matrix_.data(), n_, x.data(),
+             n_, 1, r.data(), n_);
+    return r;
+  }
   const Complex one = 1, minus_one = -1;
   const auto n = blas_size(n_), columns = blas_size(x.size() / n_);
   cblas_zsymm(CblasColMajor, CblasLeft, CblasUpper, n, columns, &minus_one, matrix_.data(), n,

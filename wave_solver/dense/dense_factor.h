@@ -68,9 +68,10 @@ struct Unset : std::allocator<Number> {
 using Entries = std::vector<Complex, Unset<Complex>>;
 
 /// Solver of a complex symmetric system M x = b: L L^T without pivoting, or LU with row exchanges
-/// if L L^T leaves a backward error |b - M x| / (|M| |x| + |b|) above 1e-14 after refinement.
-/// Vectors are measured by the 2-norm, M by the Frobenius norm. The backward error is measured on
-/// combinations() of the columns; during refinement it is the largest of all columns.
+/// if M is not symmetric or if L L^T leaves a backward error |b - M x| / (|M| |x| + |b|) above
+/// 1e-14 after refinement. Vectors are measured by the 2-norm, M by the Frobenius norm. The
+/// backward error is measured on combinations() of the columns; during refinement it is the largest
+/// of all columns.
 ///
 /// Cost of L L^T: n^3/6 complex multiplications and as many additions, half of the cost of LU. For
 /// the points and disks of this module L L^T takes 0.51 of the time of LAPACK's zgetrf (LAPACK's
@@ -80,7 +81,7 @@ using Entries = std::vector<Complex, Unset<Complex>>;
 class DenseFactor {
  public:
   /// matrix: both triangles, column-major.
-  DenseFactor(Entries matrix, std::size_t unknowns);
+  DenseFactor(Entries matrix, std::size_t unknowns, bool symmetric = true);
 
   /// Solves for columns of right-hand sides, [column][unknown]. condition: whether to estimate the
   /// condition number as well, at the cost of a few more columns. Throws std::runtime_error if no
@@ -110,7 +111,7 @@ class DenseFactor {
 
   std::size_t n_;
   // The strict upper triangle contains M, the rest contains L. If LU with row exchanges was used,
-  // the diagonal also contains M.
+  // the diagonal also contains M. If M is not symmetric, all of it is contained.
   Entries matrix_;
   std::vector<Complex> diagonal_;  // diagonal of M
   std::vector<Complex> lu_;
@@ -118,7 +119,7 @@ class DenseFactor {
   std::vector<int> pivots_;
   double norm_ = 0;  // Frobenius norm of M
   double condition_ = 1;
-  bool factored_ = false, pivoted_ = false;
+  bool symmetric_ = true, factored_ = false, pivoted_ = false;
 };
 
 }  // namespace flatspeckle::wave

@@ -237,26 +237,30 @@ void translate_regular(double k, std::span<const ModeSet> receivers, const ModeS
   }
 }
 
-void expand_plane_wave(double k, std::span<const ModeSet> receivers, Vec w, Complex factor,
-                       std::span<Complex> out) {
+void expand_plane_wave(double k, std::span<const ModeSet> receivers, const WaveDirection& w,
+                       Complex factor, std::span<Complex> out) {
   int highest = 0;
-  std::vector<double> phases;
+  std::vector<double> phases, logs;
   phases.reserve(receivers.size());
+  logs.reserve(receivers.size());
   for (const ModeSet& receiver : receivers) {
     highest = std::max(highest, receiver.order);
-    phases.push_back(k * dot(w, receiver.centre));
+    const Vec r = receiver.centre;
+    phases.push_back(k * (w.x.real() * r.x + w.z.real() * r.z));
+    logs.push_back(-k * (w.x.imag() * r.x + w.z.imag() * r.z));
   }
   std::vector<Complex> cosines, sines;  // cos(n angle) and sin(n angle), times i^n
-  const ExtendedComplex turn(w.z, w.x);
-  ExtendedComplex phase = 1, power = 1;
+  constexpr ExtendedComplex i(0, 1);
+  const ExtendedComplex x(w.x), z(w.z), turn = z + product(i, x), back = z - product(i, x);
+  ExtendedComplex forth_power = 1, back_power = 1;  // (i turn)^n and (i back)^n
   for (int n = 0; n <= highest; ++n) {
-    cosines.push_back(Complex(phase.real() * power));
-    sines.push_back(Complex(phase.imag() * power));
-    phase = product(phase, turn);
-    power = {-power.imag(), power.real()};
+    cosines.push_back(Complex((forth_power + back_power) * 0.5L));
+    sines.push_back(Complex(product(forth_power - back_power, -0.5L * i)));
+    forth_power = product(forth_power, product(i, turn));
+    back_power = product(back_power, product(i, back));
   }
   std::vector<Complex> waves(phases.size());
-  damped_phasors(phases, std::vector<double>(phases.size()), waves);
+  damped_phasors(phases, logs, waves);
   std::size_t row = 0;
   for (std::size_t j = 0; j < receivers.size(); ++j) {
     const Complex there = product(waves[j], std::numbers::sqrt2 * factor);

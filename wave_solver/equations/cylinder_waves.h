@@ -54,12 +54,22 @@ void translate(double k, std::span<const ModeSet> receivers, const ModeSet& send
 void translate_regular(double k, std::span<const ModeSet> receivers, const ModeSet& sender,
                        Target out);
 
-/// Expands `factor` times the plane wave along the unit vector w in unit regular modes of the
-/// receivers (C6). `out` receives sqrt(2) weight i^n {cos, sin}(n angle) e^{i k w.r} for the modes
-/// of one receiver (at r) after the other. The coefficients for -w map amplitudes of outgoing modes
-/// to the far field along w.
-void expand_plane_wave(double k, std::span<const ModeSet> receivers, Vec w, Complex factor,
-                       std::span<Complex> out);
+/// Direction of a plane wave e^{i k w.r}, with w.x^2 + w.z^2 = 1. Complex components describe
+/// evanescent waves.
+struct WaveDirection {
+  Complex x, z;
+
+  WaveDirection(Complex along_x, Complex along_z) : x(along_x), z(along_z) {}
+  WaveDirection(Vec w) : x(w.x), z(w.z) {}
+  WaveDirection operator-() const { return {-x, -z}; }
+};
+
+/// Expands `factor` times the plane wave along w in unit regular modes of the receivers (C6). `out`
+/// receives sqrt(2) weight i^n {cos, sin}(n angle) e^{i k w.r} for the modes of one receiver (at r)
+/// after the other. The coefficients for -w map amplitudes of outgoing modes to the far field along
+/// w.
+void expand_plane_wave(double k, std::span<const ModeSet> receivers, const WaveDirection& w,
+                       Complex factor, std::span<Complex> out);
 
 /// Evaluates the sender's outgoing modes at points. Rows are points, columns are modes.
 void field_at(double k, std::span<const Vec> points, const ModeSet& sender, Target out);

@@ -106,10 +106,21 @@ Basis basis(const Placement& placement, double k, double tolerance, std::span<co
   return orders.basis(placement, sensors, growth);
 }
 
+Placement with_copies(const Placement& placement, const Copies& copies) {
+  Placement all = placement;
+  for (int n = 1; n <= copies.count; ++n)
+    for (const int side : {-n, n})
+      for (const PlacedScatterer& placed : placement)
+        all.push_back({placed.position + Vec{side * copies.period, 0}, placed.scatterer});
+  return all;
+}
+
 TMatrixSystem::TMatrixSystem(Placement placement, double k, double tolerance,
-                             std::span<const Vec> sensors, double growth)
-    : WaveEquations(k), placement_(std::move(placement)) {
-  const auto [t, gap_plasmons] = basis(placement_, k, tolerance, sensors, growth);
+                             std::span<const Vec> sensors, double growth, const Copies& copies)
+    : WaveEquations(k, copies), placement_(std::move(placement)) {
+  const auto [t, gap_plasmons] =
+      basis(with_copies(placement_, {copies.period, 0, std::min(copies.count, 1)}), k, tolerance,
+            sensors, growth);
   has_gap_plasmons_ = gap_plasmons;
   std::vector<Mode> modes;
   std::vector<Complex> diagonal;
@@ -128,6 +139,21 @@ TMatrixSystem::TMatrixSystem(Placement placement, double k, double tolerance,
     }
     add({placement_[j].position, placement_[j].scatterer.disk_radius()}, modes, diagonal);
   }
+}
+
+TMatrixSystem TMatrixSystem::with_explicit_copies() const {
+  TMatrixSystem all(k());
+  all.placement_ = with_copies(placement_, copies());
+  all.has_gap_plasmons_ = has_gap_plasmons_;
+  std::vector<Complex> own;
+  for (std::size_t i = 0; i < all.placement_.size(); ++i) {
+    const std::size_t j = i % placement_.size();
+    own.clear();
+    for (std::size_t u = first(j); u < first(j + 1); ++u) own.push_back(diagonal(u));
+    all.t_.push_back(t_[j]);
+    all.add({all.placement_[i].position, bodies()[j].radius}, modes(j).modes, own);
+  }
+  return all;
 }
 
 // Uses finite differences in k, with a relative step that long double resolves and that is far

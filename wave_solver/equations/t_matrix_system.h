@@ -15,6 +15,9 @@ namespace flatspeckle::wave {
 Basis basis(const Placement& placement, double k, double tolerance, std::span<const Vec> sensors,
             double growth = 1);
 
+/// Returns the placement, followed by its copies -1, 1, -2, 2, .. (Copies).
+Placement with_copies(const Placement& placement, const Copies& copies);
+
 /// Largest basis order. Two disks of this order have 16,000 unknowns and a matrix of 4 GB.
 inline constexpr int highest_order = 4000;
 
@@ -27,7 +30,11 @@ class TMatrixSystem : public WaveEquations {
   /// be evaluated. growth: factor by which the orders are increased. Throws InputError for
   /// scatterers without a T-matrix and for disks too close to be resolved.
   TMatrixSystem(Placement placement, double k, double tolerance, std::span<const Vec> sensors = {},
-                double growth = 1);
+                double growth = 1, const Copies& copies = {});
+
+  /// Returns the same system with the copies as additional scatterers, in the order of
+  /// with_copies().
+  TMatrixSystem with_explicit_copies() const;
 
   const Placement& placement() const { return placement_; }
   /// Whether narrow gaps next to TE disks with Re(index^2) < 0 may resonate collectively. If so,
@@ -46,6 +53,8 @@ class TMatrixSystem : public WaveEquations {
   std::vector<Complex> source_right_hand_side(Vec source) const;
 
  private:
+  explicit TMatrixSystem(double k) : WaveEquations(k) {}
+
   Placement placement_;
   std::vector<std::vector<ExtendedComplex>> t_;
   bool has_gap_plasmons_ = false;

@@ -120,13 +120,13 @@ void WaveEquations::entries(std::span<const std::size_t> rows, std::span<const s
   const Listed receivers(*this, rows), senders(*this, columns);
   for (std::size_t s = 0; s < senders.runs.size(); ++s) {
     Complex* const block = out + ld * senders.first[s];
-    translate(k_, receivers.runs, senders.runs[s], {block, ld});
+    translate_copies(receivers.runs, senders.runs[s], {block, ld});
     const auto own_columns = columns.subspan(senders.first[s], senders.runs[s].modes.size());
     for (std::size_t r = 0; r < receivers.runs.size(); ++r) {
       if (receivers.bodies[r] != senders.bodies[s]) continue;
       for (std::size_t j = 0; j < own_columns.size(); ++j)
         for (std::size_t i = 0; i < receivers.runs[r].modes.size(); ++i)
-          block[receivers.first[r] + i + ld * j] =
+          block[receivers.first[r] + i + ld * j] +=
               own(rows[receivers.first[r] + i], own_columns[j]);
     }
   }
@@ -137,6 +137,25 @@ void WaveEquations::outgoing(std::span<const Vec> points, std::span<const std::s
   const Listed senders(*this, columns);
   for (std::size_t s = 0; s < senders.runs.size(); ++s)
     field_at(k_, points, senders.runs[s], {out + ld * senders.first[s], ld});
+}
+
+void WaveEquations::translate_copies(std::span<const ModeSet> receivers, const ModeSet& sender,
+                                     Target out, bool reversed) const {
+  translate(k_, receivers, sender, out);
+  if (copies_.count == 0) return;
+  std::size_t rows = 0;
+  for (const ModeSet& receiver : receivers) rows += receiver.modes.size();
+  std::vector<Complex> part(rows * sender.modes.size());
+  ModeSet copy = sender;
+  for (int n = -copies_.count; n <= copies_.count; ++n) {
+    if (n == 0) continue;
+    copy.centre.x = sender.centre.x + n * copies_.period;
+    translate(k_, receivers, copy, {part.data(), rows});
+    const Complex factor = copies_.factor(reversed ? -n : n);
+    for (std::size_t column = 0; column < sender.modes.size(); ++column)
+      for (std::size_t row = 0; row < rows; ++row)
+        out.data[row + out.ld * column] += product(factor, part[row + rows * column]);
+  }
 }
 
 std::vector<ModeSet> WaveEquations::all_modes() const {
@@ -180,11 +199,14 @@ void WaveEquations::multipole_columns(Complex* matrix) const {
   parallel_for(all.size(), size > threads_pay_from, [&](std::size_t j) {
     Complex* const corner = matrix + first_[j] * (size + 1);
     const std::size_t height = all[j].modes.size();
+    if (copies_.symmetric())
+      translate_copies(std::span(all).subspan(j), all[j], {corner, size});
+    else
+      translate_copies(all, all[j], {corner - first_[j], size});
     for (std::size_t i = 0; i < height; ++i)
       for (std::size_t l = 0; l < height; ++l)
-        corner[i * size + l] = own(first_[j] + l, first_[j] + i);
-    translate(k_, std::span(all).subspan(j + 1), all[j], {corner + height, size});
-    mirror_columns(matrix, size, first_[j], first_[j + 1]);
+        corner[i * size + l] += own(first_[j] + l, first_[j] + i);
+    if (copies_.symmetric()) mirror_columns(matrix, size, first_[j], first_[j + 1]);
   });
 }
 
@@ -192,7 +214,7 @@ Entries WaveEquations::matrix() const {
   require_dense_memory(unknowns());
   const std::size_t size = unknowns();
   Entries matrix(size * size);
-  if (size == bodies_.size())
+  if (size == bodies_.size() && copies_.count == 0)
     point_columns(matrix.data());
   else
     multipole_columns(matrix.data());
@@ -221,8 +243,8 @@ void WaveEquations::add_own(std::size_t begin, std::size_t end, const Complex* x
         y[row] += diagonal_[row] * x[row];
 }
 
-// Computes the columns of M for one group of bodies at a time. Because M is symmetric, the
-// transpose of these columns is the group's rows of M, which give its rows of the product.
+// Computes the columns of M^T for one group of bodies at a time. The transpose of these columns is
+// the group's rows of M, which give its rows of the product.
 std::vector<Complex> WaveEquations::apply(std::span<const Complex> x) const {
   const std::size_t size = unknowns();
   if (size == 0) return {};
@@ -234,7 +256,7 @@ std::vector<Complex> WaveEquations::apply(std::span<const Complex> x) const {
     const std::size_t begin = first_[ends[part]], width = first_[ends[part + 1]] - begin;
     std::vector<Complex> block(size * width);
     for (std::size_t j = ends[part]; j < ends[part + 1]; ++j)
-      translate(k_, all, all[j], {&block[size * (first_[j] - begin)], size});
+      translate_copies(all, all[j], {&block[size * (first_[j] - begin)], size}, true);
     multiply(CblasTrans, CblasNoTrans, width, columns, size, 1, block.data(), size, x.data(), size,
              0, &y[begin], size);
     for (std::size_t column = 0; column < columns; ++column)
@@ -255,6 +277,19 @@ std::vector<Complex> WaveEquations::plane_waves(std::span<const double> angles, 
   return waves;
 }
 
+std::vector<Complex> WaveEquations::plane_waves(std::span<const WaveDirection> directions,
+                                                Vec origin) const {
+  std::vector<Complex> waves(directions.size() * unknowns());
+  const auto receivers = all_modes();
+  parallel_for(directions.size(), [&](std::size_t wave) {
+    const WaveDirection& w = directions[wave];
+    expand_plane_wave(k_, receivers, w,
+                      std::exp(Complex(0, -k_) * (w.x * origin.x + w.z * origin.z)),
+                      std::span(waves).subspan(wave * unknowns(), unknowns()));
+  });
+  return waves;
+}
+
 std::vector<Complex> WaveEquations::right_hand_sides(std::span<const double> light_angles) const {
   return plane_waves(light_angles, 1, -1);
 }
@@ -266,8 +301,10 @@ std::vector<Complex> WaveEquations::far_rows(std::span<const double> view_angles
 
 std::vector<Complex> WaveEquations::outside_row(Vec point) const {
   std::vector<Complex> row(unknowns());
+  const Mode value{0, false, root_half};  // the field is the coefficient of J_0 about the point
+  const ModeSet receiver{point, {&value, 1}, 0};
   for (std::size_t j = 0; j < bodies_.size(); ++j)
-    field_at(k_, {&point, 1}, modes(j), {&row[first_[j]], 1});
+    translate_copies({&receiver, 1}, modes(j), {&row[first_[j]], 1});
   return row;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -48,6 +49,17 @@ double memory_of_system(int together = concurrent_systems());
 /// Throws InputError if the dense matrix of `unknowns` unknowns needs more than memory_of_system().
 void require_dense_memory(std::size_t unknowns, int together = concurrent_systems());
 
+/// Copies of all bodies at n periods along x, with n = -count .. count. The waves of copy n are
+/// those of the bodies, displaced and multiplied by e^{i n phase}.
+struct Copies {
+  double period = 0, phase = 0;
+  int count = 0;
+
+  /// Whether copies n and -n have the same factor, so that M is symmetric.
+  bool symmetric() const { return count == 0 || std::abs(std::sin(phase)) < 1e-15; }
+  Complex factor(int n) const { return std::polar(1.0, n * phase); }
+};
+
 /// The multiple-scattering equations b = T (a + S b) of bodies that scatter regular waves into
 /// outgoing waves (C10). In the real standing waves of cylinder_waves.h, and with b = sigma beta
 /// (sigma: diagonal scaling of the unknowns), they are
@@ -55,7 +67,8 @@ void require_dense_memory(std::size_t unknowns, int together = concurrent_system
 /// The first term of M has one diagonal block per body; derived classes define the bodies. M is
 /// complex symmetric. Its real part is positive semidefinite, because no body has gain (-Re T^-1 >=
 /// 1) and Re S + 1 is a Gram matrix of waves. Schur complements and real congruences preserve this
-/// property.
+/// property. With Copies, S is the sum over the copies of the senders, and M is symmetric only if
+/// Copies::symmetric().
 ///
 /// Unknowns run over bodies and, within each body, over the waves of order 0, cos(phi), sin(phi),
 /// cos(2 phi), sin(2 phi), .. up to the highest order of the body.
@@ -75,6 +88,7 @@ class WaveEquations {
   /// Index of the first unknown of a body; first(bodies().size()) is unknowns().
   std::size_t first(std::size_t body) const { return first_[body]; }
   std::size_t body_of(std::size_t unknown) const { return body_of_[unknown]; }
+  const Copies& copies() const { return copies_; }
   /// Modes of the unknowns of a body; their weights contain sigma.
   ModeSet modes(std::size_t body) const;
   /// Returns sigma^2 of an unknown.
@@ -86,7 +100,7 @@ class WaveEquations {
   void entries(std::span<const std::size_t> rows, std::span<const std::size_t> columns,
                Complex* out, std::size_t ld) const;
   /// Writes to out[i + ld * j] the field at points[i] if the unknown columns[j] is 1 and all others
-  /// are 0. The points must lie outside the bodies of these unknowns.
+  /// are 0, without Copies. The points must lie outside the bodies of these unknowns.
   void outgoing(std::span<const Vec> points, std::span<const std::size_t> columns, Complex* out,
                 std::size_t ld) const;
 
@@ -98,11 +112,15 @@ class WaveEquations {
 
   /// Returns the right-hand sides -sigma a for unit plane waves (C6): [light][unknown].
   std::vector<Complex> right_hand_sides(std::span<const double> light_angles) const;
+  /// Expands unit plane waves, with phase 0 at `origin`, in the regular modes of all bodies:
+  /// [wave][unknown].
+  std::vector<Complex> plane_waves(std::span<const WaveDirection> waves, Vec origin = {}) const;
   /// Contribution of each unknown to the far-field amplitude at angles (C6): [view][unknown]. By
   /// reciprocity each row is a multiple of the right-hand side for light from the direction of
   /// view.
   std::vector<Complex> far_rows(std::span<const double> view_angles) const;
-  /// Contribution of each unknown to the scattered field at a point outside all bodies.
+  /// Contribution of each unknown, with its Copies, to the scattered field at a point outside all
+  /// bodies.
   std::vector<Complex> outside_row(Vec point) const;
   /// Returns far_rows() or outside_row() for each view: [view][unknown].
   std::vector<Complex> view_rows(std::span<const View> views) const;
@@ -110,7 +128,7 @@ class WaveEquations {
  protected:
   using OwnBlock = std::shared_ptr<const std::vector<Complex>>;  // square, column-major
 
-  explicit WaveEquations(double k) : k_(k), first_{0} {}
+  explicit WaveEquations(double k, const Copies& copies = {}) : k_(k), copies_(copies), first_{0} {}
   ~WaveEquations() = default;
   WaveEquations(const WaveEquations&) = default;
   WaveEquations(WaveEquations&&) = default;
@@ -137,7 +155,13 @@ class WaveEquations {
   std::vector<Complex> plane_waves(std::span<const double> angles, double sign,
                                    Complex factor) const;
 
+  // Calls translate() for the sender and all its copies, and adds the results. reversed: gives copy
+  // n the factor of copy -n, so that the result belongs to the transpose of M.
+  void translate_copies(std::span<const ModeSet> receivers, const ModeSet& sender, Target out,
+                        bool reversed = false) const;
+
   double k_;
+  Copies copies_;
   std::vector<Body> bodies_;
   std::vector<std::size_t> first_, body_of_;
   std::vector<Mode> modes_;

@@ -257,8 +257,20 @@ class FastDirect::Builder {
     std::vector<Complex>().swap(schur_complement_[half]);
   }
 
+  // Returns the distance between a rectangle and the nearest copy of another one.
+  double copy_distance(const Rectangle& hull, const Rectangle& other) const {
+    const Copies& copies = system_.copies();
+    double nearest = hull.distance(other);
+    for (const double side : {-copies.period, copies.period})
+      if (copies.count > 0)
+        nearest =
+            std::min(nearest, hull.distance({other.low + Vec{side, 0}, other.high + Vec{side, 0}}));
+    return nearest;
+  }
+
   // Returns the unknowns outside a box that are not yet eliminated when the box's level is
-  // processed, and that belong to disks whose rims are nearer to the box than `distance`.
+  // processed, and that belong to disks whose rims, or those of their copies, are nearer to the box
+  // than `distance`.
   std::vector<std::size_t> near_unknowns(std::size_t box, double distance) const {
     const auto& boxes = tree_.boxes();
     const Rectangle& hull = boxes[box].hull;
@@ -266,7 +278,7 @@ class FastDirect::Builder {
     while (!open.empty()) {
       const std::size_t other = open.back();
       open.pop_back();
-      if (other == box || hull.distance(boxes[other].hull) >= distance) continue;
+      if (other == box || copy_distance(hull, boxes[other].hull) >= distance) continue;
       if (boxes[other].level < boxes[box].level && !boxes[other].is_leaf()) {
         open.push_back(boxes[other].child);
         open.push_back(boxes[other].child + 1);
@@ -274,7 +286,8 @@ class FastDirect::Builder {
       }
       for (std::size_t unknown : active_[other]) {
         const SortedDisk& disk = disks_[system_.body_of(unknown)];
-        if (hull.distance(disk.centre) - disk.radius < distance) found.push_back(unknown);
+        if (copy_distance(hull, {disk.centre, disk.centre}) - disk.radius < distance)
+          found.push_back(unknown);
       }
     }
     return found;

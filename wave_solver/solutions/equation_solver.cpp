@@ -281,7 +281,7 @@ Method method_in_space(std::size_t unknowns, bool only_points) {
 
 SolvableEquations solvable(const WaveEquations& equations) {
   const auto* const of = &equations;
-  return {equations.unknowns(), [of] { return of->matrix(); },
+  return {equations.unknowns(), true, [of] { return of->matrix(); },
           [of](double tolerance) -> BlockMap {
             const auto product = std::make_shared<const FastProduct>(*of, tolerance);
             return [product](std::span<const Complex> x) { return (*product)(x); };
@@ -298,7 +298,7 @@ SolvableEquations solvable(const WaveEquations& equations) {
 
 SolvableEquations solvable(const SphereEquations& equations) {
   const auto* const of = &equations;
-  return {equations.unknowns(), [of] { return of->matrix(); },
+  return {equations.unknowns(), true, [of] { return of->matrix(); },
           [of](double tolerance) -> BlockMap {
             if (of->only_points()) {
               const auto product = std::make_shared<const SpaceProduct>(*of, tolerance);
@@ -319,7 +319,7 @@ EquationSolver::EquationSolver(const SolvableEquations& equations, Method method
     : unknowns_(equations.unknowns), tolerance_(std::max(tolerance, best_product)) {
   FS_EXPECT(method != Method::automatic);
   if (method == Method::dense) {
-    dense_ = std::make_unique<DenseFactor>(equations.matrix(), unknowns_);
+    dense_ = std::make_unique<DenseFactor>(equations.matrix(), unknowns_, equations.symmetric);
     return;
   }
   product_ = equations.product(std::max(tolerance_ / 10, best_product));

@@ -37,10 +37,11 @@ Method method_for(std::size_t unknowns, double tolerance);
 /// is used from 10000 unknowns on, because of the memory of the matrix.
 Method method_in_space(std::size_t unknowns, bool only_points);
 
-/// Equations M beta = r with a complex symmetric matrix, as EquationSolver uses them. The functions
+/// Equations M beta = r, as EquationSolver uses them. The functions
 /// refer to the equations from which they were made.
 struct SolvableEquations {
   std::size_t unknowns = 0;
+  bool symmetric = true;  ///< whether M is complex symmetric, which `inverse` may require
   std::function<Entries()> matrix;
   /// Returns the product with M, whose error is below `tolerance` times ||M x||.
   std::function<BlockMap(double tolerance)> product;

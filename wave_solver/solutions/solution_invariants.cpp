@@ -30,16 +30,6 @@ std::vector<double> absorption_of(const TMatrixSystem& system, std::size_t j) {
   return absorbed;
 }
 
-// Returns the same absorbed powers for the unknowns of all scatterers: [unknown].
-std::vector<double> absorption_of(const TMatrixSystem& system) {
-  std::vector<double> absorbed;
-  for (std::size_t j = 0; j < system.placement().size(); ++j) {
-    const auto own = absorption_of(system, j);
-    absorbed.insert(absorbed.end(), own.begin(), own.end());
-  }
-  return absorbed;
-}
-
 // Returns equally spaced directions, as many as are required to integrate |A|^2 exactly. |A|^2
 // contains angular orders up to about 2 k R.
 std::vector<double> directions_around(const TMatrixSystem& system) {
@@ -71,6 +61,15 @@ std::vector<double> scattered_powers(const WaveSolution& solution,
 }
 
 }  // namespace
+
+std::vector<double> absorption_of(const TMatrixSystem& system) {
+  std::vector<double> absorbed;
+  for (std::size_t j = 0; j < system.placement().size(); ++j) {
+    const auto own = absorption_of(system, j);
+    absorbed.insert(absorbed.end(), own.begin(), own.end());
+  }
+  return absorbed;
+}
 
 Invariant power_balance(const WaveSolution& solution, double tolerance) {
   constexpr std::size_t most_lights = 4, uncombined = 8;

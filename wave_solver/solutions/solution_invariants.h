@@ -5,6 +5,10 @@
 
 namespace flatspeckle::wave {
 
+/// Returns, for each unknown, the power that its scatterer absorbs if the unknown has the absolute
+/// value 1.
+std::vector<double> absorption_of(const TMatrixSystem& system);
+
 /// Returns |extinction - scattering - absorption| / extinction of the whole placement: the largest
 /// value over a few of the lights. Extinction follows from the forward amplitude (C9). Scattering
 /// is the integral of |A|^2 over all directions. Absorption is the power absorbed by points, plus

@@ -16,6 +16,7 @@ CaseMode::CaseMode(double albedo, double g)
   for (int l = 0; l <= most; ++l) {
     if (l > 0) moment *= ratio[l] * g;
     series_.push_back((2 * l + 1) * moment);
+    more_.push_back(l / (l + 1.0));
     if (std::abs(series_.back()) < negligible) break;
   }
 }

@@ -25,32 +25,41 @@ class CaseMode {
 
   /// Returns exp(kappa z), or z without absorption.
   double growth(double z) const { return kappa_ > 0 ? std::exp(kappa_ * z) : z; }
+  /// Values that depend on the direction alone, for its cosine mu and for -mu.
+  struct Angle {
+    double mu;
+    double scattered[2];  ///< (1 - kappa mu) psi(mu), (1 + kappa mu) psi(-mu)
+
+    Angle reversed() const { return {-mu, {scattered[1], scattered[0]}}; }
+  };
+  /// Evaluates the series of Legendre polynomials, whose even and odd terms are summed separately.
+  Angle angle(double mu) const {
+    double even = series_[0], odd = 0, before = 1, here = mu;
+    for (std::size_t l = 1; l < series_.size(); ++l) {
+      (l % 2 == 0 ? even : odd) += series_[l] * here;
+      const double next = mu * here + more_[l] * (mu * here - before);
+      before = here;
+      here = next;
+    }
+    return {mu, {even + odd, even - odd}};
+  }
+
   /// Returns the importance before a free flight. `growth` is growth(z) at the start of the flight.
-  double departing(double growth, double mu) const {
-    return kappa_ > 0 ? growth * scattered(mu) / (1 - kappa_ * mu)
-                      : growth + transport_length_ * mu;
+  double departing(double growth, const Angle& of) const {
+    return kappa_ > 0 ? growth * of.scattered[0] / (1 - kappa_ * of.mu)
+                      : growth + transport_length_ * of.mu;
   }
+  double departing(double growth, double mu) const { return departing(growth, angle(mu)); }
   /// Returns the importance before a collision. `growth` is growth(z) at the collision.
-  double arriving(double growth, double mu) const {
-    return kappa_ > 0 ? growth * scattered(mu) : growth + g_ * transport_length_ * mu;
+  double arriving(double growth, const Angle& of) const {
+    return kappa_ > 0 ? growth * of.scattered[0] : growth + g_ * transport_length_ * of.mu;
   }
+  double arriving(double growth, double mu) const { return arriving(growth, angle(mu)); }
 
  private:
-  /// Returns (1 - kappa mu) psi(mu), by Clenshaw's recurrence for its Legendre series.
-  double scattered(double mu) const {
-    double next = 0, after = 0;
-    for (std::size_t l = series_.size(); l-- > 1;) {
-      const double n = static_cast<double>(l);
-      const double here =
-          series_[l] + (2 * n + 1) / (n + 1) * mu * next - (n + 1) / (n + 2) * after;
-      after = next;
-      next = here;
-    }
-    return series_[0] + mu * next - after / 2;
-  }
-
   double kappa_, g_, transport_length_;
   std::vector<double> series_;
+  std::vector<double> more_;  ///< l / (l + 1)
 };
 
 /// Returns the rate at which light decays with depth deep inside a medium, per mean free path.

@@ -48,13 +48,14 @@ FaceLightEnd::FaceLightEnd(const FaceLight& light, const Stage& stage, const Ind
       surrounds_(light.radius == everywhere) {}
 
 EndDirection FaceLightEnd::sample_direction(const EndPosition& at, RandomStream& random) const {
-  return towards(at, random_turn(at.inward, 1 - std::sqrt(random.uniform()), random));
+  const double u = random.uniform(), cosine = std::sqrt(aim_ ? 1 - aim_->sample(1 - u) : u);
+  return towards(at, random_turn(at.inward, 1 - cosine, random));
 }
 
 EndDirection FaceLightEnd::towards(const EndPosition& at, const Vec3& direction) const {
   const double cosine = std::max(0.0, direction.dot(at.inward));
   return {.direction = direction,
-          .density = cosine / pi,
+          .density = cosine / pi * (aim_ ? aim_->density(1 - cosine * cosine) : 1),
           .strength = at.index * at.index * cosine * radiance_};
 }
 

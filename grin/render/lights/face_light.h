@@ -1,5 +1,6 @@
 #pragma once
 
+#include "grin/render/lights/aim.h"
 #include "grin/render/lights/light_kind.h"
 
 namespace flatspeckle::grin {
@@ -32,11 +33,14 @@ class FaceLightEnd {
   bool contains(const Vec3& x) const { return patch_.contains(x); }
   bool surrounds() const { return surrounds_; }
   Vec3 inward(const Vec3& x) const { return patch_.inward(x); }
+  /// Samples directions by this aim instead of the Lambertian density.
+  void aim(const Aim& at) { aim_ = at; }
 
  private:
   BoundaryPatch patch_;
   double radiance_, power_;
   bool surrounds_;
+  std::optional<Aim> aim_ = {};
 };
 
 struct FaceLightValues {

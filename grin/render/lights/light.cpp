@@ -149,6 +149,19 @@ EmissionChange StageLights::by_index(const EndPosition& at, const Vec3& directio
                     source_[at.light].end);
 }
 
+bool StageLights::can_be_aimed() const {
+  return std::ranges::any_of(faces_, [&](int light) {
+    return !std::get<FaceLightEnd>(source_[light].end).surrounds();
+  });
+}
+
+void StageLights::aim(const Aim& at) {
+  for (const int light : faces_) {
+    auto& face = std::get<FaceLightEnd>(source_[light].end);
+    if (!face.surrounds()) face.aim(at);
+  }
+}
+
 EndDirection StageLights::towards(const EndPosition& at, const Vec3& direction) const {
   return std::visit([&](const auto& end) { return end.towards(at, direction); },
                     source_[at.light].end);

@@ -59,6 +59,7 @@ struct Branch {
   bool of_beam = false;
   UnsplitPath absorption = {};
   PathScore score = {};
+  MomentumTransfer transfer = {};
   int flight = 0;  ///< number of the current flight in MovingPaths
 };
 
@@ -83,6 +84,8 @@ class ForwardWalk {
   ForwardWalk(const ForwardBatch& batch, Fresh fresh)
       : batch_(batch), fresh_(std::move(fresh)), tally_(batch.film.energy) {
     if (batch.moving) moving_.emplace(*batch.moving, batch.film, batch.counts);
+    if (const auto* variates = forward_controls(batch.transport, batch.target != nullptr))
+      controls_.emplace(*variates, batch.film.control_variates);
   }
   ~ForwardWalk() { tally_.end_path(); }
 
@@ -98,6 +101,8 @@ class ForwardWalk {
     if (!lane.now) return std::nullopt;
     return Space::FlightStart{lane.now->from.point, lane.now->direction, &lane.now->random};
   }
+  /// Returns the log that the control variates need of the next flight, or null.
+  FlightLog* log() { return controls_ ? controls_->log() : nullptr; }
 
  private:
   void begin(Lane& lane) {
@@ -120,6 +125,7 @@ class ForwardWalk {
     now.of_beam = lane.end.is_beam;
     tally_.emitted(now.from);
     now.absorption.begin(now.from, now.direction);
+    if (controls_) controls_->begin(now.from.point, now.direction);
     if (moving_)
       now.flight =
           moving_->begin(now.from.point.x, now.direction, lights.by_index(lane.end, now.direction));
@@ -142,6 +148,7 @@ class ForwardWalk {
   bool goes_on(Branch& now, const Flight& flight) {
     TransportCounts& counts = batch_.counts;
     counts.add_flight(flight.end == Flight::End::lost);
+    if (controls_) controls_->flew(now.from.weight, now.from.weight, flight);
     if (flight.end == Flight::End::lost) {
       tally_.lost(now.from, flight);
       return false;
@@ -160,8 +167,11 @@ class ForwardWalk {
     ++counts.light_collisions;
     const ScatteringMedium& medium = batch_.transport.medium(next.point.part);
     next.weight *= medium.albedo();
-    if (!now.absorption.collide(now.from, flight, medium, next, now.random, counts, tally_))
-      return false;
+    const double before = next.weight;
+    const bool survives =
+        now.absorption.collide(now.from, flight, medium, next, now.random, counts, tally_);
+    if (controls_) controls_->reweighed((survives ? next.weight : 0) - before);
+    if (!survives) return false;
     now.from = next;
     if (batch_.target) return split(medium, now, flight.arc_length);
     turn(medium, flight.arc_length, medium.phase.sample(next.arrived, now.random), now);
@@ -169,10 +179,13 @@ class ForwardWalk {
   }
   void turn(const ScatteringMedium& medium, double flown, const Vec3& direction, Branch& branch) {
     branch.direction = direction;
+    if (controls_) controls_->turned(branch.from, direction);
     if (moving_)
       branch.flight =
           moving_->go_on(branch.flight, branch.from.point.x, branch.from.arrived, flown, direction);
     if (batch_.film.has_derivatives()) branch.score.turned(medium, branch.from.arrived, direction);
+    if (batch_.film.has_decay())
+      branch.transfer.turned(branch.from.point.part, branch.from.arrived, direction);
   }
 
   /// Splits a branch at a collision in proportion to its importance. Russian roulette favours
@@ -216,7 +229,8 @@ class ForwardWalk {
     for (const SensorEnd& sensor : batch_.transport.sensors)
       sensor.hit(batch_.space, last.point.x, last.arrived, [&](const EndHit& hit) {
         const double value = last.weight * hit.value;
-        deposit(batch_.film, batch_.counts, hit.direction.pixel, value, last.optical_path);
+        deposit(batch_.film, batch_.counts, hit.direction.pixel, value, last.optical_path,
+                now.transfer);
         batch_.film.add_hit(hit.direction.pixel, value);
         if (batch_.film.has_derivatives())
           now.score.add_to(batch_.film, hit.direction.pixel, value,
@@ -229,6 +243,7 @@ class ForwardWalk {
   std::vector<Branch> waiting_;
   LightTally tally_;
   std::optional<MovingPaths> moving_;
+  std::optional<PathControls> controls_;
 };
 
 /// Random streams of the paths of a batch.
@@ -271,11 +286,17 @@ void walk(const ForwardBatch& batch, const FreshPath& path) {
   ForwardWalk::Lane lane;
   std::optional<Flight> flown;
   while (const auto start = walk.next(lane, flown ? &*flown : nullptr))
-    flown = batch.space.fly(start->from, start->direction, *start->random);
+    flown = batch.space.fly(start->from, start->direction, *start->random, walk.log());
   walk.finish();
 }
 
 }  // namespace
+
+const ControlVariates* forward_controls(const Transport& transport, bool has_target) {
+  if (has_target || !transport.depth) return nullptr;
+  const auto& variates = transport.depth->control_variates();
+  return variates && variates->grows_little() ? &*variates : nullptr;
+}
 
 std::optional<SensorTarget> SensorTarget::of(const Transport& transport, const Space& space,
                                              double bending) {

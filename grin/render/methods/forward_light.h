@@ -50,6 +50,9 @@ class SensorTarget {
   double mu_t_, attenuation_, longest_, bending_, turn_, mean_importance_ = 1;
 };
 
+/// Returns the control variates of counted paths, of straight rays that are not split; else null.
+const ControlVariates* forward_controls(const Transport& transport, bool has_target);
+
 /// Forward (photon) tracing: light paths that are tallied where they hit sensors, without
 /// connections. Each is cheap, and no contribution greatly exceeds the power of its path. With a
 /// target, paths that head for the sensors are split, and most other paths are terminated. Flights

@@ -8,6 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/numbers/statistics.h"
+
 namespace flatspeckle::grin {
 
 namespace {
@@ -58,14 +60,16 @@ double work(const TransportCounts& counts, const Tracers& tracers, const Tracer&
 }
 
 /// Accumulates the groups of one sensor's picture. The variance is estimated from the differences
-/// between successive groups.
+/// between successive groups or, for the total of a sensor of one pixel, with control variates.
 class PictureSums {
  public:
-  explicit PictureSums(const SensorEnd& sensor)
-      : last_(static_cast<std::size_t>(sensor.pixels().count())) {}
+  PictureSums(const SensorEnd& sensor, bool is_controlled)
+      : last_(static_cast<std::size_t>(sensor.pixels().count())) {
+    if (is_controlled && last_.size() == 1) controlled_.emplace(1 + control_variate_count);
+  }
 
   std::size_t pixels() const { return last_.size(); }
-  void add(std::span<const double> group) {
+  void add(std::span<const double> group, const ControlVariates::Sums& controls) {
     const double light = std::reduce(group.begin(), group.end());
     light_ += light;
     light_square_ += light * light;
@@ -77,16 +81,31 @@ class PictureSums {
       apart_square_ += apart * apart;
     }
     last_.assign(group.begin(), group.end());
+    if (!controlled_) return;
+    std::vector<Complex> sums{light};
+    sums.insert(sums.end(), controls.begin(), controls.end());
+    controlled_->add(1, sums);
   }
   PictureMoments moments() const {
     return {.total = light_ / groups,
-            .variance = apart_ / (groups - 1),
+            .variance = controlled_ ? controlled_variance() : apart_ / (groups - 1),
             .lit = light_ > 0 ? light_ * light_ / light_square_ : 0,
             .variance_error = apart_ > 0 ? std::sqrt(apart_square_) / apart_ : 0};
   }
 
  private:
+  double controlled_variance() const {
+    std::vector<std::size_t> of_controls(control_variate_count);
+    std::iota(of_controls.begin(), of_controls.end(), std::size_t{1});
+    const auto light = [](double samples, std::span<const Complex> sums) {
+      return sample_mean(samples, sums.first(1));
+    };
+    const double error = controlled_jackknife(*controlled_, light, of_controls).error[0];
+    return groups * error * error;
+  }
+
   std::vector<double> last_;
+  std::optional<GroupedSums> controlled_;  ///< light and control variates
   int count_ = 0;
   double light_ = 0, light_square_ = 0, apart_ = 0, apart_square_ = 0;
 };
@@ -110,27 +129,25 @@ class SamePixels {
 std::optional<MethodTrial> tried(const Tracers& tracers, const Tracer& tracer, int pairs_per_group,
                                  double most_work) {
   constexpr auto no_batch = std::numeric_limits<std::uint64_t>::max() - 1000;
-  const TimeBins& bins = tracers.scene().bins;
+  const TimeBins steady;
   const auto pixels = static_cast<std::size_t>(tracer.transport->pixels());
   const SamePixels same(*tracer.transport);
   TransportCounts counts;
-  std::vector<PictureSums> pictures(tracer.transport->sensors.begin(),
-                                    tracer.transport->sensors.end());
+  std::vector<PictureSums> pictures;
+  for (const SensorEnd& sensor : tracer.transport->sensors)
+    pictures.emplace_back(sensor, tracer.has_control_variates);
   for (int group = 0; group < groups; ++group) {
-    std::vector<Complex> values(pixels * static_cast<std::size_t>(bins.sums()));
-    Film film(static_cast<int>(pixels), bins, values);
+    std::vector<Complex> values(pixels);
+    Film film(static_cast<int>(pixels), steady, values);
     RandomStream random(0, static_cast<std::uint64_t>(Stream::render),
                         no_batch - static_cast<std::uint64_t>(group));
     tracer.add(pairs_per_group, random, film, counts);
     if (work(counts, tracers, tracer) > most_work) return std::nullopt;
-    std::vector<double> steady(pixels);
-    for (std::size_t pixel = 0; pixel < pixels; ++pixel)
-      for (int part = 0; part < bins.parts(); ++part)
-        steady[pixel] +=
-            values[pixel * static_cast<std::size_t>(bins.sums()) + part].real() / pairs_per_group;
+    std::vector<double> light = real_parts(values);
+    for (double& value : light) value /= pairs_per_group;
     std::size_t first = 0;
     for (PictureSums& picture : pictures) {
-      picture.add(std::span(steady).subspan(first, picture.pixels()));
+      picture.add(std::span(light).subspan(first, picture.pixels()), film.control_variates);
       first += picture.pixels();
     }
   }
@@ -268,14 +285,13 @@ bool can_be_tried(const RenderScene& scene, RenderMethod method) {
           !render_plan(scene).scatters);
 }
 
-/// Lists the methods to try, bidirectional tracing first. Forward tracing cannot compete where
-/// light tracing has a control variate, which trials do not include.
+/// Lists the methods to try, bidirectional tracing first.
 std::vector<Candidate> candidates(const Tracers& tracers) {
   std::vector<Candidate> found;
   for (const RenderMethod method :
        {RenderMethod::bidirectional, RenderMethod::path, RenderMethod::light})
     if (can_be_tried(tracers.scene(), method)) found.push_back({tracers.make(method)});
-  if (can_be_forward(tracers.scene()) && !tracers.has_control_variate())
+  if (can_be_forward(tracers.scene()))
     found.push_back({tracers.make(RenderMethod::forward)});
   return found;
 }
@@ -295,21 +311,22 @@ void try_all(const Tracers& tracers, double effort, std::vector<Candidate>& all)
 /// Returns the preference for a method, a factor by which its work is multiplied. Bidirectional
 /// tracing is preferred, since it misses least light if the trial is too short. Forward tracing of
 /// pictures is avoided: few paths hit each pixel, so that pixels stay undersampled for long and
-/// have bounds instead of errors (bound_errors).
-double preference(const Tracer& tracer) {
-  if (tracer.method == RenderMethod::bidirectional) return 0.9;
+/// have bounds instead of errors (bound_errors). Connections through surfaces that refract are made
+/// by random searches, whose rare contributions a trial underestimates.
+double preference(const Tracer& tracer, bool refracts) {
   const bool are_pixels =
       tracer.transport->pixels() > static_cast<int>(tracer.transport->sensors.size());
-  return tracer.method == RenderMethod::forward && are_pixels ? 2 : 1;
+  if (tracer.method == RenderMethod::forward) return are_pixels && !refracts ? 2 : 1;
+  return tracer.method == RenderMethod::bidirectional ? 0.9 : 1;
 }
 
 /// Returns the work of each method, multiplied by its preference.
-std::vector<Needed> needs_of(const std::vector<Candidate>& all) {
+std::vector<Needed> needs_of(const std::vector<Candidate>& all, bool refracts) {
   const auto light = light_of_pictures(all);
   std::vector<Needed> needs;
   for (const Candidate& candidate : all) {
     needs.push_back(needed(candidate.trial, light));
-    needs.back().work *= preference(candidate.tracer);
+    needs.back().work *= preference(candidate.tracer, refracts);
   }
   return needs;
 }
@@ -346,13 +363,14 @@ bool is_settled(const std::vector<Needed>& needs, std::size_t best) {
 /// reliable estimates are preferred.
 Tracer best_tracer(const Tracers& tracers) {
   if (!tracers.walks()) return tracers.make(RenderMethod::light);
+  const bool refracts = !tracers.plan().curved && !has_even_index(tracers.scene());
   auto all = candidates(tracers);
   std::vector<Needed> needs;
   std::optional<std::size_t> best;
   for (const double effort : {1, 4, 16}) {
     try_all(tracers, effort, all);
     if (all.empty()) return tracers.make(RenderMethod::bidirectional);
-    needs = needs_of(all);
+    needs = needs_of(all, refracts);
     best = best_of(needs, false);
     if (all.size() == 1 || (best && is_settled(needs, *best))) break;
   }

@@ -24,7 +24,7 @@ class MapTally : public LightTally {
       : LightTally(energy), cells_(cells), transport_(transport), sums_(sums), counts_(counts) {}
 
   Flight fly(const Space& space, const PathVertex& from, const Vec3& direction,
-             RandomStream& random, const Vec3* log_gradient) {
+             RandomStream& random, const Vec3* log_gradient, FlightLog*) {
     log_.clear();
     const Flight flight = space.fly(from.point, direction, random, &log_, log_gradient);
     const double weight = from.weight * flight.bias_weight;
@@ -74,6 +74,8 @@ void walk_light(const Transport& transport, const Space& space, RandomStream& ra
 }
 
 constexpr int fewest_pairs = 4, most_pairs = 256;
+// first batch number of the pilot run that aims lights; those of other pilot runs are above
+constexpr std::uint64_t first_of_aim = std::uint64_t{1} << 63;
 constexpr std::uint64_t enough_flights = 1 << 16;
 // largest number of scatterings of a path in a pilot run
 constexpr int pilot_scatterings = 1 << 15;
@@ -94,6 +96,7 @@ struct Pilot {
       all.considered += expected_connections[i].considered;
       all.made += expected_connections[i].made;
       all.contributed += expected_connections[i].contributed;
+      all.square += expected_connections[i].square;
       all.hits += expected_connections[i].hits;
       all.beams += expected_connections[i].beams;
     }
@@ -145,21 +148,24 @@ bool pay_connections_to_beams(Transport& transport, const PathKernel& kernel,
   return false;
 }
 
-/// Returns the ratio of actual to expected contribution of connections to each sensor, measured
-/// with some tens of connections. The result is at least 1: a smaller ratio is not reliable, since
-/// few connections contribute most.
-std::vector<double> returns_of_connections(Transport& transport, const PathKernel& kernel,
-                                           const TimeBins& bins, const Pilot& without) {
-  constexpr double some = 64, most = 1e6;
+/// Ratio of actual to expected contribution, of connections that undergo Russian roulette. Both
+/// values are at least 1: smaller ones are not reliable, since few connections contribute most.
+struct Return {
+  double mean = 1, rms = 1;
+};
+
+/// Returns the ratios for the connections to each sensor, with the current thresholds.
+std::vector<Return> returns_of_connections(Transport& transport, const PathKernel& kernel,
+                                           const TimeBins& bins) {
   const std::size_t sensors = transport.sensors.size();
-  for (std::size_t at = 0; at < sensors; ++at)
-    transport.connection_levels[at] = without.sum(at, sensors).considered / some;
   const Pilot with = pilot(transport, kernel, bins);
-  std::vector<double> returns;
+  const auto bounded = [](double ratio) { return ratio > 1 ? std::min(ratio, 1e6) : 1; };
+  std::vector<Return> returns;
   for (std::size_t at = 0; at < sensors; ++at) {
     const ExpectedConnection sum = with.sum(at, sensors);
-    const double brings = sum.contributed / sum.made;
-    returns.push_back(brings > 1 ? std::min(brings, most) : 1);
+    // a connection that is made contributes its ratio times the threshold
+    const double square = sum.square / (sum.made * transport.connection_levels[at]);
+    returns.push_back({bounded(sum.contributed / sum.made), bounded(std::sqrt(square))});
   }
   return returns;
 }
@@ -194,9 +200,11 @@ double flights_per_path(Transport& transport, const PathKernel& kernel, const Ti
 /// would gain little from connections. The thresholds minimise variance times cost: without
 /// connections a pair costs F flights and has variance V. Connections of expected contribution S
 /// and actual contribution r S, at a threshold L and a cost of c flights each, add r^2 L S to the
-/// variance and c S/L flights to the cost. The product is least at (r L)^2 = c V / F.
+/// variance and c S/L flights to the cost. The product is least at (r L)^2 = c V / F. Along curved
+/// rays r varies and is higher for connections of low S: its RMS value is measured for those below
+/// L.
 double tune_connections(Transport& transport, const PathKernel& kernel, const TimeBins& bins,
-                        double flights_per_connection) {
+                        double flights_per_connection, bool curved) {
   const Pilot first = pilot_without_connections(transport, kernel, bins);
   const double collisions = static_cast<double>(first.counts.light_collisions) / first.pairs;
   transport.strategies.connected_fraction = std::min(1.0, 1 / collisions);
@@ -204,19 +212,28 @@ double tune_connections(Transport& transport, const PathKernel& kernel, const Ti
   if (transport.strategies.connects_beams && !transport.strategies.short_light)
     transport.strategies.connects_beams = pay_connections_to_beams(transport, kernel, bins);
   const Pilot second = pilot_without_connections(transport, kernel, bins);
-  const auto returns = returns_of_connections(transport, kernel, bins, second);
   const std::size_t sensors = transport.sensors.size();
+  constexpr double some = 64;  // connections made
+  for (std::size_t at = 0; at < sensors; ++at)
+    transport.connection_levels[at] = second.sum(at, sensors).considered / some;
+  const auto returns = returns_of_connections(transport, kernel, bins);
   for (std::size_t at = 0; at < sensors; ++at) {
     std::vector<double> expected;
     for (std::size_t i = at; i < second.expected_connections.size(); i += sensors)
-      expected.push_back(returns[at] * second.expected_connections[i].considered +
+      expected.push_back(returns[at].mean * second.expected_connections[i].considered +
                          second.expected_connections[i].hits);
     transport.connection_levels[at] =
         std::sqrt(flights_per_connection * trimmed_variance(expected) / second.flights_per_pair()) /
-        returns[at];
+        returns[at].mean;
+  }
+  if (curved) {
+    const auto below = returns_of_connections(transport, kernel, bins);
+    for (std::size_t at = 0; at < sensors; ++at)
+      transport.connection_levels[at] *= std::min(returns[at].mean / below[at].rms, 1.0);
+  }
+  for (std::size_t at = 0; at < sensors; ++at)
     // contributions of connections to beams vary strongly
     transport.beam_levels[at] = transport.connection_levels[at] / 10;
-  }
   return known_flights(second);
 }
 
@@ -316,7 +333,9 @@ Tracers::Tracers(const RenderScene& scene, const RenderRequest& request)
     : scene_(scene), request_(request), plan_(render_plan(scene)) {
   if (!plan_.curved && plan_.scatters) find_depth();
   if (!scene.parameters.empty()) find_motion();
-  if (!scene.sensors.empty()) find_beams();
+  if (scene.sensors.empty()) return;
+  find_beams();
+  if (walks_ && can_be_forward(scene)) find_aim();
 }
 
 void Tracers::find_depth() {
@@ -350,6 +369,47 @@ void Tracers::find_beams() {
   if (walks_ && plan_.curved) few_rays_per_path_ = rays_beside_path(transport->lights, *space);
 }
 
+/// Aims the lights of counted paths at the sensors: zones of directions are sampled in proportion to
+/// the root mean square of the light that reaches the sensors from them, by a pilot run, and at
+/// least half as often as a neighbour. A quarter of the paths are not aimed, so that no path has a
+/// high weight.
+void Tracers::find_aim() {
+  constexpr int paths = 64;  // in each zone
+  constexpr double unaimed = 0.25, much = 2;
+  const Tracer pilot = untuned(RenderMethod::forward);
+  if (!pilot.transport->lights.can_be_aimed()) return;
+  const int pixels = pilot.transport->pixels();
+  std::vector<Complex> sums(static_cast<std::size_t>(pixels) * scene_.bins.sums());
+  const std::vector<PixelShare> all(static_cast<std::size_t>(pixels), PixelShare{0, 1});
+  Aim::Shares squares{}, aim{};
+  for (std::size_t zone = 0; zone < Aim::zones; ++zone) {
+    const double width = Aim::width(zone);
+    pilot.transport->lights.aim(Aim::at_zone(zone));
+    TransportCounts counts;
+    for (int path = 0; path < paths; ++path) {
+      Film film(pixels, scene_.bins, sums);
+      film.shares = all;
+      film.hits.resize(1);
+      RandomStream random(0, static_cast<std::uint64_t>(Stream::render), first_of_aim + path);
+      pilot.kernel(1, random, film, counts, nullptr);
+      // in a zone alone, weights are less by its width
+      squares[zone] += std::pow(film.hits[0] / width, 2) / paths;
+    }
+  }
+  double root = 0, square = 0;  // means over unaimed directions
+  for (std::size_t zone = 0; zone < Aim::zones; ++zone) {
+    const double before = zone > 0 ? squares[zone - 1] : 0,
+                 after = zone + 1 < Aim::zones ? squares[zone + 1] : 0;
+    aim[zone] = Aim::width(zone) * std::sqrt(std::max({squares[zone], before / 4, after / 4}));
+    root += aim[zone];
+    square += Aim::width(zone) * squares[zone];
+  }
+  if (!(root > 0 && root * root * much < square)) return;
+  for (std::size_t zone = 0; zone < Aim::zones; ++zone)
+    aim[zone] = (1 - unaimed) * aim[zone] / root + unaimed * Aim::width(zone);
+  aim_.emplace(aim);
+}
+
 Tracer Tracers::make(RenderMethod method) const {
   Tracer tracer = untuned(method);
   tracer.unscattered_beams = unscattered_beams_;
@@ -359,6 +419,10 @@ Tracer Tracers::make(RenderMethod method) const {
     return tracer;
   }
   tracer.flights_per_pair = flights(tracer);
+  // rays of beams are cheap beside long paths
+  constexpr double most_rays = 64, flights_per_ray = 64;
+  if (!plan_.curved)
+    tracer.rays_per_path = std::clamp(tracer.flights_per_pair / flights_per_ray, 1.0, most_rays);
   return tracer;
 }
 
@@ -366,7 +430,8 @@ double Tracers::flights(const Tracer& tracer) const {
   const auto& [method, transport, kernel] =
       std::tie(tracer.method, tracer.transport, tracer.kernel);
   if (method == RenderMethod::forward) return flights_per_path(*transport, kernel, scene_.bins);
-  return tune_connections(*transport, kernel, scene_.bins, tracer.flights_per_connection);
+  return tune_connections(*transport, kernel, scene_.bins, tracer.flights_per_connection,
+                          plan_.curved);
 }
 
 MapKernel Tracers::map_kernel() const {
@@ -415,15 +480,20 @@ Spreading Tracers::spreading_of(RenderMethod method) const {
 
 Tracer Tracers::untuned(RenderMethod method) const {
   const auto transport = transport_of(scene_, request_, method);
+  if (aim_ && method == RenderMethod::forward) transport->lights.aim(*aim_);
   if (!plan_.curved) transport->depth = depth_;
   const std::shared_ptr<const Space> space =
       make_space(scene_.field, scene_.stage, options(spreading_of(method)));
-  if (method == RenderMethod::forward)
-    return {
-        method, transport,
-        forward_kernel(transport, space, SensorTarget::of(*transport, *space, bending_of(scene_)),
-                       scene_.random_phase, moving_)};
+  if (method == RenderMethod::forward) {
+    const auto target = SensorTarget::of(*transport, *space, bending_of(scene_));
+    Tracer tracer{method, transport,
+                  forward_kernel(transport, space, target, scene_.random_phase, moving_)};
+    tracer.has_control_variates = forward_controls(*transport, target.has_value());
+    return tracer;
+  }
   Tracer tracer{method, transport, path_kernel(plan_, transport, space, scene_.random_phase)};
+  tracer.has_control_variates =
+      method != RenderMethod::path && transport->depth && transport->depth->control_variates();
   if (!plan_.curved) return tracer;
   tracer.flights_per_connection = space->cost_of_connection();
   tracer.cost_of_closed_connection = space->cost_of_closed_connection();

@@ -51,6 +51,7 @@ struct Tracer {
   /// Cost of a connection in closed form, in flights; 0 if connections are found by iteration.
   double cost_of_closed_connection = 0;
   Spreading spreading = Spreading::all;
+  bool has_control_variates = false;  ///< whether light paths accumulate control variates
 
   void add(int paths, RandomStream& random, Film& film, TransportCounts& counts) const;
 };
@@ -73,11 +74,10 @@ class Tracers {
   /// Approximate number of steps of a curved flight in the stage's medium.
   double steps_of_flight() const;
 
-  /// Whether light paths accumulate the control variate.
-  bool has_control_variate() const { return depth_ && depth_->control_variate(); }
-
   /// Whether paths are traced; if not, all lights are beams and nothing scatters.
   bool walks() const { return walks_; }
+  /// Whether a pilot run has aimed lights at the sensors.
+  bool are_lights_aimed() const { return aim_.has_value(); }
 
   const RenderScene& scene() const { return scene_; }
   const RenderPlan& plan() const { return plan_; }
@@ -86,6 +86,7 @@ class Tracers {
   void find_depth();
   void find_motion();
   void find_beams();
+  void find_aim();
   Tracer untuned(RenderMethod method) const;
   /// Tunes the connections by pilot runs; returns the flights per pair.
   double flights(const Tracer& tracer) const;
@@ -96,6 +97,7 @@ class Tracers {
   const RenderRequest& request_;
   RenderPlan plan_;
   bool walks_ = true;
+  std::optional<Aim> aim_;  ///< set if it saves much work
   std::shared_ptr<const DepthImportance> depth_;  ///< set if the plan is deep
   /// Set if derivatives by parameters of the field are requested (gradient_by).
   std::shared_ptr<const MovingField> moving_;

@@ -11,6 +11,7 @@
 #include "grin/render/methods/beam_edges.h"
 #include "grin/render/transport/beam_connection.h"
 #include "grin/render/transport/light_tally.h"
+#include "grin/render/transport/scrambled_sobol.h"
 #include "grin/render/transport/path_score.h"
 
 namespace flatspeckle::grin {
@@ -292,17 +293,26 @@ class UnscatteredBeams {
 class EvenRays {
  public:
   EvenRays(const StageLights& lights, int rays, RandomStream& random)
-      : lights_(lights), rays_(rays), first_(random.uniform()), turn_(random.uniform()) {}
+      : lights_(lights),
+        rays_(rays),
+        first_(random.uniform()),
+        turn_(random.uniform()),
+        choices_(random.bits(), 0) {}
 
   double stratum(int ray) const { return (ray + first_) / rays_; }
   EndPosition start(int ray) const {
     return lights_.beam_position(stratum(ray), fraction(turn_ + ray * golden));
+  }
+  /// Stratifies the random numbers by which a ray is reflected or refracted at its first surfaces.
+  void lead(int ray, RandomStream& random) const {
+    random.lead(choices_.point(static_cast<std::uint64_t>(ray)));
   }
 
  private:
   const StageLights& lights_;
   int rays_;
   double first_, turn_;
+  ScrambledSobol choices_;
 };
 
 /// Traces rays in SIMD lanes.
@@ -359,6 +369,7 @@ BeamsKernel kernel(std::shared_ptr<const Transport> transport, const BeamsSetup&
     const auto add = [&](const Space& met, int ray) {
       UnscatteredBeams light(*transport, setup, met, paths_per_ray, random, film, counts);
       if (follows_rays && !in_lanes) {
+        from.lead(ray, random);
         light.add_ray(from.start(ray), from.stratum(ray));
         light.finish();
       }

@@ -278,6 +278,7 @@ void write_sensor(const ResultGroup& group, const SensorPixels& pixels,
     group.put("power_within_covariance", result.within->covariance);
   }
   if (result.gradients) write_gradients(group, pixels, result.total.has_value(), *result.gradients);
+  if (result.decay) write_decay(group, *result.decay);
   if (!result.pulse.value.empty()) {
     group.put("transient", result.picture.bins);
     group.put("transient_before", result.picture.before);
@@ -399,6 +400,9 @@ const DatasetTable render_table{
          {"time", Data::real, "optical_path", "s", "optical path over the speed of light"},
          {"parameter", Data::numbers, "", "1",
           "parameters of derivatives: see the attribute names"},
+         {"delay", Data::scale, "", "1", "delay, as k^2 D tau"},
+         {"body", Data::numbers, "", "1",
+          "0: the stage outside of bodies; then the bodies, from the largest to the smallest"},
          {"transport/flights", Data::count, "", "1", "free flights from one event to the next"},
          {"transport/lost_flights", Data::count, "", "1",
           "lost flights: too long, trapped or into an index that is not positive; their light is "
@@ -433,6 +437,7 @@ RenderResult render_result(const RenderScene& scene, const RenderJob& job,
     result.back().within = powers_within(sensor, check, first, job, sums);
     if (job.bins.derivatives > 0 || job.bins.by_field > 0)
       result.back().gradients = power_gradients(sensor, first, job.bins, sums);
+    if (job.bins.decay) result.back().decay = decay_result(pixels.of, first, job.bins, sums);
     first += pixels.count();
   }
   return result;
@@ -455,6 +460,10 @@ void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& j
   if (const auto names = gradient_names(scene); !names.empty()) {
     root.number("parameter", names.size());
     root.attribute("parameter", "names", names);
+  }
+  if (job.bins.decay) {
+    root.put("delay", job.bins.decay->delays);
+    root.number("body", job.bins.decay->parts());
   }
   if (job.bins.count > 1) write_bins(root, job.bins, length_unit);
   for (std::size_t i = 0; i < result.size(); ++i)

@@ -8,6 +8,7 @@
 #include "core/result/dataset_row.h"
 #include "core/result/invariant.h"
 #include "grin/render/methods/render_scene.h"
+#include "grin/render/pictures/decay_results.h"
 #include "grin/render/pictures/powers_within.h"
 #include "grin/render/pictures/render_job.h"
 
@@ -52,6 +53,7 @@ struct SensorResult {
   std::optional<Estimate> total = {};  ///< power on the sensor, if its kind has a total
   std::optional<PowersWithin> within = {};
   std::optional<PowerGradients> gradients = {};
+  std::optional<DecayResult> decay = {};
   /// Total power, or the mean if there is no total, in each bin of optical path, and before and
   /// after all bins.
   Estimate pulse = {}, pulse_before = {}, pulse_after = {};

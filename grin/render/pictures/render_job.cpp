@@ -199,6 +199,14 @@ void add_means_by(const Tracer& tracer, int paths, const TimeBins& bins,
   for (std::size_t i = 0; i < means.size(); ++i) means[i] += own[i] * paths / few;
 }
 
+/// Returns the entries first .. first + count - 1 of all groups.
+GroupedSums some_of(const GroupedSums& sums, std::size_t first, std::size_t count) {
+  GroupedSums some(count);
+  for (std::size_t group = 0; group < sums.groups(); ++group)
+    some.add(sums.group_samples(group), sums.group_sums(group).subspan(first, count));
+  return some;
+}
+
 }  // namespace
 
 std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& sums) {
@@ -208,9 +216,9 @@ std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& su
   const double errors = is_enough ? std::max(5.0, outlier_errors(sums.groups())) : 0;
   const std::size_t count = job.sensors;
   const Estimate all = jackknife(
-      sums,
+      some_of(sums, job.first_of_checks(), 2 * count),
       [&](double samples, std::span<const Complex> of) {
-        auto values = sample_mean(samples, of.subspan(job.first_of_checks(), 2 * count));
+        auto values = sample_mean(samples, of);
         for (std::size_t i = 0; i < count; ++i) values.push_back(values[i] + values[count + i]);
         return values;
       },
@@ -241,8 +249,7 @@ std::optional<Invariant> worst_light(const std::vector<LightCheck>& checks) {
 }
 
 TransportCounts transport_counts(const RenderJob& job, const GroupedSums& sums) {
-  const std::vector<Complex> all = sums.total();
-  return TransportCounts::of(std::span(all).subspan(job.first_of_counts(), TransportCounts::size));
+  return TransportCounts::of(some_of(sums, job.first_of_counts(), TransportCounts::size).total());
 }
 
 RenderTarget usual_target(const Sensor& sensor) {
@@ -308,6 +315,8 @@ void check(const RenderScene& scene, const RenderRequest& request) {
     throw InputError("target", "powers", "requires radii for every sensor");
   if (scene.bins.derivatives > 0 && request.method != RenderMethod::forward)
     throw InputError("gradient: requires method = forward");
+  if (scene.bins.decay && request.method != RenderMethod::forward)
+    throw InputError("delays: requires method = forward");
   if (!scene.parameters.empty() && request.method != RenderMethod::forward)
     throw InputError("gradient_by: requires method = forward");
   if (scene.random_phase) make_ray_field(scene.field)->frozen(0);
@@ -335,7 +344,8 @@ struct RenderBatch {
     RandomStream random = stream(Stream::render, number);
     if (!shares.empty()) tracer.add(paths, random, film, counts);
     add_checks(film, number, sums.subspan(job.first_of_checks(), 2 * job.sensors));
-    if (job.has_control_variate) sums.back() += film.control_variate;
+    for (std::size_t i = 0; i < job.controls; ++i)
+      sums[sums.size() - job.controls + i] += film.control_variates[i];
     if (map) {
       RandomStream own = stream(Stream::light_map, number);
       map(paths, own, sums.subspan(job.first_of_map()), of_map, counts);
@@ -380,14 +390,15 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.bins = scene.bins;
   job.plan = described(scene, request, tracer.method) + tracers.plan().describe() +
              described_steps(scene, tracers.plan()) + described_sensors(scene) +
-             described_map(scene) + (tracers.walks() ? "" : "; rays of beams alone");
+             described_map(scene) + (tracers.walks() ? "" : "; rays of beams alone") +
+             (tracers.are_lights_aimed() ? "; lights aimed at the sensors" : "");
   job.pictures = static_cast<std::size_t>(pixels) * scene.bins.sums();
   const bool tallies_power = walks_light(tracer.method) && pixels > 0;
   job.has_energy = tallies_power || map;
-  job.has_control_variate = tallies_power && tracers.has_control_variate();
+  if (tracer.has_control_variates) job.controls = control_variate_count;
   job.sensors = scene.sensors.size();
   job.batches.size = job.first_of_map() + (map ? sums_per_cell * cells(*scene.map) : 0) +
-                     (job.has_control_variate ? 1 : 0);
+                     job.controls;
   const int least =
       paths_per_batch(tracer, tracers.plan().scatters, tracers.cost_of_flight(), job.batches.size);
   const int paths =
@@ -413,7 +424,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
     if (!std::ranges::all_of(checks, &LightCheck::holds))
       return std::numeric_limits<double>::infinity();
     const double few = layout.few_of_pictures;
-    const Estimate picture = layout.has_control_variate ? layout.estimate(sums, steady, few)
+    const Estimate picture = layout.controls > 0 ? layout.estimate(sums, steady, few)
                                                         : jackknife(sums, steady_sums, few);
     const double of_pictures = largest_error(layout, checks, kinds, target, picture, sums);
     return cells
@@ -423,18 +434,23 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   return job;
 }
 
+std::vector<std::size_t> RenderJob::control_sums() const {
+  std::vector<std::size_t> all(controls);
+  std::iota(all.begin(), all.end(), batches.size - controls);
+  return all;
+}
+
 Estimate RenderJob::estimate(const GroupedSums& sums, const Estimator& theta, double few) const {
-  return has_control_variate ? controlled_jackknife(sums, theta, std::array{sums.size() - 1}, few)
-                             : jackknife(sums, theta, few);
+  return controls > 0 ? controlled_jackknife(sums, theta, control_sums(), few)
+                      : jackknife(sums, theta, few);
 }
 
 Estimate RenderJob::estimate_of(const LightCheck& check, const GroupedSums& sums,
                                 const Estimator& theta) const {
   if (!check.is_control) return estimate(sums, theta);
-  std::vector<std::size_t> controls;
-  if (has_control_variate) controls.push_back(sums.size() - 1);
-  controls.push_back(check.difference);
-  return controlled_jackknife(sums, theta, controls, few_of_values);
+  std::vector<std::size_t> all = control_sums();
+  all.push_back(check.difference);
+  return controlled_jackknife(sums, theta, all, few_of_values);
 }
 
 RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {

@@ -21,20 +21,22 @@ struct LightCheck;
 /// The sums of a batch, with imaginary part 0, are: [pixel][TimeBins::sums], sensor after sensor;
 /// then [Termination], if light paths are traced to their ends; then TransportCounts; then the
 /// means over the pixels of each sensor, and what independent estimates of them exceed them by
-/// (LightCheck); then the sums of a map (MapKernel); and last the control variate
-/// (DepthImportance::ControlVariate).
+/// (LightCheck); then the sums of a map (MapKernel); and last the control variates
+/// (ControlVariates).
 struct RenderJob {
   BatchJob batches;
   TimeBins bins;
   std::size_t pictures = 0;          ///< number of sums of all pixels
   bool has_energy = false;           ///< whether there are sums by Termination
-  bool has_control_variate = false;  ///< whether the last sum is the control variate
+  std::size_t controls = 0;          ///< number of control variates
   std::string plan;                  ///< method and features, as text
   std::size_t sensors = 0;
   std::size_t first_of_counts() const { return pictures + (has_energy ? EnergyBalance::size : 0); }
   std::size_t first_of_checks() const { return first_of_counts() + TransportCounts::size; }
   std::size_t first_of_map() const { return first_of_checks() + 2 * sensors; }
-  /// Estimates pictures by jackknife(), with the control variate if there is one. few: effective
+  /// Indices of the sums of the control variates.
+  std::vector<std::size_t> control_sums() const;
+  /// Estimates pictures by jackknife(), with the control variates if there are any. few: effective
   /// number of groups below which an entry is undersampled.
   Estimate estimate(const GroupedSums& sums, const Estimator& theta,
                     double few = few_of_values) const;

@@ -61,6 +61,15 @@ DatasetTable sensor_table(const SensorWords& words) {
   add("image_gradient", "parameter " + axes, "", "derivative of image");
   add("mean_gradient", "parameter", "", "derivative of mean");
   if (has_total) add("total_gradient", "parameter", "", "derivative of total");
+  add("image_correlation", "delay " + axes, "1",
+      "field correlation g1 of the pixel's light after a delay; 0 without light");
+  add("mean_correlation", "delay", "1", "field correlation g1 of the sensor's light after a delay");
+  add("pulse_correlation", "delay optical_path", "1",
+      "field correlation g1 of the sensor's light in the bin; 0 without light");
+  add("mean_transfer", "body", "1",
+      "mean momentum transfer of the sensor's light: sum over collisions of 1 - cos");
+  add("correlation_gradient", "body delay", "1",
+      "derivative of mean_correlation by the diffusion factor of a body");
   return table;
 }
 

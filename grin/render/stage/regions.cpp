@@ -9,6 +9,13 @@ namespace flatspeckle::grin {
 
 Regions::Regions(const Stage& stage, std::optional<double> farthest) {
   for (Part part = around; part < stage.parts(); ++part) surfaces_.push_back(stage.surface(part));
+  has_fast_distance_.assign(surfaces_.size(), true);
+  for (std::size_t part = surfaces_.size(); part-- > 0;) {
+    const bool is_fast = std::holds_alternative<Box>(surfaces_[part]) ||
+                         std::holds_alternative<Sphere>(surfaces_[part]);
+    has_fast_distance_[part] =
+        is_fast && (part + 1 == surfaces_.size() || has_fast_distance_[part + 1]);
+  }
   if (stage.bodies.empty()) return;
   for (const Surface& surface : surfaces_)
     if (std::holds_alternative<LevelSurface>(surface)) most_segments_ = 10000;

@@ -43,6 +43,16 @@ class Regions {
     return crossing_accuracy(farthest_) + crossing_accuracy(x);
   }
 
+  /// Lower bound of the distance from a point to the surface of its part; 0 if it takes long to
+  /// compute.
+  double clearance(const PathPoint& p) const {
+    if (!has_fast_distance_[p.part]) return 0;
+    double least = -distance(surfaces_[p.part], p.x);
+    for (Part over = p.part + 1; over < parts(); ++over)
+      least = std::min(least, distance(surfaces_[over], p.x));
+    return least;
+  }
+
   /// Returns the part at a position in the stage; on a surface, the part outside.
   Part at(const Vec3& x) const;
   /// Returns the part in which a line along d starts; on a surface, the part that it enters.
@@ -76,6 +86,7 @@ class Regions {
   bool goes_into(Part body, const Vec3& x, const Vec3& d) const;
 
   std::vector<Surface> surfaces_;
+  std::vector<bool> has_fast_distance_;  ///< by part: whether its surfaces are boxes and balls
   double farthest_ = 0;
   int most_segments_ = 1000;
 };

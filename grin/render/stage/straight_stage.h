@@ -44,17 +44,24 @@ class StraightStage {
                                   const Vec3* log_gradient = nullptr) const {
     const Vec3 x = flight.point.x, d = flight.direction;
     const auto path = [&](double s) -> Vec3 { return x + s * d; };
-    auto [distance, end] = regions_.exit_distance(flight.point, d);
     const Part part = flight.point.part;
     const PartMedium& in = medium(part);
     const double growth_rate =
         log_gradient && in.is_uniform() ? log_gradient->dot(d) / in.mu_t() : 0;
-    const double free = growth_rate > 0
-                            ? sample_biased(flight, in.mu_t(), growth_rate, distance, random)
-                            : in.free_path(path, distance, random);
-    if (free < distance) {
-      distance = free;
-      end = at_collision;
+    const bool is_usual = in.is_uniform() && !(growth_rate > 0);
+    double distance =
+        is_usual ? sample_free_flight(in.mu_t(), random.uniform()) : no_crossing;
+    SegmentEnd end = at_collision;
+    if (!(is_usual && distance < regions_.clearance(flight.point))) {
+      const auto exit = regions_.exit_distance(flight.point, d);
+      if (growth_rate > 0)
+        distance = sample_biased(flight, in.mu_t(), growth_rate, exit.length, random);
+      else if (!is_usual)
+        distance = in.free_path(path, exit.length, random);
+      if (!(distance < exit.length)) {
+        distance = exit.length;
+        end = exit.end;
+      }
     }
     flight.point.x = path(distance);
     flight.arc_length += distance;

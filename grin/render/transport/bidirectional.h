@@ -87,7 +87,7 @@ class Bidirectional {
 
   static Tree make_tree(const Transport& transport, [[maybe_unused]] Film& film) {
     if constexpr (Tree::is_split())
-      return Tree(*transport.depth, film.control_variate);
+      return Tree(*transport.depth, film.control_variates);
     else
       return {};
   }
@@ -336,7 +336,7 @@ class Bidirectional {
       if (vertex.end)
         to.strength =
             std::max(to.strength, elsewhere * ends.sample_direction(*vertex.end, random_).strength);
-      else if (space_.connects_through())
+      else
         to.strength = std::max(to.strength, elsewhere / (4 * std::numbers::pi));
     }
     return to;
@@ -346,7 +346,7 @@ class Bidirectional {
     expected_[at_].considered += expected;
     const double level = transport_.connection_levels[at_];
     if (const double probability = connection_probability(expected, level); probability > 0) {
-      expected_[at_].made += expected / probability;
+      if (probability < 1) expected_[at_].made += expected / probability;
       add_connected(y, z, space_.connect(y.point, z.point, random_, counts_.connections),
                     probability);
     }
@@ -374,7 +374,10 @@ class Bidirectional {
     const ConnectedPath path = connected_path(transport_.strategies, y, from_y, z, from_z, *curve);
     const double value =
         path.value * path.weight * curve->transmittance * curve->multiplicity / probability;
-    expected_[at_].contributed += value;
+    if (probability < 1) {
+      expected_[at_].contributed += value;
+      expected_[at_].square += value * value;
+    }
     add(z.end ? path.pixel : pixel_, value, y.optical_path + curve->optical_path + z.optical_path);
   }
 

@@ -75,7 +75,7 @@ std::optional<DepthImportance> DepthImportance::of(const Stage& stage, const Sta
   if (stage.bodies.size() > 1) return std::nullopt;
   if (stage.parts() > 1 && !is_in_closed_form(stage.surface(1))) return std::nullopt;
   DepthImportance found(stage, lights, sensors);
-  if (!found.is_thick_) return std::nullopt;
+  if (!found.is_thick_ && !found.control_variates_) return std::nullopt;
   return found;
 }
 
@@ -98,7 +98,12 @@ DepthImportance::DepthImportance(const Stage& stage, const StageLights& lights,
     if (camera && camera->lens_radius == 0) inner_.push_back(camera->x);
     destinations_.push_back(to);
   }
-  find_control_variate(stage, starts[0]);
+  control_variates_ = ControlVariates::of(stage, direction_to_farthest(starts[0]), starts);
+  if (control_variates_ && !pays(*control_variates_)) control_variates_.reset();
+  if (is_thick_) return;
+  // connections are thinned out in thick media alone
+  for (Destination& to : destinations_) to.connected = 1;
+  most_connections_ = 1;
 }
 
 DepthImportance::ByPart DepthImportance::decay(const Stage& stage, const Vec3& direction) const {
@@ -128,25 +133,23 @@ void DepthImportance::find_shares(Destination& to, const std::vector<PathPoint>&
   is_thick_ |= direct > thick;
 }
 
-/// Makes the control variate along the line from `start` to the most distant sensor.
-void DepthImportance::find_control_variate(const Stage& stage, const PathPoint& start) {
-  const ScatteringMedium& medium = stage.medium;
-  const bool is_known = std::holds_alternative<IsotropicPhase>(medium.phase.which) ||
-                        std::holds_alternative<HgPhase>(medium.phase.which);
-  if (body_ || medium.density || !(medium.mu_s > 0) || !is_known) return;
-  double deepest = 0;
-  Vec3 axis = Vec3::Zero();
+/// Whether control variates are worth their cost, and paths sample them well.
+bool DepthImportance::pays(const ControlVariates& variates) const {
+  return variates.depth() > thick && (favours_deep_ || variates.grows_little());
+}
+
+/// Returns the direction from `start` to the most distant sensor; 0 if `start` is on all sensors.
+Vec3 DepthImportance::direction_to_farthest(const PathPoint& start) const {
+  double farthest = 0;
+  Vec3 direction = Vec3::Zero();
   for (const Destination& to : destinations_) {
     const StraightPath path = path_to(start, to);
-    if (path.length[0] <= deepest) continue;
-    deepest = path.length[0];
-    axis = path.direction;
+    const double length = path.length[0] + path.length[1];
+    if (length <= farthest) continue;
+    farthest = length;
+    direction = path.direction;
   }
-  const CaseMode mode(medium.albedo(), medium.phase.mean_cosine());
-  // the eigenmode is smooth up to most_kappa; exp(most_growth) is finite
-  constexpr double most_kappa = 0.95, most_growth = 300;
-  if (mode.kappa() > most_kappa || mode.kappa() * medium.mu_t() * deepest > most_growth) return;
-  control_variate_ = ControlVariate{mode, axis, start.x, medium.mu_t(), medium.albedo()};
+  return direction;
 }
 
 DepthImportance::StraightPath DepthImportance::path_to(const PathPoint& p,
@@ -189,6 +192,7 @@ double DepthImportance::clearance(const PathPoint& p) const {
 }
 
 double DepthImportance::connection_probability(const PathPoint& p) const {
+  if (!is_thick_) return 1;
   const double depth = extinction_[p.part] * clearance(p);
   const double beyond = 1 + std::max(0.0, depth / 2 - 1) / 8;
   const double square = beyond * beyond, fourth = square * square;

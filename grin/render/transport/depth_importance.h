@@ -4,10 +4,9 @@
 #include <optional>
 #include <vector>
 
-#include "grin/media/scattering/diffusion_rate.h"
 #include "grin/render/lights/light.h"
 #include "grin/render/sensors/sensor.h"
-#include "grin/render/stage/straight_stage.h"
+#include "grin/render/transport/control_variates.h"
 
 namespace flatspeckle::grin {
 
@@ -18,8 +17,8 @@ namespace flatspeckle::grin {
 /// variance depends on it, not the mean.
 class DepthImportance {
  public:
-  /// Returns nullopt if no sensor is deep behind a medium, or if the stage has several bodies or a
-  /// shape other than a box or a sphere.
+  /// Returns nullopt if no medium is thick, or if the stage has several bodies or a shape other than
+  /// a box or a sphere.
   static std::optional<DepthImportance> of(const Stage& stage, const StageLights& lights,
                                            const std::vector<Sensor>& sensors);
 
@@ -41,21 +40,8 @@ class DepthImportance {
   /// Largest fraction_of_connections() of all sensors.
   double most_connections() const { return most_connections_; }
 
-  /// Martingale control variate: the discrete (Case) eigenmode along the line from a light to a
-  /// sensor. Its changes along a path (flights, scattering, roulette) have mean 0, wherever the
-  /// path ends. Along paths that pass through the medium these changes add up to nearly equal sums,
-  /// so that the control variate is most effective in deep slabs.
-  struct ControlVariate {
-    CaseMode mode;
-    Vec3 axis, from;
-    double mu_t, albedo;
-
-    double cosine(const Vec3& direction) const { return axis.dot(direction); }
-    double growth(const Vec3& x) const { return mode.growth(mu_t * axis.dot(x - from)); }
-  };
-  /// Returns nullopt if the stage is not a single uniform medium, if the mode is not known for its
-  /// phase function, or if the decay is too strong for double precision.
-  const std::optional<ControlVariate>& control_variate() const { return control_variate_; }
+  /// Control variates of light paths along the line from a light to the most distant sensor.
+  const std::optional<ControlVariates>& control_variates() const { return control_variates_; }
 
   /// Whether light paths are split; if not, only the number of connections is reduced.
   bool favours_deep() const { return favours_deep_; }
@@ -86,7 +72,8 @@ class DepthImportance {
   ByPart decay(const Stage& stage, const Vec3& direction) const;
   void find_shares(Destination& to, const std::vector<PathPoint>& starts);
 
-  void find_control_variate(const Stage& stage, const PathPoint& start);
+  Vec3 direction_to_farthest(const PathPoint& start) const;
+  bool pays(const ControlVariates& variates) const;
   double clearance(const PathPoint& p) const;
 
   Surface boundary_;
@@ -94,8 +81,9 @@ class DepthImportance {
   ByPart extinction_ = {};
   std::vector<Vec3> inner_;  ///< positions of pinhole cameras
   std::vector<Destination> destinations_;
-  std::optional<ControlVariate> control_variate_;
-  bool favours_deep_ = false, is_thick_ = false;
+  std::optional<ControlVariates> control_variates_;
+  bool favours_deep_ = false;
+  bool is_thick_ = false;  ///< whether all light that reaches some sensor passes a thick medium
   double most_connections_ = 0;
 };
 

@@ -3,10 +3,12 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "core/numbers/complex.h"
+#include "grin/render/transport/field_decay.h"
 
 namespace flatspeckle::grin {
 
@@ -52,8 +54,8 @@ class EnergyBalance {
 
 /// Layout of a pixel's sums: equal bins of optical path, with one more bin below the first and one
 /// above the last, so that the sum of all bins is the steady picture; moments of the optical path;
-/// and derivatives with respect to parameters of the medium (path_score.h) and of the field
-/// (moving_paths.h).
+/// derivatives with respect to parameters of the medium (path_score.h) and of the field
+/// (moving_paths.h); and the field correlation after delays (FieldDecay).
 struct TimeBins {
   double first = 0,
          last = 0;  ///< lower edge of the first bin and upper edge of the last, in optical path
@@ -61,6 +63,10 @@ struct TimeBins {
   bool moments = false;  ///< whether value times optical path, and times its square, are summed too
   int derivatives = 0;   ///< number of parameters of the medium
   int by_field = 0;      ///< number of sums for derivatives by parameters of the field
+  /// If set, the sums end with those of the field correlation: for each delay the intensity sums,
+  /// times the decay of each path; the momentum transfer in each part, times the light; and the
+  /// derivatives after each delay by the diffusion in each part, [part][delay].
+  std::shared_ptr<const FieldDecay> decay = {};
 
   bool keeps_paths() const { return count > 1 || moments; }
   /// Number of intensity sums of a pixel: one before the bins, the bins, and one after them; or 1
@@ -68,7 +74,12 @@ struct TimeBins {
   int parts() const { return count > 1 ? count + 2 : 1; }
   int first_derivative() const { return parts() + (moments ? 2 : 0); }
   int first_by_field() const { return first_derivative() + derivatives; }
-  int sums() const { return first_by_field() + by_field; }
+  int first_decay() const { return first_by_field() + by_field; }
+  int delays() const { return decay ? static_cast<int>(decay->delays.size()) : 0; }
+  int decay_parts() const { return decay ? static_cast<int>(decay->parts()) : 0; }
+  int first_transfer() const { return first_decay() + delays() * parts(); }
+  int first_decay_derivative() const { return first_transfer() + decay_parts(); }
+  int sums() const { return first_decay_derivative() + decay_parts() * delays(); }
 };
 
 /// The sensor of a pixel, and the pixel's share of the sensor area.
@@ -76,6 +87,9 @@ struct PixelShare {
   std::size_t sensor;
   double share;
 };
+
+/// Number of control variates of light paths (control_variates.h).
+inline constexpr std::size_t control_variate_count = 5;
 
 /// Accumulators of a batch: for each pixel, the sums laid out by TimeBins.
 class Film {
@@ -89,11 +103,8 @@ class Film {
   }
 
   void add(int pixel, double value, double optical_path) {
-    Complex* const own = sums_.data() + static_cast<std::size_t>(pixel) * per_pixel_;
-    if (bins_.count > 1)
-      add_to_bins(own, value, optical_path);
-    else
-      own[0] += value;
+    Complex* const own = sums_of(pixel);
+    add_light(own, value, optical_path);
     if (!bins_.moments) return;
     own[bins_.parts()] += value * optical_path;
     own[bins_.parts() + 1] += value * optical_path * optical_path;
@@ -129,11 +140,38 @@ class Film {
     own[bins_.first_by_field() + number] += value;
   }
 
+  bool has_decay() const { return bins_.decay != nullptr; }
+  /// Adds a contribution to the field correlation.
+  void add_decay(int pixel, double value, double optical_path, const MomentumTransfer& transfer) {
+    const FieldDecay& decay = *bins_.decay;
+    Complex* const own = sums_of(pixel);
+    Complex* const derivatives = own + bins_.first_decay_derivative();
+    for (std::size_t part = 0; part < decay.parts(); ++part)
+      own[bins_.first_transfer() + static_cast<int>(part)] += value * transfer.in(part);
+    for (std::size_t t = 0; t < decay.delays.size(); ++t) {
+      const double left = value * decay.factor(t, transfer);
+      add_light(own + bins_.first_decay() + static_cast<int>(t) * bins_.parts(), left,
+                optical_path);
+      for (std::size_t part = 0; part < decay.parts(); ++part)
+        derivatives[part * decay.delays.size() + t] -= 2 * decay.delays[t] * transfer.in(part)*left;
+    }
+  }
+
   EnergyBalance energy;  ///< power of light paths that are traced to their ends
-  /// Sum of DepthImportance::ControlVariate over the light paths that are traced to their ends.
-  double control_variate = 0;
+  /// Sums of the control variates over the light paths that are traced to their ends.
+  std::array<double, control_variate_count> control_variates{};
 
  private:
+  Complex* sums_of(int pixel) {
+    return sums_.data() + static_cast<std::size_t>(pixel) * static_cast<std::size_t>(per_pixel_);
+  }
+  /// Adds a contribution to the intensity sums that begin at `own`.
+  void add_light(Complex* own, double value, double optical_path) const {
+    if (bins_.count > 1)
+      add_to_bins(own, value, optical_path);
+    else
+      own[0] += value;
+  }
   /// Splits a contribution between the two bins with the nearest centres (linear splat), which
   /// preserves the mean optical path of light between the first and the last centre.
   void add_to_bins(Complex* own, double value, double optical_path) const {

@@ -12,8 +12,8 @@ namespace flatspeckle::grin {
 /// is the power before the flight.
 struct NoTally {
   Flight fly(const Space& space, const PathVertex& from, const Vec3& direction,
-             RandomStream& random, const Vec3* log_gradient) const {
-    return space.fly(from.point, direction, random, nullptr, log_gradient);
+             RandomStream& random, const Vec3* log_gradient, FlightLog* log) const {
+    return space.fly(from.point, direction, random, log, log_gradient);
   }
   void emitted(const PathVertex&) const {}
   void left(const PathVertex&, const Flight&) const {}

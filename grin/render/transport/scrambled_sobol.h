@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "core/numbers/random.h"
@@ -14,17 +15,20 @@ namespace flatspeckle::grin {
 /// and its number.
 class ScrambledSobol {
  public:
-  ScrambledSobol(std::uint64_t seed, std::uint64_t sequence)
-      : seed_(mixed(mixed(seed) ^ sequence)) {}
+  ScrambledSobol(std::uint64_t seed, std::uint64_t sequence) {
+    const std::uint64_t own = mixed(mixed(seed) ^ sequence);
+    for (std::size_t stream = 0; stream < keys_.size(); ++stream) keys_[stream] = mixed(own + stream);
+  }
 
   /// Returns point `number`, in (0, 1)^4.
   std::array<double, 4> point(std::uint64_t number) const {
     // the order of the points is scrambled too, so that points of two sequences do not go together
     const std::uint32_t index =
-        reversed(scrambled(reversed(static_cast<std::uint32_t>(number)), 0));
+        reversed(scrambled(reversed(static_cast<std::uint32_t>(number)), keys_[0]));
+    const Coordinates sobol = reversed_sobol(index);
     std::array<double, 4> point;
-    for (std::uint32_t axis = 0; axis < 4; ++axis)
-      point[axis] = (reversed(scrambled(reversed_sobol(index, axis), axis + 1)) + 0.5) * 0x1p-32;
+    for (std::size_t axis = 0; axis < 4; ++axis)
+      point[axis] = (reversed(scrambled(sobol[axis], keys_[axis + 1])) + 0.5) * 0x1p-32;
     return point;
   }
 
@@ -44,8 +48,7 @@ class ScrambledSobol {
   }
   /// Applies a random permutation in which each bit depends only on itself and lower bits. Read
   /// from the lowest bit, this is a nested uniform scrambling.
-  std::uint32_t scrambled(std::uint32_t x, std::uint32_t stream) const {
-    const std::uint64_t key = mixed(seed_ + stream);
+  static std::uint32_t scrambled(std::uint32_t x, std::uint64_t key) {
     const auto low = static_cast<std::uint32_t>(key), high = static_cast<std::uint32_t>(key >> 32);
     x += low;
     x ^= x * (high & ~1u);
@@ -54,8 +57,8 @@ class ScrambledSobol {
     return x * ((low ^ high) | 1u);
   }
 
-  /// Direction numbers [axis][bit of the index], from the highest bit of the index to the lowest,
-  /// with bits in reversed order.
+  using Coordinates = std::array<std::uint32_t, 4>;
+  /// Direction numbers [axis][bit of the index], with bits in reversed order.
   using Directions = std::array<std::array<std::uint32_t, 32>, 4>;
   static constexpr Directions directions() {
     struct Polynomial {
@@ -83,16 +86,31 @@ class ScrambledSobol {
     }
     return all;
   }
-  /// Returns a coordinate of Sobol point `index`, with bits in reversed order.
-  static std::uint32_t reversed_sobol(std::uint32_t index, std::uint32_t axis) {
-    static constexpr Directions v = directions();
-    std::uint32_t x = 0;
-    for (int bit = 0; index != 0; index >>= 1, ++bit)
-      if (index & 1u) x ^= v[axis][bit];
+  /// Sums of direction numbers [byte of the index][its value].
+  using ByteSums = std::array<std::array<Coordinates, 256>, 4>;
+  static constexpr ByteSums byte_sums() {
+    const Directions v = directions();
+    ByteSums sums{};
+    for (unsigned byte = 0; byte < 4; ++byte)
+      for (unsigned value = 1; value < 256; ++value) {
+        const int lowest = std::countr_zero(value);
+        for (std::size_t axis = 0; axis < 4; ++axis)
+          sums[byte][value][axis] =
+              sums[byte][value & (value - 1)][axis] ^ v[axis][8 * byte + lowest];
+      }
+    return sums;
+  }
+  /// Returns the coordinates of Sobol point `index`, with bits in reversed order.
+  static Coordinates reversed_sobol(std::uint32_t index) {
+    static constexpr ByteSums sums = byte_sums();
+    Coordinates x{};
+    for (unsigned byte = 0; byte < 4; ++byte)
+      for (std::size_t axis = 0; axis < 4; ++axis)
+        x[axis] ^= sums[byte][index >> 8 * byte & 0xffu][axis];
     return x;
   }
 
-  std::uint64_t seed_;
+  std::array<std::uint64_t, 5> keys_;  ///< of the order, and of each axis
 };
 
 /// Returns the points by which the first random numbers of the light paths of a batch are

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "grin/media/scattering/scattering_medium.h"
@@ -23,6 +24,7 @@ class UnsplitPath {
   static constexpr bool is_split() { return false; }
   void begin(const PathVertex&, const Vec3&) { throughput_ = 1; }
   const Vec3* log_gradient() const { return nullptr; }
+  FlightLog* log() const { return nullptr; }
   void bias(double) {}
   void flew(double, const PathVertex&, const Flight&) {}
   void turned(const PathVertex&, const Vec3&) {}
@@ -54,41 +56,31 @@ class UnsplitPath {
 class SplitTree {
  public:
   static constexpr bool is_split() { return true; }
-  /// Holds references to the importance and to the sum of its control variate.
-  SplitTree(const DepthImportance& importance, double& control_variate)
-      : importance_(importance), control_variate_(control_variate) {}
+  /// Holds references to the importance and to the sums of its control variates.
+  SplitTree(const DepthImportance& importance, ControlVariates::Sums& sums)
+      : importance_(importance) {
+    if (importance.control_variates()) controls_.emplace(*importance.control_variates(), sums);
+  }
 
   void begin(const PathVertex& start, const Vec3& direction) {
     throughput_ = 1;
     waiting_.clear();
-    at_ = {.log_gradient = importance_.importance_and_gradient(start.point).log_gradient};
-    if (const auto& control_variate = importance_.control_variate())
-      departing_ = control_variate->mode.departing(control_variate->growth(start.point.x),
-                                                   control_variate->cosine(direction));
+    log_gradient_ = importance_.importance_and_gradient(start.point).log_gradient;
+    if (controls_) controls_->begin(start.point, direction);
   }
   /// Gradient of log(importance) at the current vertex, which biases free flights.
-  const Vec3* log_gradient() const { return &at_.log_gradient; }
+  const Vec3* log_gradient() const { return &log_gradient_; }
+  /// Returns the log that the control variates need of the next flight, or null.
+  FlightLog* log() { return controls_ ? controls_->log() : nullptr; }
   void bias(double factor) { throughput_ *= factor; }
 
-  /// Adds a flight to the control variate. before: weight of the path before the flight, without
+  /// Adds a flight to the control variates. before: weight of the path before the flight, without
   /// the factor for biased sampling.
   void flew(double before, const PathVertex& here, const Flight& flight) {
-    const auto& control_variate = importance_.control_variate();
-    if (!control_variate) return;
-    at_.growth = control_variate->growth(flight.point.x);
-    const double cosine = control_variate->cosine(flight.direction);
-    at_.arriving = control_variate->mode.arriving(at_.growth, cosine);
-    const bool is_out = flight.end == Flight::End::boundary;
-    const double there =
-        is_out ? control_variate->mode.departing(at_.growth, cosine) : at_.arriving;
-    control_variate_ += here.weight * there - before * departing_;
-    at_.arriving /= control_variate->albedo;
+    if (controls_) controls_->flew(before, here.weight, flight);
   }
   void turned(const PathVertex& here, const Vec3& direction) {
-    const auto& control_variate = importance_.control_variate();
-    if (!control_variate) return;
-    departing_ = control_variate->mode.departing(at_.growth, control_variate->cosine(direction));
-    control_variate_ += here.weight * (departing_ - at_.arriving);
+    if (controls_) controls_->turned(here, direction);
   }
 
   template <class Tally>
@@ -99,7 +91,7 @@ class SplitTree {
     tally.absorbed(here, flight, albedo);
     throughput_ *= flight.weight * albedo;
     const auto [importance, log_gradient] = importance_.importance_and_gradient(next.point);
-    at_.log_gradient = log_gradient;
+    log_gradient_ = log_gradient;
     const double expected = throughput_ * importance;
     if (expected < 0.5) return survives(expected, medium, next, random, tally);
     if (expected > 2 && counts.flights < last_splitting) split(expected, next);
@@ -113,20 +105,17 @@ class SplitTree {
     Waiting& last = waiting_.back();
     vertex = last.vertex;
     throughput_ = last.throughput;
-    at_ = last.at;
+    log_gradient_ = last.log_gradient;
+    if (controls_) controls_->go_to(last.at);
     if (--last.copies == 0) waiting_.pop_back();
     return true;
   }
 
  private:
-  struct Place {
-    Vec3 log_gradient;
-    /// Values of the control variate's CaseMode; arriving is divided by the albedo.
-    double growth = 0, arriving = 0;
-  };
   struct Waiting {
     PathVertex vertex;
-    Place at;
+    Vec3 log_gradient;
+    PathControls::Place at;
     double throughput;
     int copies;
   };
@@ -141,7 +130,7 @@ class SplitTree {
     const double before = next.weight;
     next.weight = random.uniform() < probability ? before / probability : 0;
     throughput_ /= probability;
-    control_variate_ += (next.weight - before) * at_.arriving;
+    if (controls_) controls_->reweighed(next.weight - before);
     tally.reweighed(next.point.part, medium.mu_a > 0, before - next.weight);
     return next.weight > 0;
   }
@@ -150,14 +139,14 @@ class SplitTree {
     const int copies = static_cast<int>(std::min(expected, most_copies));
     next.weight /= copies;
     throughput_ /= copies;
-    waiting_.push_back({next, at_, throughput_, copies - 1});
+    const auto at = controls_ ? controls_->place() : PathControls::Place{};
+    waiting_.push_back({next, log_gradient_, at, throughput_, copies - 1});
   }
 
   const DepthImportance& importance_;
-  double& control_variate_;
+  std::optional<PathControls> controls_;
   double throughput_ = 1;
-  Place at_ = {};
-  double departing_ = 0;
+  Vec3 log_gradient_ = Vec3::Zero();
   std::vector<Waiting> waiting_;
 };
 

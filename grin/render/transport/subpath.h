@@ -42,7 +42,7 @@ void walk(const Transport& transport, const Space& space, const Choice& choice,
   };
   // Flies to the next collision; returns false if the path ends.
   const auto fly = [&] {
-    const Flight flight = tally.fly(space, here, direction, random, tree.log_gradient());
+    const Flight flight = tally.fly(space, here, direction, random, tree.log_gradient(), tree.log());
     counts.add_flight(flight.end == Flight::End::lost);
     const double before = here.weight;
     if (flight.bias_weight != 1) {

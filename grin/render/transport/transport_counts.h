@@ -17,8 +17,9 @@ namespace flatspeckle::grin {
 struct ExpectedConnection {
   /// Expected contribution of all connections, whether they are made or not.
   double considered = 0;
-  /// Expected and actual contribution of the connections that are made.
+  /// Expected and actual contribution of the connections that are made after a roulette.
   double made = 0, contributed = 0;
+  double square = 0;  ///< sum of the squares of these actual contributions
   double hits = 0;   ///< contribution of paths that hit an endpoint
   double beams = 0;  ///< contribution of connections to beams
 };
@@ -73,15 +74,16 @@ struct TransportCounts {
 };
 
 /// Adds a value to a pixel of a film, unless the pixel is -1 (none). A value that is not finite is
-/// counted instead.
+/// counted instead. transfer: momentum transfer of the path, if it is tallied.
 inline void deposit(Film& film, TransportCounts& counts, int pixel, double value,
-                    double optical_path) {
+                    double optical_path, const MomentumTransfer& transfer = no_transfer) {
   if (pixel < 0 || value == 0) return;
   if (!std::isfinite(value)) {
     ++counts.lost_values;
     return;
   }
   film.add(pixel, value, optical_path);
+  if (film.has_decay()) film.add_decay(pixel, value, optical_path, transfer);
 }
 /// Adds a value to sum `number` of a pixel's derivatives by parameters of the field. A value that
 /// is not finite is counted instead.

@@ -289,6 +289,22 @@ void add_motion(const RenderValues& values, const FieldUse& use, RenderScene& sc
   scene.bins.by_field = static_cast<int>(scene.parameters.size()) * edge_widths;
 }
 
+/// Requests the field correlation after delays (key delays).
+void add_decay(const Keys& keys, const RenderValues& values, RenderScene& scene) {
+  FieldDecay decay{values.delays, keys.read(values.diffusion)};
+  const auto parts = static_cast<std::size_t>(scene.stage.parts());
+  if (parts > MomentumTransfer::most_parts)
+    throw InputError("delays: at most " + std::to_string(MomentumTransfer::most_parts - 1) +
+                     " bodies are possible");
+  if (decay.diffusion.empty()) decay.diffusion.assign(parts, 1);
+  if (decay.diffusion.size() != parts)
+    throw InputError("diffusion", number_text(decay.diffusion),
+                     "must have a value for the stage and one for each body, from the largest to "
+                     "the smallest: " +
+                         std::to_string(parts));
+  scene.bins.decay = std::make_shared<const FieldDecay>(std::move(decay));
+}
+
 void add_map_keys(Keys& keys, RenderValues& values) {
   keys.group("Map of the fluence rate and of absorbed power");
   keys.add("map_box", values.map_box,
@@ -394,6 +410,15 @@ void add_keys(Keys& keys, RenderValues& values) {
   keys.add("gradient_by", values.gradient_by,
            "Also computes derivatives by these numbers of the index field, such as amplitude, or "
            "transducer.2 for the third number of transducer (method = forward)");
+  keys.add("delays", values.delays,
+           "Also computes the field correlation of the light after these delays k^2 D tau, during "
+           "which the scatterers diffuse (method = forward)")
+      .not_negative();
+  keys.add("diffusion", values.diffusion,
+           "Factors on the diffusion constant D: of the stage, then of each body, from the largest "
+           "to the smallest (default: 1)")
+      .not_negative()
+      .only_of("delays");
   keys.add("length_unit", values.length_unit,
            "Unit of length, such as um or 1e-6, for the frequency of sound and the times of "
            "path_bins")
@@ -446,6 +471,7 @@ RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
                     .is_silent = has_sound(field.field) && heard.index() != field.field.index()};
   if (keys.read(values.gradient)) add_derivatives(scene);
   if (!keys.read(values.gradient_by).empty()) add_motion(values, use, scene);
+  if (!keys.read(values.delays).empty()) add_decay(keys, values, scene);
   check_size(scene.sensors, scene.bins);
   if (scene.sensors.empty() && !scene.map)
     throw InputError("sensor", "none", "requires map_box or map_cylinder");

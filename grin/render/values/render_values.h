@@ -42,6 +42,7 @@ struct RenderValues {
   SensorValues sensors{};
   std::vector<double> path_bins{};
   bool path_moments = false, gradient = false;
+  std::vector<double> delays{}, diffusion{};
   std::vector<std::string> gradient_by{};
   std::vector<double> map_box{}, map_cylinder{};
   std::vector<std::int64_t> map_cells{};

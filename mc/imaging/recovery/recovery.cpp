@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/run/interrupt.h"
+#include "mc/imaging/recovery/pair_brightness.h"
 
 namespace flatspeckle::mc {
 
@@ -31,9 +32,6 @@ std::vector<double> expected_heights(const PairPeaks& peaks, const SparseTask& t
   return expected;
 }
 
-/// Standard deviation of the prior distribution of the brightness, divided by its mean.
-constexpr double spread = 1.0 / 3;
-
 /// Interpolates a line that is even about position 0, by cubics (Catmull and Rom).
 double value_at(const std::vector<double>& line, double place) {
   const auto last = static_cast<long>(line.size()) - 1;
@@ -46,49 +44,17 @@ double value_at(const std::vector<double>& line, double place) {
   return b + t / 2 * (c - a + t * (2 * a - 5 * b + 4 * c - d + t * (3 * (b - c) + d - a)));
 }
 
-/// Height of the peak of each pair of points, and its expected height for points of mean
-/// brightness.
-struct PeakPairs {
-  std::size_t points;
-  std::vector<double> height, expected;  ///< [i][j]
-
-  PeakPairs(const PairPeaks& peaks, const std::vector<double>& means,
-            const std::vector<double>& marks)
-      : points(marks.size()), height(points * points), expected(points * points) {
-    for (std::size_t i = 0; i < points; ++i)
-      for (std::size_t j = 0; j < points; ++j)
-        if (i != j) {
-          height[i * points + j] = value_at(peaks.height, marks[i] - marks[j]);
-          expected[i * points + j] = value_at(means, marks[i] - marks[j]);
-        }
-  }
-};
-
-/// Optimises the brightness b of one point after the other. variance: variance of the heights.
-void improve_brightness(const PeakPairs& pairs, double variance, std::vector<double>& b) {
-  constexpr int sweeps = 30;
-  const double of_prior = variance / (spread * spread);
-  for (int sweep = 0; sweep < sweeps; ++sweep)
-    for (std::size_t i = 0; i < b.size(); ++i) {
-      double product = of_prior, square = of_prior;
-      for (std::size_t j = 0; j < b.size(); ++j) {
-        const double alone = pairs.expected[i * b.size() + j] * b[j];
-        product += pairs.height[i * b.size() + j] * alone;
-        square += alone * alone;
+/// Returns the peaks of all pairs of points at these marks. means: expected_heights().
+PeakPairs pairs_of_marks(const PairPeaks& peaks, const std::vector<double>& means,
+                         const std::vector<double>& marks) {
+  PeakPairs pairs(marks.size());
+  for (std::size_t i = 0; i < marks.size(); ++i)
+    for (std::size_t j = 0; j < marks.size(); ++j)
+      if (i != j) {
+        pairs.height[i * marks.size() + j] = value_at(peaks.height, marks[i] - marks[j]);
+        pairs.expected[i * marks.size() + j] = value_at(means, marks[i] - marks[j]);
       }
-      if (square > 0) b[i] = std::max(product / square, 0.0);
-    }
-}
-
-/// Returns the sum of (2 h a - a^2) / s^2 (sparse_search()) over the pairs of point i.
-double gain_of(const PeakPairs& pairs, const std::vector<double>& b, std::size_t i,
-               double variance) {
-  double gain = 0;
-  for (std::size_t j = 0; j < b.size(); ++j) {
-    const double a = pairs.expected[i * b.size() + j] * b[i] * b[j];
-    gain += (2 * pairs.height[i * b.size() + j] - a) * a / variance;
-  }
-  return gain;
+  return pairs;
 }
 
 /// Whether all marks, and all distances between two of them, differ by at least `apart`.
@@ -114,7 +80,7 @@ void improve_marks(const PairPeaks& peaks, const std::vector<double>& expected, 
       for (const double mark : {from, from - shift, from + shift}) {
         marks[i] = mark;
         if (mark != from && !are_distinct(marks, apart)) continue;
-        const double gain = gain_of(PeakPairs(peaks, expected, marks), b, i, variance);
+        const double gain = gain_of(pairs_of_marks(peaks, expected, marks), b, i, variance);
         if (gain > most) {
           most = gain;
           best = mark;
@@ -131,23 +97,12 @@ RulerFit fitted_ruler(const PairPeaks& peaks, const std::vector<double>& expecte
   const double variance = std::max(peaks.noise * peaks.noise, 1e-12 * peaks.alone * peaks.alone);
   RulerFit fit;
   fit.brightness.assign(marks.size(), 1);
-  improve_brightness(PeakPairs(peaks, expected, marks), variance, fit.brightness);
+  improve_brightness(pairs_of_marks(peaks, expected, marks), variance, fit.brightness);
   if (apart) improve_marks(peaks, expected, *apart, variance, fit.brightness, marks);
-  const PeakPairs pairs(peaks, expected, marks);
+  const PeakPairs pairs = pairs_of_marks(peaks, expected, marks);
   if (apart) improve_brightness(pairs, variance, fit.brightness);
-  double product = 0, squares = 0, heights = 0;
-  for (std::size_t i = 0; i < marks.size(); ++i) {
-    fit.gain += gain_of(pairs, fit.brightness, i, variance) / 2 -
-                std::pow((fit.brightness[i] - 1) / spread, 2);
-    for (std::size_t j = 0; j < marks.size(); ++j) {
-      const std::size_t at = i * marks.size() + j;
-      const double a = pairs.expected[at] * fit.brightness[i] * fit.brightness[j];
-      product += pairs.height[at] * a;
-      squares += a * a;
-      heights += pairs.height[at] * pairs.height[at];
-    }
-  }
-  if (squares > 0 && heights > 0) fit.explained = product / std::sqrt(squares * heights);
+  fit.gain = gain_of(pairs, fit.brightness, variance);
+  fit.explained = pairs.explained(fit.brightness);
   fit.marks = std::move(marks);
   return fit;
 }

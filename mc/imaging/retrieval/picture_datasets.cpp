@@ -32,11 +32,41 @@ const DatasetTable recovered_picture_table{
         {"phase_residual", Data::real, "frame phase_iteration", "1",
          "rms of the estimate where it is negative or beyond the lags, over the rms of the whole "
          "estimate"},
+        {"sought", Data::numbers, "", "1", "number of the sought point"},
+        {"found_x", Data::real, "frame sought", "1",
+         "columns of the found points in pixels from the first, rotated by 180 degrees or not"},
+        {"found_y", Data::real, "frame sought", "1", "their rows in pixels from the first"},
+        {"found_brightness", Data::real, "frame sought", "1",
+         "brightness of the found points, mean 1; 0 if no point was found"},
+        {"explained", Data::real, "frame", "1",
+         "agreement of the brightness with the peaks of all pairs, at most 1"},
         {"agreement", Data::real, "frame", "1",
          "mean correlation between the picture and those of the better half of the other starts"}}};
 
+namespace {
+
+void write_places(const ResultGroup& root, std::size_t sought,
+                  const std::vector<RecoveredPicture>& all) {
+  root.number("sought", sought);
+  const auto put = [&](const char* name, std::vector<double> PicturePoints::*member) {
+    std::vector<double> values;
+    for (const RecoveredPicture& one : all) {
+      std::vector<double> own = one.points.*member;
+      own.resize(sought);
+      values.insert(values.end(), own.begin(), own.end());
+    }
+    root.put(name, values);
+  };
+  put("found_x", &PicturePoints::x);
+  put("found_y", &PicturePoints::y);
+  put("found_brightness", &PicturePoints::brightness);
+  root.put("explained", column(all, [](const auto& one) { return one.points.explained; }));
+}
+
+}  // namespace
+
 void write_pictures(ResultFile& file, const std::vector<std::string>& names, std::size_t lags,
-                    const std::vector<RecoveredPicture>& all) {
+                    std::size_t sought, const std::vector<RecoveredPicture>& all) {
   const ResultGroup root(file, recovered_picture_table);
   std::vector<double> lag, autocorrelation, picture, residual;
   for (std::size_t i = 0; i < 2 * lags - 1; ++i)
@@ -45,7 +75,7 @@ void write_pictures(ResultFile& file, const std::vector<std::string>& names, std
   const auto append = [](std::vector<double>& to, const std::vector<double>& values) {
     to.insert(to.end(), values.begin(), values.end());
   };
-  for (const auto& [statistics, retrieved] : all) {
+  for (const auto& [statistics, retrieved, points] : all) {
     append(autocorrelation, statistics.autocorrelation);
     append(picture, retrieved.picture);
     append(residual, retrieved.residual);
@@ -65,6 +95,7 @@ void write_pictures(ResultFile& file, const std::vector<std::string>& names, std
   put("white_noise", &PictureStatistics::white);
   put("noise", &PictureStatistics::noise);
   root.check("invariants/variance", variances);
+  if (sought > 0) return write_places(root, sought, all);
   root.number("picture_x", lags);
   root.number("picture_y", lags);
   root.put("phased_picture", picture);

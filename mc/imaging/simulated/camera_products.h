@@ -13,7 +13,7 @@ namespace flatspeckle::mc {
 
 /// Sums the far fields of ends of paths over the pixels of a camera, for many lights at once: a
 /// product of the matrix of the ends' factors under each light with that of their fields in each
-/// pixel. For many lights this is faster than CameraSum, and it needs no homogeneous medium.
+/// pixel. For many lights this is faster than CameraSum, and the medium may vary or have faces.
 class CameraProducts {
  public:
   /// lights, changes: each end has `lights` factors after each of the changes (each_end()).
@@ -34,8 +34,12 @@ class CameraProducts {
   };
   void flush(std::size_t change, std::span<Complex> out);
 
+  EndpointFactors& pixels(int wave);
+
   const PathWalks& walks_;
-  std::unique_ptr<EndpointFactors> pixels_;
+  std::vector<Endpoint> endpoints_;
+  /// Factors of the pixels for each number of reflections at faces, as far as needed.
+  std::vector<std::unique_ptr<EndpointFactors>> pixels_;
   std::size_t lights_;
   std::vector<Block> blocks_;  ///< of each change
 };

@@ -59,22 +59,7 @@ std::uint64_t paths_for_pictures(const PictureScene& scene, std::uint64_t seed, 
                   static_cast<std::uint64_t>(per_grain));
 }
 
-namespace {
-
-/// Draws fields path by path, which includes reflections at the faces.
-FieldDraw fields_behind_faces(const PictureScene& scene, std::uint64_t seed, std::uint64_t paths) {
-  const Plan plan = make_plan(scene.scene, ReversedPaths::automatic);
-  return [draw = fields_by_paths(scene.scene, plan, seed, paths)](
-             std::uint64_t number, std::span<Complex> field, std::span<double>) {
-    std::vector<double> intensity(field.size());
-    draw(number, field, intensity);
-  };
-}
-
-}  // namespace
-
 FieldDraw picture_fields(const PictureScene& scene, const PictureTask& task, std::uint64_t paths) {
-  if (scene.scene.faces) return fields_behind_faces(scene, task.seed, paths);
   const Scene some = on_coarse_camera(scene.scene);
   Plan plan = plan_for_fields(make_plan(some, ReversedPaths::automatic));
   plan.paths_per_batch = paths;

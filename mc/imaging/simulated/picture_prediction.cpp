@@ -13,12 +13,14 @@
 #include "mc/imaging/imaging.h"
 #include "mc/paths/dynamics/brownian.h"
 #include "mc/paths/estimators/covariance_estimator.h"
+#include "mc/paths/speckle/spreading_axis.h"
 
 namespace flatspeckle::mc {
 
 namespace {
 
-constexpr std::size_t separations = 8;  ///< beside 0
+constexpr std::size_t separations = 8;   ///< beside 0
+constexpr std::size_t light_nodes = 12;  ///< along each side of the camera
 
 /// Returns a far view in front of the camera, by the direction cosines from its axis.
 View view_of(const FarCamera& camera, double x, double y) {
@@ -44,7 +46,7 @@ class PairRequest {
  private:
   std::uint32_t channel(Vec place, PixelPlace pixel) {
     const FarCamera& camera = scene_.camera();
-    const double step = 2 * camera.aperture / static_cast<double>(camera.pixels);
+    const double step = pixel_step(camera);
     request_.channels.push_back({static_cast<std::uint32_t>(request_.lights.size()),
                                  static_cast<std::uint32_t>(request_.views.size())});
     request_.lights.push_back(light_of(scene_.object, place));
@@ -62,12 +64,12 @@ std::array<PixelPlace, 5> places_on(const FarCamera& camera) {
   return {{{0, 0}, {away, away}, {-away, away}, {away, -away}, {-away, -away}}};
 }
 
-/// Returns the number of lags over which the peak of a grain is computed: three grains.
+/// Returns the number of lags over which the peak of a grain is computed: six grains.
 std::size_t lags_of_grain(const PictureScene& scene) {
-  const double step = 2 * scene.camera().aperture / static_cast<double>(scene.camera().pixels),
+  const double step = pixel_step(scene.camera()),
                narrow = std::min(scene.scene.domain.width, scene.scene.domain.height);
   return static_cast<std::size_t>(
-             std::ceil(6 * std::numbers::pi / (scene.scene.outside_k() * narrow * step))) +
+             std::ceil(12 * std::numbers::pi / (scene.scene.outside_k() * narrow * step))) +
          1;
 }
 
@@ -82,6 +84,72 @@ void add_pair(PairRequest& pairs, const PictureScene& scene, bool along_y, doubl
   // The speckle moves against the picture
   const double x = (a.x - b.x + (along_y ? 0 : lag)) / 2, y = (a.y - b.y + (along_y ? lag : 0)) / 2;
   pairs.add(middle - half, {place.x - x, place.y - y}, middle + half, {place.x + x, place.y + y});
+}
+
+/// Returns some of the points of an object, evenly in their order.
+PictureObject some_points(const PictureObject& object) {
+  constexpr std::size_t most = 32;
+  const std::size_t stride = (object.place.size() + most - 1) / most;
+  PictureObject some{{}, {}, object.far};
+  for (std::size_t i = 0; i < object.place.size(); i += stride) {
+    some.place.push_back(object.place[i]);
+    some.brightness.push_back(object.brightness[i]);
+  }
+  return some;
+}
+
+/// Returns the mean light on each pixel, whose mean over the pixels is 1. It is interpolated by a
+/// polynomial of the direction cosines.
+std::vector<double> mean_light(const PictureScene& scene, const PictureTask& task) {
+  const FarCamera& camera = scene.camera();
+  const auto node = chebyshev_nodes(light_nodes);
+  const PictureObject object = some_points(scene.object);
+  Lights lights;
+  for (const Vec& place : object.place) lights.push_back(light_of(object, place));
+  std::vector<View> views;
+  for (const double y : node)
+    for (const double x : node)
+      views.push_back(view_of(camera, camera.aperture * x, camera.aperture * y));
+  Scene lit = scene.scene;
+  lit.request = intensity_request(std::move(lights), std::move(views));
+  const FieldJob job = covariance_job(lit, make_plan(lit, ReversedPaths::automatic), task.seed);
+  RunState state;
+  run_to_end(job.batches,
+             {{task.prediction_paths, std::nullopt, std::nullopt}, task.threads, "mean light", {}},
+             state);
+  const auto entries = job.covariance(state.sums.total_samples(), state.sums.total());
+  std::vector<double> at_nodes(node.size() * node.size());
+  for (std::size_t i = 0; i < entries.size(); ++i)
+    at_nodes[i % at_nodes.size()] += object.brightness[i / at_nodes.size()] * entries[i].real();
+  std::vector<std::vector<double>> weights;
+  for (std::size_t i = 0; i < camera.pixels; ++i)
+    weights.push_back(lagrange(node, camera.cosine(0, i) / camera.aperture));
+  std::vector<double> light;
+  for (std::size_t y = 0; y < camera.pixels; ++y)
+    for (std::size_t x = 0; x < camera.pixels; ++x) {
+      double sum = 0;
+      for (std::size_t b = 0; b < node.size(); ++b)
+        for (std::size_t a = 0; a < node.size(); ++a)
+          sum += weights[y][b] * weights[x][a] * at_nodes[b * node.size() + a];
+      light.push_back(std::max(sum, 0.0));
+    }
+  const double mean = mean_of(light);
+  for (double& value : light) value = mean > 0 ? value / mean : 1;
+  return light;
+}
+
+/// Returns the roots of the correlations of intensities, with the signs of the covariances of
+/// fields. covariances: entries of the pairs as for mean_correlations().
+std::vector<double> field_correlations(std::span<const Complex> covariances,
+                                       const std::vector<double>& intensities) {
+  std::vector<double> fields;
+  for (std::size_t pair = 0; pair < intensities.size(); ++pair) {
+    double sum = 0;
+    for (std::size_t i = pair; 3 * i < covariances.size(); i += intensities.size())
+      sum += covariances[3 * i].real();
+    fields.push_back(std::copysign(std::sqrt(std::max(0.0, intensities[pair])), sum));
+  }
+  return fields;
 }
 
 double decay_of_exposure(const PictureScene& scene, const PictureTask& task) {
@@ -151,7 +219,12 @@ SpecklePrediction predicted_speckle(const PictureScene& scene, const PictureTask
   const auto grains = real_parts(part(all, found.separation.size(), 2 * lags).value);
   found.grain_x.assign(grains.begin(), grains.begin() + static_cast<long>(lags));
   found.grain_y.assign(grains.begin() + static_cast<long>(lags), grains.end());
+  const auto entries = job.covariance(state.sums.total_samples(), state.sums.total());
+  const auto fields = field_correlations(std::span(entries).subspan(of_separations), grains);
+  found.field_x.assign(fields.begin(), fields.begin() + static_cast<long>(lags));
+  found.field_y.assign(fields.begin() + static_cast<long>(lags), fields.end());
   found.exposure = decay_of_exposure(scene, task);
+  found.light = mean_light(scene, task);
   return found;
 }
 
@@ -193,7 +266,8 @@ class FrameModel {
       : task_(task),
         pixels_(scene.camera().pixels),
         transform_(padded(pixels_, task.lags), padded(pixels_, task.lags)),
-        field_(field_filter(speckle)),
+        light_(speckle.light),
+        field_(field_filter(scene, speckle)),
         object_(object_filter(scene, speckle)) {}
 
   /// Draws a frame.
@@ -206,7 +280,7 @@ class FrameModel {
     std::vector<double> frame;
     for (std::size_t y = 0; y < pixels_; ++y)
       for (std::size_t x = 0; x < pixels_; ++x)
-        frame.push_back(1 + speckle[y * transform_.columns() + x]);
+        frame.push_back(light_[y * pixels_ + x] * (1 + speckle[y * transform_.columns() + x]));
     detect(frame, task_.noise, task_.detector, random);
     return frame;
   }
@@ -251,22 +325,12 @@ class FrameModel {
     return values;
   }
 
-  /// Returns the correlation of fields from that of intensities, which is its square. The sign
-  /// changes at each minimum.
-  static std::vector<double> field_correlation(const std::vector<double>& intensity) {
-    std::vector<double> field;
-    double sign = 1;
-    for (std::size_t lag = 0; lag < intensity.size(); ++lag) {
-      if (lag > 0 && lag + 1 < intensity.size() && intensity[lag] < intensity[lag - 1] &&
-          intensity[lag] <= intensity[lag + 1])
-        sign = -sign;
-      field.push_back(sign * std::sqrt(std::max(0.0, intensity[lag])));
-    }
-    return field;
-  }
-  std::vector<double> field_filter(const SpecklePrediction& speckle) const {
+  /// Returns the root of the spectrum of fields. Light leaves the box within its width and height,
+  /// which limits the frequencies of the spectrum.
+  std::vector<double> field_filter(const PictureScene& scene,
+                                   const SpecklePrediction& speckle) const {
     std::vector<double> picture(transform_.rows() * transform_.columns());
-    const auto of_x = field_correlation(speckle.grain_x), of_y = field_correlation(speckle.grain_y);
+    const auto &of_x = speckle.field_x, &of_y = speckle.field_y;
     const auto lags = static_cast<long>(of_x.size());
     for (long y = 1 - lags; y < lags; ++y)
       for (long x = 1 - lags; x < lags; ++x)
@@ -274,11 +338,24 @@ class FrameModel {
             of_y[static_cast<std::size_t>(std::abs(y))] *
             of_x[static_cast<std::size_t>(std::abs(x))];
     auto roots = root_of_spectrum(picture);
+    const double band =
+        pixel_step(scene.camera()) * scene.scene.outside_k() / (4 * std::numbers::pi);
     double power = 0;  // of the field, which clipping of negative power has changed
-    for (std::size_t m = 0; m < roots.size(); ++m)
+    for (std::size_t m = 0; m < roots.size(); ++m) {
+      const auto [fy, fx] = frequency(m);
+      if (fx > band * scene.scene.domain.width || fy > band * scene.scene.domain.height)
+        roots[m] = 0;
       power += (is_double(m) ? 2 : 1) * roots[m] * roots[m] / static_cast<double>(picture.size());
+    }
     for (double& root : roots) root /= std::sqrt(power);
     return roots;
+  }
+  /// Returns the frequencies of a value of a half spectrum along y and x, in cycles per pixel.
+  std::pair<double, double> frequency(std::size_t m) const {
+    const auto side = static_cast<double>(transform_.rows());
+    const std::size_t row = m / transform_.spectrum_columns();
+    return {static_cast<double>(std::min(row, transform_.rows() - row)) / side,
+            static_cast<double>(m % transform_.spectrum_columns()) / side};
   }
   /// Whether a value of a half spectrum stands for two.
   bool is_double(std::size_t m) const {
@@ -317,12 +394,9 @@ class FrameModel {
       }
     auto roots = root_of_spectrum(picture);
     const double all = std::reduce(brightness.begin(), brightness.end());
-    const auto side = static_cast<double>(transform_.rows());
     for (std::size_t m = 0; m < roots.size(); ++m) {
-      const std::size_t row = m / transform_.spectrum_columns();
-      const double fy = static_cast<double>(std::min(row, transform_.rows() - row)) / side,
-                   fx = static_cast<double>(m % transform_.spectrum_columns()) / side,
-                   spline = std::pow(sinc(fx) * sinc(fy), 2);
+      const auto [fy, fx] = frequency(m);
+      const double spline = std::pow(sinc(fx) * sinc(fy), 2);
       roots[m] *= std::sqrt(speckle.exposure) / (all * spline);
     }
     return roots;
@@ -331,6 +405,7 @@ class FrameModel {
   const PictureTask& task_;
   std::size_t pixels_;
   PlaneTransform transform_;
+  const std::vector<double>& light_;
   std::vector<double> field_, object_;
 };
 

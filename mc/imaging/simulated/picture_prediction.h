@@ -18,6 +18,10 @@ struct SpecklePrediction {
   /// Autocorrelation of the intensity of speckle of unit variance at lags 0, 1, ... pixels along x
   /// and along y.
   std::vector<double> grain_x, grain_y;
+  /// Autocorrelation of the fields, the squares of which are grain_x and grain_y.
+  std::vector<double> field_x, field_y;
+  /// Mean light of the object on each pixel, [y][x]; its mean over the pixels is 1.
+  std::vector<double> light;
   /// Factor of the squared contrast due to motion during the exposure.
   double exposure = 1;
 
@@ -41,10 +45,12 @@ struct PicturePrediction {
 
 /// Predicts the quality from task.draws sets of model frames, from which pictures are recovered as
 /// from simulated ones. A model frame needs no media: it is the speckle of a thin layer, whose
-/// autocorrelation is that of the medium's speckle (grain_x, grain_y), convolved with a function
+/// fields have the autocorrelation of the medium's (field_x, field_y), convolved with a function
 /// whose autocorrelation is the sum over all pairs of points of b b' C_I at their distance in the
-/// picture; then the detector adds its noise. The model has no fitted constants. In it the speckle
-/// of a point has the same mean everywhere, and C_I depends on the transverse distance alone.
+/// picture, and multiplied by the mean light on each pixel; then the detector adds its noise. The
+/// mean light matters because dividing a frame by its envelope leaves a part of it, which is as
+/// high as the peaks of single pairs of many points. The model has no fitted constants. In it the
+/// mean light of all points has the same form, and C_I depends on the transverse distance alone.
 PicturePrediction predicted_pictures(const PictureScene& scene, const PictureTask& task,
                                      const SpecklePrediction& speckle,
                                      const std::vector<double>& truth);

@@ -18,16 +18,15 @@ double distance_to_box(const Domain& box, double z) {
   return std::max(-z, z - box.depth);
 }
 
-/// Returns the difference of direction cosines between neighbouring pixels.
-double pixel_step(const FarCamera& camera) {
-  return 2 * camera.aperture / static_cast<double>(camera.pixels);
-}
-
 double standard_deviation(double full_width) {
   return full_width / std::sqrt(8 * std::numbers::ln2);
 }
 
 }  // namespace
+
+double pixel_step(const FarCamera& camera) {
+  return 2 * camera.aperture / static_cast<double>(camera.pixels);
+}
 
 double PictureScene::grains() const {
   const double sines = 2 * camera().aperture * scene.outside_k() / (2 * std::numbers::pi);

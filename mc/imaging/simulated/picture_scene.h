@@ -36,6 +36,9 @@ struct PictureScene {
 /// and for points at a finite distance from a box whose faces reflect.
 PictureScene picture_scene(Scene medium, PictureObject object, const FarCamera& camera);
 
+/// Returns the difference of direction cosines between neighbouring pixels.
+double pixel_step(const FarCamera& camera);
+
 /// Returns the light of a point of the object.
 Light light_of(const PictureObject& object, Vec place);
 /// Returns the middle of an object: that of the smallest cuboid that contains its points.

@@ -92,6 +92,7 @@ FacedEndpoints::FacedEndpoints(const Scene& scene, const std::vector<Endpoint>& 
 }
 
 void FacedEndpoints::choose(int wave) {
+  if (wave == wave_) return;
   wave_ = wave;
   for (std::size_t j = 0; j < size(); ++j) {
     Vec w = far_[j].towards;

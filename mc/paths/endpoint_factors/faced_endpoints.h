@@ -42,7 +42,7 @@ class FacedEndpoints : public EndpointFactors {
   Domain domain_;
   double k_, mu_t_;
   bool phases_;
-  int wave_ = 0;
+  int wave_ = -1;
   struct Far {
     Vec towards;        ///< direction inside, from the medium to the endpoint
     double amplitude;   ///< of the field inside, before reflections

@@ -17,7 +17,8 @@ class EndScorer : public TallyScorer<ChangeTally> {
             const EndSink& sink)
       : EndScorer(walks, std::make_unique<ChangeDraw>(walks.scene(), changes), random, sink) {}
 
-  void single(Vec x, double weight, FaceWaves) override {
+  void single(Vec x, double weight, FaceWaves waves) override {
+    lights_->choose(waves.light);
     lights_->attenuate(x, last_);
     const Complex factor = draw_factor(weight);
     const auto changed = changes_->draw_single(x, random_);
@@ -25,22 +26,29 @@ class EndScorer : public TallyScorer<ChangeTally> {
     for (std::size_t s = 0; s < changed.size(); ++s)
       for (std::size_t i = 0; i < last_.size(); ++i) {
         only[i] = product(factor, last_[i] * moved_phase(i, changed[s].first_move));
-        sink_({x, -lights_->direction(i), x + changed[s].first_move}, only, s * last_.size());
+        PathEnd end(x, -lights_->direction(i), x + changed[s].first_move);
+        end.wave = waves.view;
+        sink_(end, only, s * last_.size());
         only[i] = 0;
       }
   }
   void multiple(const Path& path) override {
     const Complex factor = draw_factor(path.weight);
     const auto changed = changes_->draw(path, tally(), random_);
+    lights_->choose(path.waves.light);
     if (path.new_start) light(path.first, -path.start, first_);
     const bool reversed = walks_.plan().reversed;
     if (reversed) light(path.last, path.arrival, last_);
     for (std::size_t s = 0; s < changed.size(); ++s) {
       const auto& [first_move, last_move, turn] = changed[s];
       const Complex turned = product(factor, turn);
-      add({path.last, path.arrival, path.last + last_move}, turned, first_, first_move, s);
-      if (reversed)
-        add({path.first, -path.start, path.first + first_move}, turned, last_, last_move, s);
+      PathEnd end(path.last, path.arrival, path.last + last_move);
+      end.wave = path.waves.view;
+      add(end, turned, first_, first_move, s);
+      if (!reversed) continue;
+      end = {path.first, -path.start, path.first + first_move};
+      end.wave = path.waves.view;
+      add(end, turned, last_, last_move, s);
     }
   }
 

@@ -15,6 +15,7 @@ namespace flatspeckle::mc {
 /// scatterer at `place`, which differs from x if the scatterer has moved.
 struct PathEnd {
   Vec x, arrival, place;
+  int wave = 0;  ///< number of reflections at faces of the light that leaves (FaceWaves::view)
 
   PathEnd(Vec position, Vec along) : PathEnd(position, along, position) {}
   PathEnd(Vec position, Vec along, Vec moved) : x(position), arrival(along), place(moved) {}

@@ -1,29 +1,33 @@
 // Frames of objects in space: detector, places, structural similarity, prediction.
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include "mc/imaging/camera_exposure.h"
+#include "mc/imaging/retrieval/picture_points.h"
 #include "mc/imaging/simulated/picture_frames.h"
 #include "mc/imaging/simulated/picture_prediction.h"
 #include "mc/imaging/simulated/picture_scene.h"
 #include "mc/imaging/simulated/picture_score.h"
+#include "mc/paths/speckle/speckle_field.h"
 #include "mc/slab/adding/space.h"
 
 namespace flatspeckle::mc::test_pictures {
 
 namespace {
 
-Scene fog() {
+Scene fog(double optical_depth = 8, std::optional<double> medium_index = {}) {
   SceneSpec spec;
+  spec.medium_index = medium_index;
   spec.dimension = 3;
   spec.width = spec.height = 100;
   spec.depth = 4;
   spec.scatterer = "hg";
   spec.g = 0.9;
-  spec.optical_depth = 8;
+  spec.optical_depth = optical_depth;
   return in_space(make_scene(spec), spec);
 }
 
@@ -102,6 +106,26 @@ TEST_CASE("pictures: the speckle of a point moves against its place in the pictu
   }
 }
 
+TEST_CASE("pictures: fields behind faces agree with a sum path by path") {
+  constexpr std::uint64_t paths = 300;
+  PictureObject object{{{-0.01, 0, 0}, {0.01, 0, 0.02}}, {1, 1}, true};
+  const PictureScene scene = picture_scene(fog(8, 1.4), std::move(object), {{0, 1, 0}, 0.1, 8});
+  const Plan plan = make_plan(scene.scene, ReversedPaths::automatic);
+  CHECK(plan.waves.size() > 1);
+  std::vector<Complex> found(2 * 64), wanted(2 * 64);
+  std::vector<double> intensity(wanted.size());
+  const PictureTask task;
+  picture_fields(scene, task, paths)(3, found, {});
+  fields_by_paths(scene.scene, plan, task.seed, paths)(3, wanted, intensity);
+  double error = 0, all = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    error += std::norm(found[i] - wanted[i]);
+    all += std::norm(wanted[i]);
+  }
+  CHECK(all > 0);
+  CHECK(error < 1e-20 * all);
+}
+
 TEST_CASE("pictures: predicted C_I agrees with the fields of frames") {
   const PictureScene scene = points_behind_fog(true);
   PictureTask task;
@@ -131,6 +155,68 @@ TEST_CASE("pictures: predicted C_I agrees with the fields of frames") {
   const double error = std::sqrt(variance / (fields - 1));
   CHECK(error < 0.1);
   CHECK(std::abs(mean - speckle.correlation_at(0.02)) < 4 * error + 0.03);
+}
+
+TEST_CASE("pictures: predicted mean light agrees with the mean intensity of fields") {
+  constexpr std::uint64_t paths = 20000;
+  constexpr std::size_t side = 16;
+  PictureObject object{{{0.15, 0, 0}}, {1}, true};
+  const PictureScene scene = picture_scene(fog(2), std::move(object), {{0, 1, 0}, 0.3, side});
+  PictureTask task;
+  task.prediction_paths = paths;
+  const auto light = predicted_speckle(scene, task).light;
+  std::vector<Complex> field(side * side);
+  std::vector<double> intensity(field.size());
+  const Plan plan = make_plan(scene.scene, ReversedPaths::automatic);
+  fields_by_paths(scene.scene, plan, 2, paths)(0, field, intensity);
+  const double mean = moments_of(intensity).mean;
+  double error = 0, spread = 0;
+  for (std::size_t p = 0; p < light.size(); ++p) {
+    const double expected = intensity[p] / mean;
+    error += std::pow(light[p] - expected, 2);
+    spread += std::pow(expected - 1, 2);
+  }
+  CHECK(spread > 0.05 * static_cast<double>(light.size()));
+  CHECK(error < 0.02 * spread);
+}
+
+TEST_CASE("points in pictures: places and brightness from a noisy autocorrelation") {
+  constexpr std::size_t lags = 40;
+  const std::vector<double> x{0, 6.3, 17, 22.6, 30, 31.5}, y{14, 2.2, 27.8, 9, 20, 0},
+      brightness{1, 0.8, 1.2, 0.9, 1.3, 0.8};
+  PictureStatistics statistics;
+  RandomStream random(4, 0, 0);
+  statistics.noise = 0.15;
+  constexpr long reach = lags - 1;
+  for (long row = -reach; row <= reach; ++row)
+    for (long column = -reach; column <= reach; ++column) {
+      double sum = 0;
+      for (std::size_t i = 0; i < x.size(); ++i)
+        for (std::size_t j = 0; j < x.size(); ++j)
+          sum += brightness[i] * brightness[j] *
+                 std::exp(-std::pow(static_cast<double>(column) - x[i] + x[j], 2) / 4 -
+                          std::pow(static_cast<double>(row) - y[i] + y[j], 2) / 4);
+      statistics.autocorrelation.push_back(sum + statistics.noise * (2 * random.uniform() - 1));
+    }
+  const PicturePoints found = picture_points(statistics, lags, x.size(), 3);
+  REQUIRE(found.x.size() == x.size());
+  CHECK(found.explained > 0.95);
+  double off = 1e9, light = 0;
+  for (const bool rotated : {false, true}) {
+    double most = 0, difference = 0;
+    const std::size_t last = x.size() - 1;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const std::size_t from = rotated ? last - i : i;
+      const double wanted_x = rotated ? x[last] - x[from] : x[i],
+                   wanted_y = rotated ? y[last] - y[from] : y[i] - y[0];
+      most = std::max(most, std::hypot(found.x[i] - wanted_x, found.y[i] - wanted_y));
+      difference = std::max(difference, std::abs(found.brightness[i] - brightness[from]));
+    }
+    if (most < off) off = most, light = difference;
+  }
+  CHECK(off < 0.5);
+  CHECK(light < 0.15);
+  CHECK(picture_points(statistics, lags, x.size(), 60).x.empty());
 }
 
 TEST_CASE("structural similarity: 1 for proportional pictures, falls with noise") {

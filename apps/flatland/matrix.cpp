@@ -1,0 +1,93 @@
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <sstream>
+
+#include "apps/command/experiment.h"
+#include "apps/flatland/solver_keys.h"
+#include "core/error.h"
+#include "core/session/session.h"
+#include "flatland/scene/scene.h"
+#include "flatland/scene/scene_datasets.h"
+#include "wave_solver/periodic/matrix_job.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+class MatrixExperiment : public Experiment {
+ public:
+  void add_keys(Keys& keys) override {
+    add_scatterer_keys(keys, spec_);
+    add_medium_keys(keys, spec_);
+    keys.group("Channels");
+    add_period_phase_key(keys, cell_);
+    keys.add("shifts", shifts_, "Largest shift of the light, in channels, for tilt correlations")
+        .from(1, 10000);
+    keys.add("eigenvalue_bins", bins_, "Number of bins of the transmission eigenvalues")
+        .from(2, 10000);
+    add_solver_keys(keys, cell_);
+    add_run_keys(keys, run_);
+  }
+
+  void read(const Keys& keys) override {
+    stop_ = stop_rule(keys, run_);
+    wave::MatrixSettings settings;
+    settings.phase = keys.read(cell_.period_phase);
+    settings.shifts = static_cast<std::size_t>(keys.read(shifts_));
+    settings.eigenvalue_bins = static_cast<std::size_t>(keys.read(bins_));
+    settings.options = solve_options(keys, cell_);
+    scene_ = make_scene(keys, spec_);
+    if (scene_->domain.kind != Domain::Kind::box)
+      throw InputError("domain", spec_.domain, "must be box; its width is the period");
+    if (!scene_->medium.has_scatterers)
+      throw InputError("scatterer", spec_.scatterer, "must be point, soft, hard, tm or te");
+    job_ = wave::matrix_job(*scene_, settings, seed());
+    inputs_ = inputs_text(*scene_) + inputs_text(keys);
+  }
+
+  PlannedExperiment plan() const override {
+    std::ostringstream plan;
+    plan << "exact scattering matrices of " << job_.channels.size()
+         << " channels on each side; one placement per batch";
+    return {.plan = plan.str(),
+            .batches = job_.batches,
+            .write = [this](ResultFile& file, const GroupedSums& sums, bool prints) {
+              const auto found = wave::matrix_statistics(job_, sums);
+              if (prints) print(found);
+              write_medium(file, *scene_);
+              wave::write_statistics(file, job_, found);
+            }};
+  }
+
+ private:
+  static void print(const wave::MatrixStatistics& found) {
+    const auto line = [](const char* name, const Estimate& of, const char* note = "") {
+      std::printf("%-28s %.6g +- %.2g%s\n", name, of.value[0].real(), of.error[0], note);
+    };
+    line("conductance", found.conductance);
+    line("variance of conductance", found.conductance_variance);
+    line("largest eigenvalue", found.largest);
+    line("C2", found.channel_variance);
+    line("C3", found.relative_variance);
+    char theory[40];
+    std::snprintf(theory, sizeof theory, " (Gaussian fields: %.4g)", found.focus_theory);
+    line("enhancement of focusing", found.focus, theory);
+    std::printf("largest errors: power %.1e, reciprocity %.1e\n", found.power.off,
+                found.reciprocity.off);
+  }
+
+  SceneSpec spec_;
+  SolverKeys cell_{.tolerance = 1e-8};
+  std::int64_t shifts_ = 5, bins_ = 20;
+  std::optional<Scene> scene_;
+  wave::MatrixJob job_;
+};
+
+}  // namespace
+
+std::unique_ptr<Experiment> matrix_experiment() {
+  return std::make_unique<MatrixExperiment>();
+}
+
+}  // namespace flatspeckle::apps

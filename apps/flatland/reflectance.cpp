@@ -1,0 +1,189 @@
+#include <algorithm>
+#include <cstdio>
+
+#include "apps/command/experiment.h"
+#include "apps/results/estimation.h"
+#include "apps/results/extras.h"
+#include "core/error.h"
+#include "core/keys/number_text.h"
+#include "core/result/result_group.h"
+#include "core/session/session.h"
+#include "flatland/media/layers.h"
+#include "flatland/scene/scene_datasets.h"
+#include "mc/distance/distance_job.h"
+#include "mc/jobs/delay_results.h"
+
+namespace flatspeckle::apps {
+
+namespace {
+
+/// Throws InputError for media that expansion in harmonics does not support.
+void check_layers(const Scene& scene) {
+  const auto* layers = dynamic_cast<const Layers*>(scene.profile.get());
+  if (layers == nullptr) {
+    if (!(scene.medium.mu_s > 0))
+      throw InputError("albedo", scene.medium.albedo, "must be above 0: the medium must scatter");
+    return;
+  }
+  constexpr double least = 1e-6;  // fraction of the largest mu_s
+  double most = 0;
+  for (const Material& material : layers->materials()) most = std::max(most, material.medium.mu_s);
+  for (const Material& material : layers->materials()) {
+    if (!(material.medium.mu_s > least * most))
+      throw InputError("layers: each layer must scatter; give clear layers a small mu_s");
+    if (material.index != layers->materials()[0].index)
+      throw InputError("medium_index", material.index, "must be the same in all layers");
+  }
+}
+
+void print_distances(const mc::DistanceRequest& request, const mc::DistanceEstimates& found) {
+  std::printf("%10s  %-24s %-24s\n", "distance", "detected power", "reflectance per area");
+  for (std::size_t d = 0; d < request.detectors.size(); ++d)
+    std::printf("%10.4g  %-12.6g %-11.2g %-12.6g %-11.2g\n", request.detectors[d].distance,
+                found.power.value[d].real(), found.power.error[d],
+                found.reflectance.value[d].real(), found.reflectance.error[d]);
+}
+
+/// Prints values [row][distance], one line per row.
+void print_rows(const char* name, const std::vector<double>& rows, const Estimate& values,
+                const mc::DistanceRequest& request) {
+  if (rows.empty()) return;
+  std::printf("%12s  at distance", name);
+  for (const auto& detector : request.detectors) std::printf(" %-10.4g", detector.distance);
+  std::printf("\n");
+  const std::size_t columns = request.detectors.size();
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    std::printf("%12.4g             ", rows[r]);
+    for (std::size_t d = 0; d < columns; ++d)
+      std::printf(" %-10.4g", values.value[r * columns + d].real());
+    std::printf("\n");
+  }
+}
+
+class ReflectanceExperiment : public Experiment {
+ public:
+  ReflectanceExperiment() {
+    spec_.dimension = 3;
+    spec_.domain = "slab";
+    spec_.scatterer = "hg";
+    spec_.polarisation = "unpolarised";
+    methods_.tolerance = 2e-3;
+  }
+
+  void add_keys(Keys& keys) override {
+    add_scatterer_keys(keys, spec_);
+    add_bulk_keys(keys, spec_);
+    add_medium_keys(keys, spec_);
+    add_profile_keys(keys, spec_);
+    add_faces_keys(keys, spec_);
+    keys.group("Detectors");
+    keys.add("distances", distances_,
+             "Distances of the detectors from the axis of the beam, which enters along the normal")
+        .positive()
+        .unit("length")
+        .swept();
+    keys.add("detector_radius", detector_radius_, "Radius of the detectors, which are disks")
+        .positive()
+        .unit("length")
+        .only_of("detectors without ring_width");
+    keys.add("ring_width", ring_width_,
+             "Width of the detectors, which are rings around the beam; distances are to its middle")
+        .positive()
+        .unit("length")
+        .only_of("detectors without detector_radius");
+    keys.add("numerical_aperture", request_.numerical_aperture,
+             "Numerical aperture of the detectors: sine of the largest angle of detected light, "
+             "times the index outside")
+        .positive();
+    keys.add("source_radius", request_.source_radius,
+             "Radius of the beam, which is uniform (0: a beam without extent)")
+        .not_negative()
+        .unit("length");
+    add_length_unit_key(keys, request_.length_unit);
+    keys.group("Motion");
+    mc::add_keys(keys, dynamics_);
+    keys.group("Results");
+    keys.add("gradient", request_.gradient,
+             "Also compute derivatives by mu_a, mu_s and the diffusion factor of each layer");
+    add_transport_keys(keys, methods_);
+    add_run_keys(keys, run_);
+  }
+
+  void read(const Keys& keys) override {
+    read_transport(keys, methods_, spec_, run_);
+    stop_ = both_batches(methods_.tolerance);
+    request_.detectors = detectors(keys);
+    keys.read(request_.numerical_aperture);
+    keys.read(request_.gradient);
+    keys.read(request_.length_unit);
+    request_.dynamics = mc::make_dynamics(keys, dynamics_, spec_, length_unit(keys));
+    const mc::Motion& motion = request_.dynamics.motion;
+    if (motion.velocity != Vec{} || motion.shear != 0)
+      throw InputError("velocity, shear: require covariance with method = mc");
+    mc::check_exposure(request_.dynamics.exposure, request_.dynamics.delays);
+    scene_ = with_dimension(make_scene(keys, spec_), spec_);
+    check_layers(*scene_);
+    mc::check_delays(*scene_, request_.dynamics.delays);
+    inputs_ = inputs_text(*scene_) + inputs_text(keys);
+  }
+
+  PlannedExperiment plan() const override {
+    return {.plan = "transport: spherical harmonics at each transverse frequency",
+            .batches = mc::distance_job(*scene_, request_, methods_.tolerance),
+            .write = [this](ResultFile& file, const GroupedSums& sums, bool prints) {
+              write(file, sums, prints);
+            }};
+  }
+
+ private:
+  std::vector<mc::DistanceDetector> detectors(const Keys& keys) const {
+    using Detector = mc::DistanceDetector;
+    keys.read(distances_);
+    if (distances_.empty()) throw InputError("distances: required, such as distances = 10 20 30");
+    const auto radius = keys.read(detector_radius_), width = keys.read(ring_width_);
+    if (radius.has_value() == width.has_value())
+      throw InputError("detector_radius, ring_width: give exactly one of them");
+    const double source = keys.read(request_.source_radius);
+    std::vector<Detector> found;
+    for (const double distance : distances_) {
+      found.push_back({radius ? Detector::Kind::disk : Detector::Kind::ring, distance,
+                       radius ? *radius : *width});
+      if (!(found.back().nearest() > source))
+        throw InputError("distances", distance,
+                         "the detector must not overlap the beam: it requires a larger distance, "
+                         "or a smaller detector or source_radius");
+    }
+    return found;
+  }
+
+  void write(ResultFile& file, const GroupedSums& sums, bool prints) const {
+    const auto found = mc::distance_estimates(request_, sums);
+    const mc::Dynamics& dynamics = request_.dynamics;
+    if (prints) {
+      print_distances(request_, found);
+      print_rows("delay: g1", dynamics.delays, found.correlation, request_);
+      print_rows("exposure: K^2", dynamics.exposure.times, found.contrast, request_);
+    }
+    write_medium(file, *scene_);
+    mc::write_distance(file, request_, found);
+    ResultGroup(file, mc::distance_table)
+        .check("invariants/reciprocity", mc::reciprocity(*scene_, request_, methods_.tolerance));
+    mc::write_numerical(file);
+  }
+
+  SceneSpec spec_;
+  MethodSettings methods_;
+  mc::DynamicsValues dynamics_;
+  mc::DistanceRequest request_;
+  std::vector<double> distances_;
+  std::optional<double> detector_radius_, ring_width_;
+  std::optional<Scene> scene_;
+};
+
+}  // namespace
+
+std::unique_ptr<Experiment> reflectance_experiment() {
+  return std::make_unique<ReflectanceExperiment>();
+}
+
+}  // namespace flatspeckle::apps

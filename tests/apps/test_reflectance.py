@@ -1,0 +1,101 @@
+"""Light at distances from a beam: against render, motion and contrast, the shipped scenes, and bad input."""
+
+import unittest
+
+import h5py
+import numpy as np
+
+from program import DATA, ProgramTest
+from refusing import RefusingTest
+
+TISSUE = {"depth": 1000, "mean_free_path": 1 / 10.02, "albedo": 10 / 10.02, "g": 0.9, "medium_index": 1.37,
+          "distances": [5, 10], "ring_width": 2}
+LAYERS = "thickness,mu_s,mu_a,g,diffusion\n2,10,0.02,0.9,0.5\n1000,5,0.01,0.8,1\n"
+
+
+class Reflectance(ProgramTest):
+    def run_one(self, subcommand="reflectance", out="x.h5", **keys):
+        self.call(subcommand, **keys, out=out)
+        file = h5py.File(self.folder / out)
+        self.addCleanup(file.close)
+        return file
+
+    def test_agrees_with_render(self):
+        """Power, field correlation and its derivative on rings, by Monte Carlo of the same tissue in a block."""
+        delays = [1e-3, 1e-2]
+        exact = self.run_one(**TISSUE, delays=delays, gradient=True)
+        paths = self.run_one("render", out="paths.h5", stage_box=[-30, -30, -0.001, 30, 30, 30],
+                             block=[-30, -30, 0, 30, 30, 30, 1.37, 10, 0.02, 0.9], beam_light=[0, 0, -0.001, 0, 0, 1, 0.01, 1],
+                             sensor="radial", sensor_at=[0, 0, -0.001], radii=[4, 6, 9, 11], method="forward",
+                             delays=delays, samples=30000, path_bins=[0, 60, 3])
+        within, covariance = paths["power_within"][()], paths["power_within_covariance"][()]
+        for ring, inner in enumerate((0, 2)):
+            error = np.sqrt(covariance[inner, inner] + covariance[inner + 1, inner + 1] - 2 * covariance[inner, inner + 1])
+            power = exact["detected_power"][ring]
+            self.assertLess(abs(within[inner + 1] - within[inner] - power), 4 * error + 0.002 * power)
+            found, off = (paths[f"image_correlation{name}"][:, inner + 1] for name in ("", "_error"))
+            expected = exact["distance_correlation"][:, ring]
+            self.assertTrue(np.all(np.abs(found - expected) < 4 * off + 0.003 * expected), (found, expected, off))
+        self.assertTrue(np.all(np.diff(paths["pulse_correlation"][:], axis=1) < 0))  # longer paths decay faster
+        self.assertEqual(paths["mean_transfer"][0], 0)
+
+    def test_layers_of_motion(self):
+        """g1 depends on the product of diffusion and delay, in seconds as in plain numbers."""
+        (self.folder / "tissue.csv").write_text(LAYERS)
+        keys = {"layers": "tissue.csv", "distances": 20, "detector_radius": 1, "medium_index": 1.4, "wavelength": 850e-6}
+        delays = np.array([1e-4, 1e-3, 1e-2])
+        plain = self.run_one(**keys, delays=list(delays), gradient=True)
+        rate = 1e-12 * (2 * np.pi * 1.4 / 850e-9)**2
+        timed = self.run_one(out="timed.h5", **keys, delays=list(delays / rate), diffusion="1e-12 m^2/s", length_unit="mm")
+        np.testing.assert_allclose(timed["distance_correlation"], plain["distance_correlation"], rtol=1e-9)
+        self.assertEqual(timed["delay"].attrs["units"], "s")
+        g1, slope = plain["distance_correlation"][:, 0], plain["correlation_gradient"][:, 2, :, 0]
+        both = 0.5 * slope[0] + slope[1]  # derivative by a common factor on all diffusion
+        self.assertTrue(np.all(both < 0) and np.all(np.diff(g1) < 0))
+
+    def test_contrast(self):
+        """K^2 is beta at short exposures, and the integral of g1^2 at longer ones."""
+        delays = np.concatenate([[0], np.logspace(-6, -1, 51)])
+        file = self.run_one(**TISSUE, delays=list(delays), exposures=[1e-5, 0.0999], beta=0.5)
+        g2 = file["distance_intensity_correlation"][:, 1]
+        np.testing.assert_allclose(g2, 0.5 * file["distance_correlation"][:, 1]**2, rtol=1e-12)
+        fine = np.linspace(0, 0.0999, 100001)
+        expected = 2 * np.mean(np.interp(fine, delays, g2) * (1 - fine / 0.0999))
+        self.assertAlmostEqual(file["distance_contrast"][0, 1], 0.5, delta=0.01)
+        self.assertAlmostEqual(file["distance_contrast"][1, 1] / expected, 1, delta=0.02)
+
+    def test_shipped_scenes(self):
+        for name in ("tissue_head", "tissue_forearm"):
+            file = self.run_one(config=DATA / f"scenes/{name}.toml", out=f"{name}.h5")
+            self.assertTrue(np.all(np.diff(file["distance_reflectance"]) < 0))
+            self.assertEqual(file.attrs["converged"], 1)
+
+
+class Refused(RefusingTest):
+    def test_detectors(self):
+        keys = {**TISSUE, "ring_width": None}
+        self.assert_refused(["detector_radius, ring_width"], "reflectance", **keys)
+        self.assert_refused(["detector_radius, ring_width"], "reflectance", **{**keys, "ring_width": 1}, detector_radius=1)
+        self.assert_refused(["distances = 5"], "reflectance", **keys, detector_radius=5)
+        self.assert_refused(["distances = 5"], "reflectance", **keys, detector_radius=3, source_radius=2.5)
+        self.assert_refused(["distances: required"], "reflectance", **{**TISSUE, "distances": None})
+
+    def test_media(self):
+        for rows, key in (("2,0,0.02,0.9", "layers"), ("2,-1,0.02,0.9", "mu_s")):
+            (self.folder / "bad.csv").write_text(f"thickness,mu_s,mu_a,g\n{rows}\n9,5,0.1,0.8\n")
+            self.assert_refused([key], "reflectance", layers="bad.csv", distances=5, ring_width=1)
+        (self.folder / "bad.csv").write_text("thickness,mu_s,mu_a,g,medium_index\n2,9,0,0.9,1.4\n9,5,0.1,0.8,1.3\n")
+        self.assert_refused(["medium_index"], "reflectance", layers="bad.csv", distances=5, ring_width=1)
+        (self.folder / "bad.csv").write_text("thickness,optical_depth,mu_a\n2,9,0.1\n")
+        self.assert_refused(["mu_a"], "reflectance", layers="bad.csv", distances=5, ring_width=1)
+        self.assert_refused(["velocity"], "reflectance", **TISSUE, delays=[0, 1], velocity=[1, 0])
+
+    def test_delays_of_render(self):
+        scene = {"stage_box": [-1, -1, 0, 1, 1, 1], "mu_s": 1, "point_light": [0, 0, 0.5, 1], "sensor": "area",
+                 "sensor_at": [0, 0, 1], "sensor_size": [1, 1], "samples": 100}
+        self.assert_refused(["delays"], "render", **scene, delays=[0.1])
+        self.assert_refused(["diffusion = 1 2"], "render", **scene, method="forward", delays=[0.1], diffusion=[1, 2])
+
+
+if __name__ == "__main__":
+    unittest.main()

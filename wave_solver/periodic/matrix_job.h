@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/numbers/statistics.h"
+#include "core/result/dataset_row.h"
+#include "core/run/runner.h"
+#include "flatland/scene/scene.h"
+#include "wave_solver/periodic/scattering_matrix.h"
+
+namespace flatspeckle::wave {
+
+/// Settings of an ensemble of scattering matrices.
+struct MatrixSettings {
+  double phase = 0;  ///< Bloch phase of a period, the width of the box
+  std::size_t eigenvalue_bins = 20;
+  std::size_t shifts = 10;  ///< largest shift of channels for correlations
+  SolveOptions options;
+};
+
+/// Statistics of the transmission matrices t of many placements. In a batch, one placement is drawn
+/// with draw_periodic_placement() and solved for all channels. With N channels on each side and
+/// t_ba the amplitude from light channel a to channel b at the back:
+/// - transmittance T_a = sum_b |t_ba|^2, conductance g = sum_a T_a;
+/// - eigenvalues tau of t^H t, and the largest of them;
+/// - tilt correlations |<sum t_ba conj(t_b'a')>| / sqrt(<sum |t_ba|^2> <sum |t_b'a'|^2>), where
+///   primes are channels shifted by d and the phase origin of outgoing waves is the back of the
+///   slab: over all a and b != a, for the light closest to normal incidence (a fixed, b != a), and
+///   for the most open eigenchannel, with its incident wave shifted;
+/// - focusing on a channel b by light of equal power in all channels with the best phases, compared
+///   with random phases: sum_b (sum_a |t_ba|)^2 / sum_b sum_a |t_ba|^2.
+struct MatrixJob {
+  BatchJob batches;
+  std::vector<CellChannel> channels;
+  MatrixSettings settings;
+};
+MatrixJob matrix_job(const Scene& scene, const MatrixSettings& settings, std::uint64_t seed);
+
+/// Results of a MatrixJob.
+struct MatrixStatistics {
+  Estimate transmittance, reflectance;  ///< of each light channel
+  /// Mean conductance; variance of g; <T_a^2> / <T_a>^2 - 1 averaged over the channels (C2);
+  /// variance of g / <g>^2 (C3); mean of the largest eigenvalue; enhancement of focusing.
+  Estimate conductance, conductance_variance, channel_variance, relative_variance, largest, focus;
+  Estimate eigenvalues;  ///< mean number of eigenvalues in each bin
+  /// [shift = 0 .. shifts]
+  Estimate tilt_correlation, normal_correlation, open_correlation;
+  double focus_theory = 0;  ///< enhancement for independent Gaussian amplitudes (Vellekoop 2007)
+  Invariant power, reciprocity;
+};
+MatrixStatistics matrix_statistics(const MatrixJob& job, const GroupedSums& sums);
+
+/// Returns the mean number of eigenvalues in each of `bins` equal bins of (0, 1) by Dorokhov's
+/// bimodal law for a conductance g and n channels, whose smallest eigenvalue is 1 / cosh^2(n / g).
+std::vector<double> bimodal_counts(double g, std::size_t n, std::size_t bins);
+
+extern const DatasetTable matrix_table, scattering_matrix_table;
+void write_statistics(ResultFile& file, const MatrixJob& job, const MatrixStatistics& found);
+/// Writes the scattering matrix of one placement and its transmission eigenvalues.
+void write_scattering_matrix(ResultFile& file, const ScatteringMatrix& found);
+
+}  // namespace flatspeckle::wave
