@@ -480,15 +480,16 @@ Spreading Tracers::spreading_of(RenderMethod method) const {
 
 Tracer Tracers::untuned(RenderMethod method) const {
   const auto transport = transport_of(scene_, request_, method);
-  if (aim_ && method == RenderMethod::forward) transport->lights.aim(*aim_);
   if (!plan_.curved) transport->depth = depth_;
   const std::shared_ptr<const Space> space =
       make_space(scene_.field, scene_.stage, options(spreading_of(method)));
   if (method == RenderMethod::forward) {
+    if (aim_) transport->lights.aim(*aim_);
     const auto target = SensorTarget::of(*transport, *space, bending_of(scene_));
     Tracer tracer{method, transport,
                   forward_kernel(transport, space, target, scene_.random_phase, moving_)};
     tracer.has_control_variates = forward_controls(*transport, target.has_value());
+    tracer.is_aimed = aim_.has_value();
     return tracer;
   }
   Tracer tracer{method, transport, path_kernel(plan_, transport, space, scene_.random_phase)};

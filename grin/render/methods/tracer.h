@@ -52,6 +52,7 @@ struct Tracer {
   double cost_of_closed_connection = 0;
   Spreading spreading = Spreading::all;
   bool has_control_variates = false;  ///< whether light paths accumulate control variates
+  bool is_aimed = false;  ///< whether a pilot run has aimed its lights at the sensors
 
   void add(int paths, RandomStream& random, Film& film, TransportCounts& counts) const;
 };
@@ -76,8 +77,6 @@ class Tracers {
 
   /// Whether paths are traced; if not, all lights are beams and nothing scatters.
   bool walks() const { return walks_; }
-  /// Whether a pilot run has aimed lights at the sensors.
-  bool are_lights_aimed() const { return aim_.has_value(); }
 
   const RenderScene& scene() const { return scene_; }
   const RenderPlan& plan() const { return plan_; }
@@ -97,7 +96,7 @@ class Tracers {
   const RenderRequest& request_;
   RenderPlan plan_;
   bool walks_ = true;
-  std::optional<Aim> aim_;  ///< set if it saves much work
+  std::optional<Aim> aim_;  ///< for counted paths; set if it saves much work
   std::shared_ptr<const DepthImportance> depth_;  ///< set if the plan is deep
   /// Set if derivatives by parameters of the field are requested (gradient_by).
   std::shared_ptr<const MovingField> moving_;

@@ -391,7 +391,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.plan = described(scene, request, tracer.method) + tracers.plan().describe() +
              described_steps(scene, tracers.plan()) + described_sensors(scene) +
              described_map(scene) + (tracers.walks() ? "" : "; rays of beams alone") +
-             (tracers.are_lights_aimed() ? "; lights aimed at the sensors" : "");
+             (tracer.is_aimed ? "; lights aimed at the sensors" : "");
   job.pictures = static_cast<std::size_t>(pixels) * scene.bins.sums();
   const bool tallies_power = walks_light(tracer.method) && pixels > 0;
   job.has_energy = tallies_power || map;
