@@ -146,7 +146,8 @@ def measure(program, number, seconds, seeds):
         if method == "auto":
             chosen = runs
     best = min(work, key=lambda method: work[method])
-    ratio = work["auto"] / work[best] if work[best] > 0 else 1.0 if work["auto"] == 0 else math.inf
+    rounding = 1e-24  # pictures without noise differ by the squares of rounding errors
+    ratio = (work["auto"] + rounding) / (work[best] + rounding)
     centre = np.mean([run.mean for run in chosen])
     for run in chosen:
         if run.is_rare or not run.has_finite_variance:
