@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Amplitude and phase of the total field on the map of `flatspeckle solve --map`, one row per illumination, with the
-outlines of the disks. Light at angle 0 travels to the right. The highest 0.1 % of the amplitudes share one colour."""
+"""Amplitude and phase of the total field on the map of `flatspeckle solve --map`, one row per illumination, or of a periodic
+cell for one channel and for the most open eigenchannel, with the outlines of the disks. Light at angle 0 travels to the
+right. The highest 0.1 % of the amplitudes share one colour."""
 
 from lib import script, style
 from lib.pictures import edges
@@ -46,6 +47,12 @@ def draw_light(figure, axes, field, extent, disks):
             side.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
 
 
+def title(result, light):
+    if result.has("map_wave"):
+        return ("channel closest to normal incidence", "most open eigenchannel")[light]
+    return f"illumination at {style.angle(result.values('light_angle')[light])}"
+
+
 @script.plot(dpi=DPI)
 def draw(result):
     result.require("total_field", "solve with --map writes it")
@@ -60,5 +67,5 @@ def draw(result):
     for light in range(lights):
         draw_light(figure, axes[light], field[light], extent, disks)
         if lights > 1:
-            axes[light, 0].set_title(f"illumination at {style.angle(result.values('light_angle')[light])}")
+            axes[light, 0].set_title(title(result, light))
     return figure

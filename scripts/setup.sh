@@ -34,7 +34,8 @@ install_missing() {
 # Packages for the program alone.
 install_build_packages() {
   install_missing g++ cmake ninja-build pkg-config libhdf5-dev liblapacke-dev libopenblas-dev \
-    libfftw3-dev libnlopt-dev libpng-dev libtiff-dev libeigen3-dev libcli11-dev librandom123-dev libtomlplusplus-dev
+    libfftw3-dev libnlopt-dev libpng-dev libtiff-dev libeigen3-dev libcli11-dev librandom123-dev libtomlplusplus-dev \
+    nlohmann-json3-dev
 }
 
 # Packages for the subcommand bench.

@@ -26,6 +26,7 @@
 #include "core/keys/key.h"
 #include "core/keys/number_text.h"
 #include "core/keys/written_number.h"
+#include "grin/render/values/mcx_scene.h"
 
 namespace flatspeckle::apps {
 
@@ -47,8 +48,8 @@ bool names_a_file(const Key& key, const std::string& value) {
                                              value.find_first_of("./") != std::string::npos);
 }
 
-/// Parser of scene files, as CLI11 requires it. Relative paths of input files are searched in the
-/// folder of the scene file first, then in the working folder.
+/// Parser of scene files, as CLI11 requires it. A file in JSON is an MCX scene. Relative paths of
+/// input files are searched in the folder of the scene file first, then in the working folder.
 class SceneFile : public CLI::Config {
  public:
   SceneFile() = default;
@@ -63,6 +64,12 @@ class SceneFile : public CLI::Config {
       throw InputError("cannot be read");
     }
     std::vector<CLI::ConfigItem> found;
+    if (const auto start = text.find_first_not_of(" \t\r\n");
+        start != std::string::npos && text[start] == '{') {
+      for (auto& [key, values] : grin::mcx_keys(app_->get_config_ptr()->as<std::string>()))
+        found.push_back({{}, std::move(key), std::move(values)});
+      return found;
+    }
     for (auto& [key, values] : read_scene(text)) {
       const Key* const row = keys_ == nullptr ? nullptr : keys_->find(key);
       for (std::string& value : values)

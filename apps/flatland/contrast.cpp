@@ -25,7 +25,7 @@ struct ContrastKeys {
 };
 
 void add_keys(Keys& keys, ContrastKeys& values) {
-  keys.add("frames", values.frames, "Frames of a camera: PNG, TIFF, NPY, HDF5 or CSV").file();
+  keys.add("frames", values.frames, "Frames of a camera: PNG, TIFF, NPY, PFM, HDF5 or CSV").file();
   add_frame_keys(keys, values.format);
   add_correction_keys(keys, values.corrections);
   keys.add("contrast_over", values.over,

@@ -89,7 +89,7 @@ void add_space_keys(Keys& keys, ImageKeys& values) {
   keys.group("Object and camera in space", "dimension = 3");
   keys.add("object_y", space.object_y, "y of the object's points (default: 0)").unit("length");
   keys.add("object_picture", space.object_picture,
-           "Picture (PNG, TIFF, NPY, HDF5, CSV) whose pixels above 0 are the object's points")
+           "Picture (PNG, TIFF, NPY, PFM, HDF5, CSV) whose pixels above 0 are the object's points")
       .file();
   keys.add("object_width", space.object_width, "Width of object_picture, along x")
       .positive()

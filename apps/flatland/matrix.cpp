@@ -26,6 +26,9 @@ class MatrixExperiment : public Experiment {
         .from(1, 10000);
     keys.add("eigenvalue_bins", bins_, "Number of bins of the transmission eigenvalues")
         .from(2, 10000);
+    keys.add("numerical_aperture", numerical_aperture_,
+             "Largest |sin(angle)| of the channels of the filtered matrix, on both sides")
+        .positive();
     add_solver_keys(keys, cell_);
     add_run_keys(keys, run_);
   }
@@ -36,6 +39,7 @@ class MatrixExperiment : public Experiment {
     settings.phase = keys.read(cell_.period_phase);
     settings.shifts = static_cast<std::size_t>(keys.read(shifts_));
     settings.eigenvalue_bins = static_cast<std::size_t>(keys.read(bins_));
+    settings.numerical_aperture = keys.read(numerical_aperture_);
     settings.options = solve_options(keys, cell_);
     scene_ = make_scene(keys, spec_);
     if (scene_->domain.kind != Domain::Kind::box)
@@ -80,6 +84,7 @@ class MatrixExperiment : public Experiment {
   SceneSpec spec_;
   SolverKeys cell_{.tolerance = 1e-8};
   std::int64_t shifts_ = 5, bins_ = 20;
+  double numerical_aperture_ = 1;
   std::optional<Scene> scene_;
   wave::MatrixJob job_;
 };

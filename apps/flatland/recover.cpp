@@ -40,7 +40,7 @@ struct RecoverKeys {
 
 void add_keys(Keys& keys, RecoverKeys& values) {
   keys.add("frames", values.frames,
-           "Frames of a camera: PNG, TIFF, NPY, HDF5 or CSV. A table with column names has frames "
+           "Frames of a camera: PNG, TIFF, NPY, PFM, HDF5 or CSV. A table with column names has frames "
            "of "
            "one line, one in each column")
       .file();

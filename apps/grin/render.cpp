@@ -137,6 +137,9 @@ bool print_sensor(const std::string& name, const grin::Sensor& sensor,
   print_resolved("mean of pixels", result.mean, units);
   print_row("brightest pixel", image, brightest, units);
   if (result.gradients) print_gradients(result, parameters, units);
+  if (result.sidebands)
+    for (std::size_t n = 0; n < grin::sidebands; ++n)
+      print_row(("shifted by " + std::to_string(n)).c_str(), result.sidebands->mean, n, "");
   print_pixels(image);
   return true;
 }

@@ -177,6 +177,18 @@ ErrorRun field_gradient_run() {
                 });
 }
 
+/// Measures the power on a disk at a distance in tissue.
+ErrorRun far_disk_run() {
+  constexpr double distance = 30, area = pi * 1.5 * 1.5;
+  return run_of(method_of({"disk at 30 mm in tissue", tissue_disk(distance)}, "guided light paths",
+                          RenderMethod::forward),
+                [] {
+                  return ErrorReference{{power_on_tissue_disk(distance) / area},
+                                        1e-3,
+                                        "harmonics at each transverse frequency (reflectance)"};
+                });
+}
+
 /// Adds a scene in which path tracing has infinite variance: no competing strategy bounds the 1/r^2
 /// singularity of its connections.
 void add_without_variance(std::vector<ErrorRun>& runs, const NamedRender& named) {
@@ -198,7 +210,8 @@ std::vector<ErrorRun> render_error_runs() {
   add_even_light(runs, {"balls_even", even_balls()}, 0.1);
   add_without_variance(runs, {"glass_ball_beam", beam_on_glass_ball()});
   add_even_light(runs, {"ring_even", even_ring()});
-  for (const ErrorRun& run : {absorbing_ball(), map_run(), gradient_run(), field_gradient_run()})
+  for (const ErrorRun& run :
+       {absorbing_ball(), map_run(), gradient_run(), field_gradient_run(), far_disk_run()})
     runs.push_back(run);
   return runs;
 }

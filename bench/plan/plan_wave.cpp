@@ -4,11 +4,13 @@
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/copied_cluster.h"
 #include "bench/scenes/standard_scenes.h"
+#include "flatland/scene/periodic_placement.h"
 #include "wave_solver/clusters/cluster_solution.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/dense_factor.h"
 #include "wave_solver/equations/t_matrix_system.h"
 #include "wave_solver/maps/field_map.h"
+#include "wave_solver/periodic/scattering_matrix.h"
 #include "wave_solver/solutions/wave_solution.h"
 #include "wave_solver/spheres/sphere_equations.h"
 #include "wave_solver/spheres/sphere_pairs.h"
@@ -199,6 +201,23 @@ TwoAlternatives disks_of_copies(bool) {
           [=] { return ClusterSolution(cluster, places, {0}, to(tolerance)).fields(views); }};
 }
 
+/// Compares scattering matrices of a periodic slab by the dense matrix with those by waves to and
+/// from the outside alone.
+TwoAlternatives inside_of_slab(bool is_quick) {
+  constexpr double tolerance = 1e-6, width = 30.3;
+  SceneSpec spec;
+  spec.scatterer = "point";
+  spec.width = width;
+  spec.depth = 20;
+  spec.count = is_quick ? 600 : 3000;
+  RandomStream random(1, static_cast<std::uint64_t>(Stream::placement), 0);
+  const Placement points = draw_periodic_placement(make_scene(spec), random);
+  const auto by = [=](Method method) {
+    return [=] { return scattering_matrix(points, k, {width, 0}, to(tolerance, method)).s; };
+  };
+  return {by(Method::dense), by(Method::fast)};
+}
+
 }  // namespace
 
 std::vector<PlanCase> wave_plan_cases() {
@@ -215,6 +234,8 @@ std::vector<PlanCase> wave_plan_cases() {
               lights_that_others_make),
           row("diagnosis", "box_cylinders", "placement", 1e-12, diagnosis),
           row("the matrix", "4000 points (500 in a quick look)", "placement", 1e-4, whole_matrix),
+          row("unknowns inside a slab", "3000 points (600 in a quick look)", "scattering matrix",
+              1e-4, inside_of_slab),
           row("sums pixel by pixel", "100 cylinders, 26400 pixels", "map", 1e-8, pixels_one_by_one),
           row("pairs beyond a wavelength", "20000 points in space (8000 in a quick look)",
               "product", 1e-5, pairs_in_space),

@@ -13,6 +13,24 @@ ScatteringMedium fog(double mu_s, double mu_a, double g) {
   return {mu_s, mu_a, {HgPhase{g}}};
 }
 
+RenderScene tissue_disk(double distance) {
+  const double half = 20 + 2 * distance, top = -1e-3;
+  RenderScene scene{};
+  scene.step = 1;
+  scene.max_length = 1e9;
+  scene.stage = {
+      .boundary = Box{{-half, -half, top}, {half, half, half}},
+      .bodies = {{Box{{-half, -half, 0}, {half, half, half}}, fog(10, 0.02, 0.9), 0.37}}};
+  scene.lights = {BeamLight{{0, 0, top}, Vec3::UnitZ(), 1e-3}};
+  scene.sensors = {RadialDetector{{distance, 0, top}, 1.5, 1, std::numbers::pi / 2, {}}};
+  return scene;
+}
+
+double power_on_tissue_disk(double distance) {
+  if (distance == 20) return 1.47102e-5;
+  return distance == 30 ? 5.51492e-7 : 8.35024e-11;
+}
+
 RenderScene waveguide() {
   constexpr double wave_number = 3.40548;  // 813 kHz at 1500 m/s, per mm
   RenderScene scene{};

@@ -6,6 +6,7 @@
 #include "bench/scenes/synthetic_slab.h"
 #include "bench/stability/extreme_rows.h"
 #include "bench/stability/mc_extremes.h"
+#include "mc/distance/distance_job.h"
 #include "mc/jobs/flux_job.h"
 #include "mc/slab/adding/space.h"
 #include "mc/slab/slab_covariance.h"
@@ -149,6 +150,31 @@ Finding diffusion_again(double optical_depth, const std::vector<double>& delays)
   return misfit(fit, Eigen::VectorXd{{1.0}}, fit.errors, 0.2);
 }
 
+/// Compares powers on rings at 3 to 100 transport mean free paths from a beam by the radiance and
+/// by the adjoint radiance.
+Finding far_powers(const Bulk& bulk, double index) {
+  Scene scene = viewed_slab(bulk, 0, 3);
+  if (index != 1) scene.faces = Faces{index, 1, Polarisation::unpolarised};
+  const double transport = bulk.depth / (bulk.optical_depth * (1 - bulk.g * bulk.albedo));
+  mc::DistanceRequest request;
+  for (const double distance : {3.0, 30.0, 100.0})
+    request.detectors.push_back(
+        {mc::DistanceDetector::Kind::ring, distance * transport, transport});
+  constexpr double tolerance = 2e-3;
+  double worst = 0;
+  for (const Invariant& check : mc::reciprocity(scene, request, tolerance))
+    worst = larger(worst, check.off);
+  return {worst, tolerance};
+}
+
+void add_far_powers(ExtremeRows& rows) {
+  for (const Bulk& bulk : {Bulk{1e4, 0.9, 0.99}, Bulk{1e4, 0.99, 0.999}, Bulk{1e6, 0.9, 1 - 1e-6}})
+    for (const double index : {1.0, 3.0})
+      rows.add("reflectance far from a beam, OD " + short_number(bulk.optical_depth) + ", albedo " +
+                   short_number(bulk.albedo) + ", index " + short_number(index),
+               "power = that by the adjoint, relative", far_powers, bulk, index);
+}
+
 void add_faces(ExtremeRows& rows) {
   for (const double index : {0.5, 1.0001, 1.33, 4.0})
     for (const double incidence : {0.0, 1.56}) {
@@ -226,6 +252,7 @@ void mc_transport_extremes(ExtremeRows& rows) {
                    short_number(bulk.albedo) + (dimension == 3 ? ", in space" : ""),
                "shift 1e-18 = none", same_frequencies, bulk, dimension);
   add_faces(rows);
+  add_far_powers(rows);
   add_fits(rows);
 }
 

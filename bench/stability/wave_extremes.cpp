@@ -5,6 +5,9 @@
 #include <string>
 #include <utility>
 
+#include "core/numbers/random.h"
+#include "wave_solver/periodic/scattering_matrix.h"
+
 namespace flatspeckle::bench {
 
 Finding reciprocity(const Placement& placement, const SolveOptions& options, double limit) {
@@ -255,9 +258,39 @@ void add_overlaps(ExtremeRows& rows) {
   });
 }
 
+Finding cell_power(const Placement& placement, double width, double phase, double limit) {
+  const auto found = scattering_matrix(placement, k, {width, phase}, to(1e-11, Method::fast));
+  return {found.power.off, limit};
+}
+
+Placement deep_points(int count) {
+  RandomStream random(1, 0, 0);
+  Placement points;
+  for (int i = 0; i < count; ++i)
+    points.push_back({{1.3 * random.uniform(), i + random.uniform()}, Scatterer{}});
+  return points;
+}
+
+void add_cells(ExtremeRows& rows) {
+  const std::string unitary = "unitarity";
+  const Placement row{{{0, 0}, disk(Kind::te, 1, 1.5)}};
+  for (const double beside : {0.0, 1e-12, 1e-6})
+    rows.add("row of TE disks, " + short_number(beside) + " beside a Wood anomaly", unitary,
+             cell_power, row, 2 * (1 + beside), 0, 1e-10);
+  for (const Kind kind : {Kind::soft, Kind::tm})
+    rows.add(named("gap 1e-3 to the next period", kind), unitary, cell_power,
+             Placement{{{0, 0}, disk(kind, 2)}}, (2 + 1e-3) * disk(kind, 2).radius, 0.3, 1e-9);
+  rows.add("row of TM disks, k period 1000", unitary, cell_power,
+           Placement{{{0, 0}, disk(Kind::tm, 1)}}, 1000 / k, 0.3, 1e-9);
+  rows.add("points, 50 periods deep", unitary, cell_power, deep_points(65), 1.3, 0.3, 1e-9);
+  rows.add_refused("disk wider than the period", "overlap with those of the next period",
+                   [=] { cell_power(row, 1.9 / k, 0, 1); });
+}
+
 }  // namespace
 
 void wave_extremes(ExtremeRows& rows) {
+  add_cells(rows);
   add_gaps(rows);
   add_statics(rows);
   add_sizes(rows);

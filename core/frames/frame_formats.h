@@ -14,5 +14,6 @@ Frames read_png(const std::filesystem::path& path);
 Frames read_tiff(const std::filesystem::path& path);
 /// bytes: content of the file.
 Frames read_npy(const std::string& bytes);
+Frames read_pfm(const std::string& bytes);
 
 }  // namespace flatspeckle

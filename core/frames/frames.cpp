@@ -26,7 +26,7 @@ std::string signature(const std::filesystem::path& path) {
   return bytes;
 }
 
-enum class Format { png, tiff, npy, hdf5, text };
+enum class Format { png, tiff, npy, pfm, hdf5, text };
 
 Format format_of(const std::filesystem::path& path) {
   const std::string bytes = signature(path);
@@ -36,6 +36,8 @@ Format format_of(const std::filesystem::path& path) {
   for (const std::string& tiff : {"II*\0"s, "MM\0*"s, "II+\0"s, "MM\0+"s})
     if (begins(tiff)) return Format::tiff;
   if (begins("\x93NUMPY")) return Format::npy;
+  for (const std::string& pfm : {"Pf\n"s, "PF\n"s, "Pf "s, "PF "s})
+    if (begins(pfm)) return Format::pfm;
   if (begins("\x89HDF")) return Format::hdf5;
   return Format::text;
 }
@@ -126,6 +128,8 @@ Frames read(const std::string& key, const std::filesystem::path& path, const Fra
       return read_tiff(path);
     case Format::npy:
       return read_npy(file_bytes(path));
+    case Format::pfm:
+      return read_pfm(file_bytes(path));
     case Format::hdf5:
       return guarded_read(path, [&] { return read_hdf5(path, how.dataset); });
     case Format::text:

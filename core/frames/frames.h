@@ -55,7 +55,8 @@ auto naming_frames(const std::string& path, const F& f) {
   }
 }
 
-/// Reads frames from PNG (grey, 8 or 16 bit), TIFF (grey, one or several pages), NPY, HDF5 or CSV.
+/// Reads frames from PNG (grey, 8 or 16 bit), TIFF (grey, one or several pages), NPY,
+/// PFM (grey), HDF5 or CSV.
 /// The content of the file tells its format. Throws InputError, which names the key and the file,
 /// for files that are damaged, that have colours, or that can be read in several ways.
 Frames read_frames(const std::string& key, const std::filesystem::path& path,

@@ -277,22 +277,15 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta, double few) 
   return estimate;
 }
 
-namespace {
-
-/// Returns the `of.count` sums of consecutive entries that EntrySums defines; of.parts >= 1.
-std::vector<Complex> added_up(std::span<const Complex> sums, const EntrySums& of) {
-  std::vector<Complex> values(of.count);
-  for (std::size_t i = 0; i < of.count; ++i)
-    for (std::size_t part = 0; part < of.parts; ++part) values[i] += sums[i * of.stride + part];
-  return values;
-}
-
-}  // namespace
-
-Estimate jackknife(const GroupedSums& sums, const EntrySums& of, double few) {
+Estimate jackknife(const GroupedSums& sums, const EntryRange& of, double few) {
   const double samples = sums.total_samples();
   const std::size_t groups = sums.groups();
-  Estimate estimate{sample_mean(samples, added_up(sums.total(), of)), {}};
+  std::vector<Complex> total(of.count);
+  for (std::size_t group = 0; group < groups; ++group) {
+    const auto own = sums.group_sums(group).subspan(of.first, of.count);
+    for (std::size_t i = 0; i < of.count; ++i) total[i] += own[i];
+  }
+  Estimate estimate{sample_mean(samples, total), {}};
   estimate.rare.resize(of.count);
   if (groups < 2) {
     estimate.error.assign(of.count, std::numeric_limits<double>::infinity());
@@ -304,17 +297,14 @@ Estimate jackknife(const GroupedSums& sums, const EntrySums& of, double few) {
   for (std::size_t i = 0; i < of.count; ++i) lifted[i] = lift(std::abs(estimate.value[i]));
   for (std::size_t group = 0; group < groups; ++group) {
     const double own = sums.group_samples(group), weight = own / (samples - own);
-    const auto add = [&](std::span<const Complex> values) {
-      for (std::size_t i = 0; i < of.count; ++i) {
-        const double re = lifted[i] * (values[i].real() / own - estimate.value[i].real());
-        const double im = lifted[i] * (values[i].imag() / own - estimate.value[i].imag());
-        const double dd = weight * (re * re + im * im);
-        sum_dd[i] += dd;
-        sum_d4[i] += dd * dd;
-      }
-    };
-    const auto all = sums.group_sums(group);
-    of.stride == 1 && of.parts == 1 ? add(all) : add(added_up(all, of));
+    const auto values = sums.group_sums(group).subspan(of.first, of.count);
+    for (std::size_t i = 0; i < of.count; ++i) {
+      const double re = lifted[i] * (values[i].real() / own - estimate.value[i].real());
+      const double im = lifted[i] * (values[i].imag() / own - estimate.value[i].imag());
+      const double dd = weight * (re * re + im * im);
+      sum_dd[i] += dd;
+      sum_d4[i] += dd * dd;
+    }
   }
   estimate.error.resize(of.count);
   for (std::size_t i = 0; i < of.count; ++i) {

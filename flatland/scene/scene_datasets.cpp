@@ -88,7 +88,7 @@ const DatasetTable axes_table{
              {"shift", Data::scale, "", "SHIFT", "change of k sin(view), or translation along x"}},
     .attributes = {{"tilt_q", "azimuth", "float64",
                     "azimuth of the tilts, from x towards y, if they are not in the plane y = 0"}},
-    .roles = {{"LIGHT", {"light_angle", "light"}},
+    .roles = {{"LIGHT", {"light_angle", "light", "map_wave"}},
               {"VIEW", {"view_angle", "sensor", "camera_y camera_x", "image_y image_x"}},
               {"LIGHT_2", {"light_angle_2", "light_2"}},
               {"VIEW_2", {"view_angle_2", "sensor_2"}},

@@ -25,6 +25,8 @@ STAGE = {"field": "parabolic", "index": 1.5, "alpha": 0.5, "stage_box": [-1, -1,
          "mu_s": 0.5, "point_light": [0, 0, 1, 1], "path_bins": [1, 9, 4], "path_moments": True,
          "pixels": [30, 20]}
 
+TAGGED = {**STAGE, "field": "transducers", "alpha": None, "transducer": [1e-5, 5, 0, 0, 0, 0, 1, 0, 0, 0],
+          "tag_wavelength": 5e-4, "method": "forward", "path_bins": None, "path_moments": None}
 GRADIENT = {"gradient": True, "method": "forward", "delays": [0, 0.1]}
 
 
@@ -54,6 +56,7 @@ FILES = {
     "places.csv": "x,z,angle\n0,0,0\n9,1,2\n",
     "picture.csv": "1,2,3,4\n" * 4,
     "wedge.stl": wedge(),
+    "shapes.json": '{"Domain": {"Dim": [2, 2, 2]}, "Shapes": [{"Grid": {"Tag": 1, "Size": [2, 2, 1]}}]}',
     "predictions.csv": "prediction_paths\n400\n500\n",
     "disk_points.csv": "density,radius,index,index_imaginary\n0.1,0.2,1.5,0\n0.2,0.1,1.4,0.01\n",
 }
@@ -175,8 +178,14 @@ RUNS = {
                                          "scatterer": "tm", "wavelengths": [0.9, 1.1]}),
     "solve_near": ("solve", {"placement": "disks.csv", "near_sensors": "sensors.csv",
                              "scatterer": "tm"}),
-    "cell": ("solve", {"width": 9.3, "period": 9.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2}),
-    "matrices": ("matrix", {"width": 9.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2, "shifts": 3, "samples": 4}),
+    "cell": ("solve", {"width": 9.3, "period": 9.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2,
+                       "map": [-3, 3, -1, 5]}),
+    "cell_fast": ("solve", {"width": 3.3, "period": 3.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2,
+                            "solver": "fast"}),
+    "matrices_fast": ("matrix", {"width": 3.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2, "shifts": 1, "samples": 2,
+                                 "solver": "fast"}),
+    "matrices": ("matrix", {"width": 9.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2, "shifts": 3, "samples": 4,
+                            "numerical_aperture": 0.5}),
     "motif": ("solve", {"placement": "disks.csv", "scatterer": "tm", "t_matrix_gap": 3}),
     "solve_copies": ("solve", {"placement": "places.csv", "cluster": "motif.h5", **FAR}),
     "reflectance": ("reflectance", {"layers": "tissue.csv", "medium_index": 1.4, "distances": [5, 10], "ring_width": 1,
@@ -233,6 +242,13 @@ RUNS = {
     "radial": ("render", {**STAGE, "pixels": None, "sensor": "radial", "sensor_at": [0, 0, 4],
                           "sensor_radius": 1, "rings": 4, **GRADIENT}),
     "polar": ("render", {**STAGE, "pixels": None, "sensor": "polar", "rings": 4, **GRADIENT}),
+    **{f"tagged_{sensor}": ("render", {**TAGGED, "sensor": sensor, **keys}) for sensor, keys in (
+        ("area", {"sensor_at": [0, 0, 4], "sensor_size": [1, 1]}), ("directional", {}), ("polar", {"pixels": None, "rings": 4}),
+        ("radial", {"pixels": None, "sensor_at": [0, 0, 4], "sensor_radius": 1, "rings": 2}),
+        ("camera", {"sensor_at": [0.2, 0, 4], "sensor_direction": [0, 0, -1], "lens_radius": 0.5, "focus_distance": 2,
+                    "field_of_view": 1}))},
+    "labels": ("render", {**STAGE, "field": None, "alpha": None, "mu_s": None, "sensor": "directional", "labels": "shapes.json",
+                          "label_media": [0, 0.1, 0, 1, 0, 0.5]}),
     "ball_power": ("render", {**STAGE, "field": None, "alpha": None, "index": None, "sensor": "directional",
                               "body_sphere": [0, 0, 2, 0.5], "index_around": 1.3, "max_scatterings": 9}),
     "mesh": ("render", {**STAGE, "field": None, "alpha": None, "index": None, "sensor": "directional",

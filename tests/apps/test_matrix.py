@@ -34,12 +34,25 @@ class OnePlacement(ProgramTest):
         moved = datasets(self.folder / "moved.h5")["scattering_matrix"]
         np.testing.assert_allclose(moved, found["scattering_matrix"], atol=1e-9)
 
+    def test_the_map_is_quasi_periodic_and_continues_the_channels(self):
+        phase = 1
+        for solver in ("dense", "fast"):  # 31 pixels are a period
+            found = self.solve(period_phase=phase, map=[-4.65, 7.35, -1, 5], map_pixels=[40, 60], solver=solver)
+            field, x, z = found["total_field"], found["map_x"], found["map_z"]
+            self.assertEqual(field.shape, (2, 60, 40))
+            np.testing.assert_allclose(field[:, :, 31:], np.exp(1j * phase) * field[:, :, :9], atol=1e-8)
+            sine, cosine = found["sine"], np.sqrt(1 - found["sine"] ** 2)
+            t = found["scattering_matrix"][0, :, 1, :].T
+            back = np.exp(2j * np.pi * (np.outer(sine, x[:31]) + z[-1] * cosine[:, None])) / np.sqrt(cosine)[:, None]
+            normal, opened = field[:, -1, :31] @ back.conj().T * cosine / 31  # evanescent waves are orthogonal to channels
+            np.testing.assert_allclose(normal, t[:, np.argmin(abs(sine))], atol=1e-5)
+            np.testing.assert_allclose((abs(opened) ** 2).sum(), found["transmission_eigenvalue"][0], atol=1e-5)
+
     def test_refused(self):
         self.write("two.csv", "x,z\n0,0\n9,0.1\n")
         two = {"placement": "two.csv", "scatterer": "soft", "radius": 0.2}
         for keys, message in (({**CELL, "period": 9}, "period = 9: must be the width"),
                               ({**two, "period": 9.3}, "overlap with those of the next period"),
-                              ({**two, "radius": 0.01, "period": 9.3, "solver": "fast", "period_phase": 1}, "must be 0 or pi"),
                               ({**two, "period": 20, "view_angles": 1}, "view_angles"),
                               ({**CELL, "period_phase": 1}, "period_phase")):
             self.assertIn(message, self.call("solve", **keys, out="no.h5", status=2).stderr)
@@ -47,16 +60,20 @@ class OnePlacement(ProgramTest):
 
 class Ensemble(ProgramTest):
     def test_sums_agree(self):
-        self.call("matrix", **CELL, samples=6, shifts=3, out="matrix.h5")
+        self.call("matrix", **CELL, samples=6, shifts=3, numerical_aperture=0.5, out="matrix.h5")
         found = datasets(self.folder / "matrix.h5")
         np.testing.assert_allclose(found["transmittance"].sum(), found["conductance"])
         np.testing.assert_allclose(found["transmittance"] + found["reflectance"], 1, atol=1e-6)
         np.testing.assert_allclose(found["eigenvalue_count"].sum(), len(found["light_sine"]))
+        kept = (abs(found["light_sine"]) < 0.5).sum()
+        np.testing.assert_allclose(found["filtered_eigenvalue_count"].sum(), kept)
+        np.testing.assert_allclose(found["filtered_law_count"].sum(), kept)
         np.testing.assert_allclose(found["tilt_correlation"][0], 1)
         self.assertLessEqual(found["tilt_correlation"].max(), 1 + 1e-12)
 
     def test_refused(self):
         for keys, message in (({"shifts": 9}, "shifts = 9: must be less than half"),
+                              ({"numerical_aperture": 0.01, "period_phase": 1}, "numerical_aperture = 0.01: must be larger"),
                               ({"domain": "slab", "count": None, "width": None, "density": 0.1}, "domain"),
                               ({"width": 0.5, "count": 1}, "fewer than two channels")):
             self.assertIn(message, self.call("matrix", **{**CELL, **keys}, samples=2, out="no.h5", status=2).stderr)

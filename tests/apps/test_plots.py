@@ -97,6 +97,8 @@ KINDS = {
                          "map_cells": [3, 4]}),
     "rings": ("render", {**SPACE, "sensor": ["radial", "polar"], "sensor_at": [0, 0, 1], "sensor_size": None,
                          "sensor_radius": 0.9, "sensor_direction": [0, 0, 1], "rings": 5}),
+    "tagged": ("render", {**SPACE, "sensor": "radial", "sensor_size": None, "sensor_radius": 0.9, "rings": 3, "method": "forward",
+                          "field": "transducers", "transducer": [5e-5, 5, 0, 0, 0, 0, 1, 0, 0, 0], "tag_wavelength": 5e-4}),
     "mixed": ("render", {**SPACE, "sensor": ["radial", "area"], "sensor_radius": 0.9, "sensor_direction": [0, 0, 1], "rings": 5,
                          "pixels": [4, 4]}),
     "spectrum": ("solve", {**BOX, "wavelengths": [0.9, 1.1], "view_angles": [3.0, 3.1]}),
@@ -106,7 +108,10 @@ KINDS = {
                                   "prediction_draws": 2, "prediction_paths": 2000, "paths_per_field": 500}),
     "tissue": ("reflectance", {"depth": 100, "mean_free_path": 0.1, "g": 0.9, "albedo": 0.99, "distances": [5, 10], "ring_width": 1,
                                "delays": [0, 1e-3], "tolerance": 0.05}),
-    "matrices": ("matrix", {"width": 9.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2, "shifts": 3, "samples": 4}),
+    "matrices": ("matrix", {"width": 9.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2, "shifts": 3, "samples": 4,
+                            "numerical_aperture": 0.5}),
+    "cell": ("solve", {"width": 9.3, "period": 9.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2, "map": [-3, 3, -1, 5],
+                       "map_pixels": [6, 5]}),
     "near": ("solve", {"placement": DATA / "reference/g10/placement.csv", "scatterer": "soft",
                        "map": [-2, 2, -2, 2], "map_pixels": [6, 5]}),
 }
@@ -122,7 +127,7 @@ OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}
        "contrast_map": {"contrasts"}, "image_success": {"pictures"}, "image": {"frames", "blinks"}, "sources": {"blinks", "separated"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
        "design": {"lens", "display", "core"}, "design_methods": {"lens", "display", "core"},
        "render": {"picture", "pulse", "mixed"}, "render_time": {"pulse"},
-       "light_map": {"light"}, "matrix": {"matrices"}, "ring_profile": {"rings", "mixed"}, "tissue": {"tissue"}, "reflection_image": {"spectrum"}, "field_map": {"near"}}
+       "light_map": {"light"}, "matrix": {"matrices"}, "ring_profile": {"rings", "mixed", "tagged"}, "sidebands": {"tagged"}, "tissue": {"tissue"}, "reflection_image": {"spectrum"}, "field_map": {"cell", "near"}}
 
 
 def run_script(name, *words, drawn="fitted"):

@@ -39,6 +39,27 @@ class Reflectance(ProgramTest):
         self.assertTrue(np.all(np.diff(paths["pulse_correlation"][:], axis=1) < 0))  # longer paths decay faster
         self.assertEqual(paths["mean_transfer"][0], 0)
 
+    def test_far_detector_of_render(self):
+        """Guided paths of render to a distant disk on two layers: power, g1 and derivatives by the flow of each layer."""
+        (self.folder / "tissue.csv").write_text(LAYERS)
+        delays = [1e-3, 1e-2]
+        exact = self.run_one(layers="tissue.csv", distances=15, detector_radius=1, medium_index=1.4, delays=delays, gradient=True)
+        block = lambda top, bottom, *medium: [-40, -40, top, 40, 40, bottom, 1.4, *medium]
+        paths = self.run_one("render", out="paths.h5", stage_box=[-40, -40, -0.001, 40, 40, 60],
+                             block=block(0, 2, 10, 0.02, 0.9) + block(2, 60, 5, 0.01, 0.8), beam_light=[0, 0, -0.001, 0, 0, 1, 0.01, 1],
+                             sensor="radial", sensor_at=[15, 0, -0.001], sensor_radius=1, rings=1, method="forward",
+                             delays=delays, diffusion=[0, 1, 0.5], samples=3000)
+        self.assertIn("guided", paths.attrs["plan"])
+        def compare(found, name, expected):
+            off = paths[f"{name}_error"][()]
+            self.assertTrue(np.all(np.abs(found - expected) < 4 * off + 0.003 * np.abs(expected)), (name, found, expected, off))
+            self.assertTrue(np.all(off < 0.15 * np.abs(expected)), (name, off, expected))
+        compare(paths["total"][()], "total", exact["detected_power"][0])
+        compare(paths["mean_correlation"][()], "mean_correlation", exact["distance_correlation"][:, 0])
+        slopes = np.concatenate([np.zeros((1, 2)), exact["correlation_gradient"][()][::-1, 2, :, 0]])  # the deep block is larger
+        found, off = paths["correlation_gradient"][()], paths["correlation_gradient_error"][()]
+        self.assertTrue(np.all(np.abs(found - slopes) <= 4 * off + 0.005 * np.abs(slopes)), (found, slopes, off))
+
     def test_layers_of_motion(self):
         """g1 depends on the product of diffusion and delay, in seconds as in plain numbers."""
         (self.folder / "tissue.csv").write_text(LAYERS)

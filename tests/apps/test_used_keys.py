@@ -26,6 +26,7 @@ WITHOUT_EFFECT = {
     "fit_paths trust_paths": "the measurement's errors are much larger",
     "fit_plans g": "varied",
     "image resolution": "the points lie far apart",
+    "reflectance wavelength": "layers have coefficients, and delays no unit",
 }
 UNUSED = re.compile("is not used here|is a key of|leave it out")
 MOST_TRIED = 4

@@ -37,6 +37,14 @@ class Results(PackageTest):
             self.assertEqual(result.attrs["git_commit"], file.attrs["git_commit"])
         self.assertIs(result.attrs["converged"], True)
 
+    def test_channels_of_a_periodic_cell_are_axes(self):
+        cell = fs.solve(width=3.3, period=3.3, depth=2, count=5, scatterer="tm", radius=0.2, index=1.4, solver="fast")
+        self.assertEqual(cell.scattering_matrix.dims, ("light_side", "light_sine", "side", "sine"))
+        np.testing.assert_allclose(cell.sine, np.arange(-3, 4) / 3.3)
+        t = cell.scattering_matrix.sel(light_side=0, side=1)
+        np.testing.assert_allclose((abs(t) ** 2).sum(), cell.transmission_eigenvalue.sum())
+        self.assertLess(float(cell["invariants/unit_cell"]), 1e-9)
+
     def test_groups(self):
         result = fs.validate(BOX, wave_samples=4, **FEW)
         mc = fs.group(result, "mc")

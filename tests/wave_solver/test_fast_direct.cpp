@@ -174,9 +174,9 @@ TEST_CASE("fast direct: the solution is invariant under a change of the unit of 
 
 TEST_CASE("fast direct: systems that exceed the memory are rejected in advance") {
   const TMatrixSystem system(scattered(2000, {14, 14}, Scatterer{}), two_pi, 1e-9);
-  CHECK_NOTHROW(FastDirect(system, 1e-6, 1e8));
+  CHECK_NOTHROW(FastDirect(system, 1e-6, {.memory = 1e8}));
   try {
-    FastDirect(system, 1e-6, 1e6);
+    FastDirect(system, 1e-6, {.memory = 1e6});
     FAIL("not refused");
   } catch (const InputError& error) {
     CHECK(std::string(error.what()).find("available bytes: 1000000;") != std::string::npos);

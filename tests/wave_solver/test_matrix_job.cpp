@@ -8,6 +8,7 @@
 #include <doctest/doctest.h>
 
 #include "core/run/runner.h"
+#include "wave_solver/periodic/eigenvalue_laws.h"
 #include "wave_solver/periodic/matrix_job.h"
 
 namespace flatspeckle::wave {
@@ -40,6 +41,18 @@ TEST_CASE("matrix statistics: bimodal law contains all eigenvalues and the condu
   for (std::size_t i = 0; i < bins; ++i) g += counts[i] * (static_cast<double>(i) + 0.5) / bins;
   CHECK(std::accumulate(counts.begin(), counts.end(), 0.0) == doctest::Approx(channels));
   CHECK(g == doctest::Approx(4).epsilon(0.01));
+}
+
+// Filtering with random matrices keeps the fraction (kept / channels)^2 of the conductance.
+TEST_CASE(
+    "matrix statistics: law of filtered matrices contains all eigenvalues and the conductance") {
+  constexpr std::size_t channels = 60, kept = 24, bins = 100;
+  const auto counts = filtered_counts(15, channels, kept, bins);
+  double g = 0;
+  for (std::size_t i = 0; i < bins; ++i) g += counts[i] * (static_cast<double>(i) + 0.5) / bins;
+  CHECK(std::accumulate(counts.begin(), counts.end(), 0.0) == doctest::Approx(kept));
+  CHECK(g == doctest::Approx(15 * 0.16).epsilon(0.03));
+  CHECK(counts[60] < 0.01);  // no eigenvalue is near 1
 }
 
 TEST_CASE("nightly: transmission eigenvalues of a diffusive slab follow Dorokhov's law") {

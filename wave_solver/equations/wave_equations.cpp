@@ -279,13 +279,24 @@ std::vector<Complex> WaveEquations::plane_waves(std::span<const double> angles, 
 
 std::vector<Complex> WaveEquations::plane_waves(std::span<const WaveDirection> directions,
                                                 Vec origin) const {
-  std::vector<Complex> waves(directions.size() * unknowns());
-  const auto receivers = all_modes();
+  return plane_waves(directions, origin, all_modes(), unknowns());
+}
+
+std::vector<Complex> WaveEquations::plane_waves(std::span<const WaveDirection> directions,
+                                                Vec origin,
+                                                std::span<const std::size_t> unknowns) const {
+  return plane_waves(directions, origin, Listed(*this, unknowns).runs, unknowns.size());
+}
+
+std::vector<Complex> WaveEquations::plane_waves(std::span<const WaveDirection> directions,
+                                                Vec origin, std::span<const ModeSet> receivers,
+                                                std::size_t unknowns) const {
+  std::vector<Complex> waves(directions.size() * unknowns);
   parallel_for(directions.size(), [&](std::size_t wave) {
     const WaveDirection& w = directions[wave];
     expand_plane_wave(k_, receivers, w,
                       std::exp(Complex(0, -k_) * (w.x * origin.x + w.z * origin.z)),
-                      std::span(waves).subspan(wave * unknowns(), unknowns()));
+                      std::span(waves).subspan(wave * unknowns, unknowns));
   });
   return waves;
 }

@@ -115,6 +115,9 @@ class WaveEquations {
   /// Expands unit plane waves, with phase 0 at `origin`, in the regular modes of all bodies:
   /// [wave][unknown].
   std::vector<Complex> plane_waves(std::span<const WaveDirection> waves, Vec origin = {}) const;
+  /// Expands plane waves in some of the modes: [wave][unknown]. unknowns: listed as for entries().
+  std::vector<Complex> plane_waves(std::span<const WaveDirection> waves, Vec origin,
+                                   std::span<const std::size_t> unknowns) const;
   /// Contribution of each unknown to the far-field amplitude at angles (C6): [view][unknown]. By
   /// reciprocity each row is a multiple of the right-hand side for light from the direction of
   /// view.
@@ -148,6 +151,8 @@ class WaveEquations {
   Complex own(std::size_t row, std::size_t column) const;
   void add_own(std::size_t begin, std::size_t end, const Complex* x, Complex* y) const;
   std::vector<ModeSet> all_modes() const;
+  std::vector<Complex> plane_waves(std::span<const WaveDirection> waves, Vec origin,
+                                   std::span<const ModeSet> receivers, std::size_t unknowns) const;
   std::vector<std::size_t> column_blocks() const;
   // These functions fill M in groups of columns and mirror them to the rows.
   void point_columns(Complex* matrix) const;

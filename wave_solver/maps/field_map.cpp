@@ -95,10 +95,20 @@ std::vector<double> pixel_centres(const MapGrid& grid, std::size_t count, bool a
 
 }  // namespace
 
-std::string write_map(ResultFile& file, const WaveSolution& solution, const MapGrid& grid,
+MappedSolution mapped(const WaveSolution& solution) {
+  MappedSolution result{&solution.system(), {}, {}};
+  for (const double angle : solution.light_angles())
+    result.lights.push_back({{direction(angle), 1, {}}});
+  if (!result.lights.empty())
+    result.coefficients = {solution.coefficients(0).data(),
+                           result.lights.size() * solution.system().unknowns()};
+  return result;
+}
+
+std::string write_map(ResultFile& file, const MappedSolution& solution, const MapGrid& grid,
                       double tolerance) {
   FieldMap map(solution, grid, tolerance);
-  write_tiles(file, grid, solution.system().k(), solution.light_angles().size(), map.tiles(),
+  write_tiles(file, grid, solution.system->k(), solution.lights.size(), map.tiles(),
               [&](const MapTile& tile) { return map.field(tile); });
   return map.method();
 }
@@ -138,8 +148,8 @@ void add_columns(std::span<const Complex> values, std::size_t points, const Comp
            factor, values.data(), points, x, ldx, 1, field.data(), points);
 }
 
-const Complex* coefficients(const WaveSolution& solution, std::size_t scatterer) {
-  return solution.coefficients(0).data() + solution.system().first(scatterer);
+const Complex* coefficients(const MappedSolution& solution, std::size_t scatterer) {
+  return solution.coefficients.data() + solution.system->first(scatterer);
 }
 
 // Returns the cost of one ring of a RingField in seconds, as measured: its point sources in the
@@ -149,9 +159,9 @@ double ring_cost(double ring_points, double modes, double near_points) {
 }
 
 /// Adds the scattered field of one scatterer at points outside it to field, [light][point].
-void add_scattered(const WaveSolution& solution, std::size_t scatterer, std::span<const Vec> points,
-                   std::span<Complex> field) {
-  const TMatrixSystem& system = solution.system();
+void add_scattered(const MappedSolution& solution, std::size_t scatterer,
+                   std::span<const Vec> points, std::span<Complex> field) {
+  const TMatrixSystem& system = *solution.system;
   const ModeSet modes = system.modes(scatterer);
   std::vector<Complex> values(points.size() * modes.modes.size());
   field_at(system.k(), points, modes, {values.data(), points.size()});
@@ -182,7 +192,7 @@ class RingField {
  public:
   /// tolerance: relative error of the field, at least 1e-12. area_per_point: area per point at
   /// which the field will be computed; the clearances are chosen from it.
-  RingField(const WaveSolution& solution, double tolerance, double area_per_point)
+  RingField(const MappedSolution& solution, double tolerance, double area_per_point)
       : solution_(solution), tolerance_(tolerance) {
     blas_single_thread();
     std::vector<std::size_t> examples;
@@ -190,7 +200,7 @@ class RingField {
     std::vector<std::optional<ClearedRing>> made(examples.size());
     parallel_for(examples.size(), [&](std::size_t kind) {
       made[kind] = best_ring(examples[kind], area_per_point);
-      made[kind]->ring.charge(solution.system().modes(examples[kind]), solution.system().k());
+      made[kind]->ring.charge(solution.system->modes(examples[kind]), solution.system->k());
     });
     for (auto& ring : made) {
       largest_charge_ = std::max(largest_charge_, ring->ring.largest_charge);
@@ -209,20 +219,20 @@ class RingField {
   /// direct sum over all pairs is faster.
   std::optional<std::vector<Complex>> sum(std::span<const Vec> points) const {
     const double finer = std::max(tolerance_ / largest_charge_, smallest_tolerance);
-    const HelmholtzSum sum(solution_.system().k(), positions_, points, finer);
+    const HelmholtzSum sum(solution_.system->k(), positions_, points, finer);
     if (sum.range() == 0) return std::nullopt;
     return sum(charges_);
   }
 
   /// Returns the field of a scatterer's own waves minus that of its ring: [light][point].
   std::vector<Complex> correction(std::size_t scatterer, std::span<const Vec> points) const {
-    std::vector<Complex> field(solution_.light_angles().size() * points.size());
+    std::vector<Complex> field(solution_.lights.size() * points.size());
     add_scattered(solution_, scatterer, points, field);
     std::vector<double> distances;
     const std::size_t first = first_[scatterer], count = ring(scatterer).ring.points;
     for (std::size_t s = first; s < first + count; ++s)
       for (const Vec point : points)
-        distances.push_back(solution_.system().k() * length(point - positions_[s]));
+        distances.push_back(solution_.system->k() * length(point - positions_[s]));
     std::vector<Complex> waves(distances.size());
     std::vector<std::size_t> coincident;
     for (std::size_t i = 0; i < distances.size(); ++i)
@@ -244,7 +254,7 @@ class RingField {
   const ClearedRing& ring(std::size_t scatterer) const { return rings_[kind_[scatterer]]; }
   // Equal scatterers with equal basis order share a ring.
   void find_kinds(std::vector<std::size_t>& examples) {
-    const TMatrixSystem& system = solution_.system();
+    const TMatrixSystem& system = *solution_.system;
     const Placement& placement = system.placement();
     for (std::size_t j = 0; j < placement.size(); ++j) {
       const auto known = std::find_if(examples.begin(), examples.end(), [&](std::size_t example) {
@@ -257,7 +267,7 @@ class RingField {
   }
 
   ClearedRing best_ring(std::size_t scatterer, double area_per_point) const {
-    const TMatrixSystem& system = solution_.system();
+    const TMatrixSystem& system = *solution_.system;
     const ModeSet modes = system.modes(scatterer);
     const double radius = system.placement()[scatterer].scatterer.disk_radius();
     if (modes.order == 0) return {MultipoleRing(modes, system.k(), radius, radius, tolerance_), 0};
@@ -278,14 +288,14 @@ class RingField {
   }
 
   void place_rings() {
-    const TMatrixSystem& system = solution_.system();
+    const TMatrixSystem& system = *solution_.system;
     const Placement& placement = system.placement();
     for (std::size_t j = 0; j < placement.size(); ++j) {
       first_.push_back(positions_.size());
       for (std::size_t s = 0; s < ring(j).ring.points; ++s)
         positions_.push_back(placement[j].position + ring(j).ring.position(s));
     }
-    const std::size_t lights = solution_.light_angles().size();
+    const std::size_t lights = solution_.lights.size();
     charges_.resize(lights * positions_.size());
     for (std::size_t j = 0; j < placement.size(); ++j) {
       const MultipoleRing& own = ring(j).ring;
@@ -295,7 +305,7 @@ class RingField {
     }
   }
 
-  const WaveSolution& solution_;
+  const MappedSolution& solution_;
   double tolerance_, largest_charge_ = 1;
   std::vector<std::uint32_t> kind_;
   std::vector<ClearedRing> rings_;
@@ -313,11 +323,11 @@ struct FieldMap::Points {
   std::vector<Vec> positions;        // positions of the pixels in `outside`
 };
 
-FieldMap::FieldMap(const WaveSolution& solution, const MapGrid& grid, double tolerance, Route route)
-    : solution_(solution), grid_(grid) {
+FieldMap::FieldMap(MappedSolution solution, const MapGrid& grid, double tolerance, Route route)
+    : solution_(std::move(solution)), grid_(grid) {
   blas_single_thread();
-  if (route == Route::direct || solution.system().unknowns() == 0) return;
-  auto rings = std::make_unique<RingField>(solution, std::max(tolerance, 1e-12),
+  if (route == Route::direct || system().unknowns() == 0) return;
+  auto rings = std::make_unique<RingField>(solution_, std::max(tolerance, 1e-12),
                                            grid.step().x * grid.step().z);
   if (rings->resolved()) rings_ = std::move(rings);
 }
@@ -327,7 +337,7 @@ FieldMap::~FieldMap() = default;
 // Tiles are large, because a RingField has, for each tile, a setup cost for all of its sources.
 std::vector<MapTile> FieldMap::tiles() const {
   constexpr std::size_t most = std::size_t{1} << 19, values = std::size_t{1} << 22;
-  return wave::tiles(grid_, std::min(most, values / solution_.light_angles().size()));
+  return wave::tiles(grid_, std::min(most, values / solution_.lights.size()));
 }
 
 std::string FieldMap::method() const {
@@ -341,13 +351,12 @@ std::string FieldMap::method() const {
 
 // Whether a scatterer is a disk in which the field is not the sum of incident and scattered waves.
 bool FieldMap::is_solid(std::size_t scatterer) const {
-  const TMatrixSystem& system = solution_.system();
-  return system.placement()[scatterer].scatterer.is_disk() && !is_transparent(system, scatterer);
+  return system().placement()[scatterer].scatterer.is_disk() &&
+         !is_transparent(system(), scatterer);
 }
 
 FieldMap::Points FieldMap::place(const MapTile& tile) const {
-  const TMatrixSystem& system = solution_.system();
-  const Placement& placement = system.placement();
+  const Placement& placement = system().placement();
   Points points;
   points.inside.resize(placement.size());
   parallel_for(placement.size(), [&](std::size_t j) {
@@ -365,7 +374,7 @@ FieldMap::Points FieldMap::place(const MapTile& tile) const {
     points.outside.push_back(pixel);
   }
   points.positions = positions(grid_, tile, points.outside);
-  const double close = on_a_point * 2 * std::numbers::pi / system.k();
+  const double close = on_a_point * 2 * std::numbers::pi / system().k();
   for (const auto& [position, scatterer] : placement)
     if (!scatterer.is_disk())
       for (const std::uint32_t pixel : ring_of_pixels(grid_, tile, position, 0, close))
@@ -377,7 +386,7 @@ std::vector<Complex> FieldMap::field(const MapTile& tile) {
   const Points points = place(tile);
   auto beyond = outside(tile, points);
   add_incident(points, beyond);
-  const std::size_t lights = solution_.light_angles().size(), count = points.outside.size();
+  const std::size_t lights = solution_.lights.size(), count = points.outside.size();
   std::vector<Complex> field(lights * tile.pixels());
   for (std::size_t light = 0; light < lights; ++light)
     for (std::size_t i = 0; i < count; ++i)
@@ -400,13 +409,13 @@ std::vector<Complex> FieldMap::outside(const MapTile& tile, const Points& points
 }
 
 std::vector<Complex> FieldMap::direct(const std::vector<Vec>& points) const {
-  const std::size_t lights = solution_.light_angles().size();
+  const std::size_t lights = solution_.lights.size();
   std::vector<Complex> field(lights * points.size());
   parallel_for((points.size() + points_at_a_time - 1) / points_at_a_time, [&](std::size_t part) {
     const std::size_t first = part * points_at_a_time,
                       count = std::min(points_at_a_time, points.size() - first);
     std::vector<Complex> sum(lights * count);
-    for (std::size_t j = 0; j < solution_.system().placement().size(); ++j)
+    for (std::size_t j = 0; j < system().placement().size(); ++j)
       add_scattered(solution_, j, std::span(points).subspan(first, count), sum);
     for (std::size_t light = 0; light < lights; ++light)
       std::copy_n(&sum[light * count], count, &field[light * points.size() + first]);
@@ -416,7 +425,7 @@ std::vector<Complex> FieldMap::direct(const std::vector<Vec>& points) const {
 
 void FieldMap::correct_near(const MapTile& tile, const Points& points,
                             std::vector<Complex>& field) const {
-  const Placement& placement = solution_.system().placement();
+  const Placement& placement = system().placement();
   std::vector<Pixels> near(placement.size());
   std::vector<std::vector<Complex>> corrections(placement.size());
   parallel_for(placement.size(), [&](std::size_t j) {
@@ -427,7 +436,7 @@ void FieldMap::correct_near(const MapTile& tile, const Points& points,
                  [&](std::uint32_t pixel) { return points.place[pixel] != no_place; });
     if (!near[j].empty()) corrections[j] = rings_->correction(j, positions(grid_, tile, near[j]));
   });
-  const std::size_t lights = solution_.light_angles().size(), count = points.outside.size();
+  const std::size_t lights = solution_.lights.size(), count = points.outside.size();
   for (std::size_t j = 0; j < placement.size(); ++j)
     for (std::size_t light = 0; light < lights; ++light)
       for (std::size_t i = 0; i < near[j].size(); ++i)
@@ -437,24 +446,27 @@ void FieldMap::correct_near(const MapTile& tile, const Points& points,
 
 void FieldMap::add_incident(const Points& points, std::vector<Complex>& field) const {
   const std::size_t count = points.outside.size();
-  parallel_for(solution_.light_angles().size(), [&](std::size_t light) {
-    const Vec wave = solution_.system().k() * direction(solution_.light_angles()[light]);
-    for (std::size_t i = 0; i < count; ++i)
-      field[light * count + i] += std::polar(1.0, dot(wave, points.positions[i]));
+  parallel_for(solution_.lights.size(), [&](std::size_t light) {
+    for (const auto& [w, amplitude, origin] : solution_.lights[light]) {
+      const Complex x = Complex(0, system().k()) * w.x, z = Complex(0, system().k()) * w.z;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Vec r = points.positions[i] - origin;
+        field[light * count + i] += amplitude * std::exp(x * r.x + z * r.z);
+      }
+    }
   });
 }
 
 void FieldMap::fill_inside(const MapTile& tile, const Points& points,
                            std::vector<Complex>& field) const {
-  const TMatrixSystem& system = solution_.system();
   parallel_for(points.inside.size(), [&](std::size_t j) {
     const Pixels& pixels = points.inside[j];
-    if (pixels.empty() || !system.placement()[j].scatterer.is_penetrable()) return;
-    const std::size_t modes = system.modes(j).modes.size();
+    if (pixels.empty() || !system().placement()[j].scatterer.is_penetrable()) return;
+    const std::size_t modes = system().modes(j).modes.size();
     std::vector<Complex> waves(pixels.size() * modes);
-    field_inside(system, j, positions(grid_, tile, pixels), {waves.data(), pixels.size()});
-    for (std::size_t light = 0; light < solution_.light_angles().size(); ++light) {
-      const auto beta = solution_.coefficients(light).subspan(system.first(j), modes);
+    field_inside(system(), j, positions(grid_, tile, pixels), {waves.data(), pixels.size()});
+    for (std::size_t light = 0; light < solution_.lights.size(); ++light) {
+      const Complex* const beta = coefficients(solution_, j) + light * system().unknowns();
       for (std::size_t n = 0; n < modes; ++n)
         for (std::size_t i = 0; i < pixels.size(); ++i)
           field[light * tile.pixels() + pixels[i]] +=

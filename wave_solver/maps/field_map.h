@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,23 @@ std::vector<std::uint32_t> ring_of_pixels(const MapGrid& grid, const MapTile& ti
 
 class RingField;
 
+/// A plane wave amplitude e^{i k w.(r - origin)}.
+struct PlaneWave {
+  WaveDirection w;
+  Complex amplitude;
+  Vec origin;
+};
+
+/// Solved equations whose field is mapped. The incident field of each light is a sum of plane
+/// waves.
+struct MappedSolution {
+  const TMatrixSystem* system;
+  std::vector<std::vector<PlaneWave>> lights;
+  std::span<const Complex> coefficients;  ///< beta, [light][unknown]
+};
+/// Refers to the solution.
+MappedSolution mapped(const WaveSolution& solution);
+
 /// The total field u on a grid: incident and scattered waves outside the scatterers, the
 /// transmitted wave in disks of kind tm and te, 0 in soft and hard disks. At a point scatterer u is
 /// infinite; there the map contains the field that excites the scatterer, without the wave that it
@@ -65,9 +83,13 @@ class FieldMap {
   static constexpr double on_a_point = 1e-8;
   enum class Route { fastest, direct };
 
-  /// Keeps a reference to the solution. tolerance: error of the sum by FFT, relative to the field.
-  FieldMap(const WaveSolution& solution, const MapGrid& grid, double tolerance,
+  /// Refers to the equations and coefficients of the solution. tolerance: error of the sum by FFT,
+  /// relative to the field.
+  FieldMap(MappedSolution solution, const MapGrid& grid, double tolerance,
            Route route = Route::fastest);
+  FieldMap(const WaveSolution& solution, const MapGrid& grid, double tolerance,
+           Route route = Route::fastest)
+      : FieldMap(mapped(solution), grid, tolerance, route) {}
   ~FieldMap();
 
   const MapGrid& grid() const { return grid_; }
@@ -88,7 +110,9 @@ class FieldMap {
   void fill_inside(const MapTile& tile, const Points& points, std::vector<Complex>& field) const;
   bool is_solid(std::size_t scatterer) const;
 
-  const WaveSolution& solution_;
+  const TMatrixSystem& system() const { return *solution_.system; }
+
+  MappedSolution solution_;
   MapGrid grid_;
   std::unique_ptr<const RingField> rings_;
   std::size_t fast_tiles_ = 0, direct_tiles_ = 0;
@@ -108,10 +132,10 @@ void write_tiles(ResultFile& file, const MapGrid& grid, double k, std::size_t li
                  const std::vector<MapTile>& tiles,
                  const std::function<std::vector<Complex>(const MapTile&)>& field);
 
-/// Writes total_field [light_angle, map_z, map_x] tile by tile, with progress on standard error,
-/// and returns FieldMap::method(). The axis of lights must have been written. Throws Interrupted
-/// after a signal (catch_interrupts).
-std::string write_map(ResultFile& file, const WaveSolution& solution, const MapGrid& grid,
+/// Writes total_field [light, map_z, map_x] tile by tile, with progress on standard error, and
+/// returns FieldMap::method(). The axis of lights must have been written. Throws Interrupted after
+/// a signal (catch_interrupts).
+std::string write_map(ResultFile& file, const MappedSolution& solution, const MapGrid& grid,
                       double tolerance);
 
 }  // namespace flatspeckle::wave

@@ -7,7 +7,6 @@
 
 #include "core/error.h"
 #include "core/numbers/random.h"
-#include "core/result/result_group.h"
 #include "flatland/scene/periodic_placement.h"
 #include "wave_solver/dense/blas.h"
 
@@ -19,38 +18,29 @@ constexpr std::size_t correlations = 3;
 
 // Places of the sums of a batch. Correlations are [kind][shift][numerator, both denominators].
 struct MatrixSums {
-  MatrixSums(std::size_t channels, const MatrixSettings& settings)
-      : n(channels), bins(settings.eigenvalue_bins), shifts(settings.shifts + 1) {}
+  MatrixSums(const std::vector<CellChannel>& channels, const MatrixSettings& settings)
+      : n(channels.size()), bins(settings.eigenvalue_bins), shifts(settings.shifts + 1) {
+    for (std::size_t a = 0; a < n; ++a) {
+      if (std::abs(channels[a].sine) > settings.numerical_aperture) continue;
+      if (kept++ == 0) first_kept = a;
+    }
+  }
 
   static constexpr std::size_t g = 0, g_squared = 1, largest = 2, focused = 3, power_error = 4,
-                               reciprocity_error = 5, reflected = 6;
+                               reciprocity_error = 5, unit_cell_error = 6, unit_cell_limit = 7,
+                               reflected = 8;
   std::size_t transmitted() const { return reflected + n; }
   std::size_t squares() const { return transmitted() + n; }
   std::size_t eigenvalues() const { return squares() + n; }
+  std::size_t filtered() const { return eigenvalues() + bins; }
   std::size_t correlation(std::size_t kind, std::size_t shift) const {
-    return eigenvalues() + bins + 3 * (kind * shifts + shift);
+    return filtered() + bins + 3 * (kind * shifts + shift);
   }
   std::size_t size() const { return correlation(correlations, 0); }
 
   std::size_t n, bins, shifts;
+  std::size_t first_kept = 0, kept = 0;  // channels within the numerical aperture
 };
-
-struct OpenChannel {
-  std::vector<double> eigenvalues;  // in descending order
-  std::vector<Complex> wave;        // incident wave of the largest
-};
-
-OpenChannel open_channel(std::vector<Complex> t, std::size_t n) {
-  const auto size = static_cast<lapack_int>(n);
-  std::vector<double> singular(n), rest(n);
-  std::vector<Complex> left(1), right(n * n);
-  LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'A', size, size, t.data(), size, singular.data(),
-                 left.data(), 1, right.data(), size, rest.data());
-  OpenChannel found;
-  for (const double value : singular) found.eigenvalues.push_back(value * value);
-  for (std::size_t a = 0; a < n; ++a) found.wave.push_back(std::conj(right[a * n]));
-  return found;
-}
 
 // Adds numerator and denominators of the correlation between the outgoing waves `first` and
 // `second`, whose channels are shifted by `shift`. The channel `direct` contains the mean field and
@@ -86,6 +76,24 @@ void add_correlations(const MatrixSums& places, const std::vector<Complex>& t,
   }
 }
 
+void count_eigenvalues(const std::vector<double>& eigenvalues, std::span<Complex> bins) {
+  for (const double value : eigenvalues) {
+    const auto bin = static_cast<std::size_t>(value * static_cast<double>(bins.size()));
+    bins[std::min(bin, bins.size() - 1)] += 1;
+  }
+}
+
+// Returns the part of t between the middle `kept` channels of both sides.
+std::vector<Complex> middle_part(const std::vector<Complex>& t, std::size_t n, std::size_t first,
+                                 std::size_t kept) {
+  std::vector<Complex> part;
+  for (std::size_t a = first; a < first + kept; ++a) {
+    const auto column = t.begin() + static_cast<std::ptrdiff_t>(a * n + first);
+    part.insert(part.end(), column, column + static_cast<std::ptrdiff_t>(kept));
+  }
+  return part;
+}
+
 // to_back: phase of each channel from z = 0 to the back of the slab, the phase origin of t.
 void add_matrix(const MatrixSums& places, const ScatteringMatrix& found,
                 const std::vector<Complex>& to_back, std::span<Complex> sums) {
@@ -111,12 +119,15 @@ void add_matrix(const MatrixSums& places, const ScatteringMatrix& found,
   for (const double sum : amplitudes) sums[MatrixSums::focused] += sum * sum;
   sums[MatrixSums::power_error] += found.power.off;
   sums[MatrixSums::reciprocity_error] += found.reciprocity.off;
+  sums[MatrixSums::unit_cell_error] += found.unit_cell.off;
+  sums[MatrixSums::unit_cell_limit] += found.unit_cell.limit;
   const auto [eigenvalues, open] = open_channel(t, n);
   sums[MatrixSums::largest] += eigenvalues.front();
-  for (const double value : eigenvalues) {
-    const auto bin = static_cast<std::size_t>(value * static_cast<double>(places.bins));
-    sums[places.eigenvalues() + std::min(bin, places.bins - 1)] += 1;
-  }
+  count_eigenvalues(eigenvalues, sums.subspan(places.eigenvalues(), places.bins));
+  if (places.kept < n)
+    count_eigenvalues(
+        open_channel(middle_part(t, n, places.first_kept, places.kept), places.kept).eigenvalues,
+        sums.subspan(places.filtered(), places.bins));
   add_correlations(places, t, open, sums);
 }
 
@@ -131,6 +142,18 @@ double expected_focus(const std::vector<double>& transmittance) {
 
 }  // namespace
 
+OpenChannel open_channel(std::vector<Complex> t, std::size_t n) {
+  const auto size = static_cast<lapack_int>(n);
+  std::vector<double> singular(n), rest(n);
+  std::vector<Complex> left(1), right(n * n);
+  LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'A', size, size, t.data(), size, singular.data(),
+                 left.data(), 1, right.data(), size, rest.data());
+  OpenChannel found;
+  for (const double value : singular) found.eigenvalues.push_back(value * value);
+  for (std::size_t a = 0; a < n; ++a) found.wave.push_back(std::conj(right[a * n]));
+  return found;
+}
+
 MatrixJob matrix_job(const Scene& scene, const MatrixSettings& settings, std::uint64_t seed) {
   blas_single_thread();  // throws before the run if BLAS lacks memory
   const Period period{scene.domain.width, settings.phase};
@@ -140,7 +163,10 @@ MatrixJob matrix_job(const Scene& scene, const MatrixSettings& settings, std::ui
   if (settings.shifts >= n / 2)
     throw InputError("shifts", settings.shifts,
                      "must be less than half the number of channels, " + std::to_string(n));
-  const MatrixSums places(n, settings);
+  const MatrixSums places(job.channels, settings);
+  if (places.kept == 0)
+    throw InputError("numerical_aperture", settings.numerical_aperture,
+                     "must be larger: it contains no channel of this width");
   const Domain& box = scene.domain;
   const double radius = scene.scatterer.disk_radius();
   const Rectangle region{{-box.width / 2 - radius, -radius},
@@ -155,8 +181,9 @@ MatrixJob matrix_job(const Scene& scene, const MatrixSettings& settings, std::ui
   job.batches.run = [=](std::uint64_t number, std::span<Complex> sums) {
     RandomStream random(seed, static_cast<std::uint64_t>(Stream::placement), number);
     const auto placement = draw_periodic_placement(scene, random);
-    add_matrix(places, scattering_matrix_in_region(placement, scene.k, images, settings.options),
-               to_back, sums);
+    auto found = scattering_matrix_in_region(placement, scene.k, images, settings.options);
+    if (number == 0) compare_unit_cells(found, placement, scene.k, period, settings.options);
+    add_matrix(places, found, to_back, sums);
   };
   job.batches.relative_error = [](const GroupedSums& sums) {
     return relative_error(jackknife(sums, [](double samples, std::span<const Complex> all) {
@@ -168,7 +195,7 @@ MatrixJob matrix_job(const Scene& scene, const MatrixSettings& settings, std::ui
 
 MatrixStatistics matrix_statistics(const MatrixJob& job, const GroupedSums& sums) {
   const std::size_t n = job.channels.size();
-  const MatrixSums places(n, job.settings);
+  const MatrixSums places(job.channels, job.settings);
   using Values = std::vector<Complex>;
   using Sums = std::span<const Complex>;
   const auto variance = [](double samples, Complex sum, Complex squares) {
@@ -195,6 +222,8 @@ MatrixStatistics matrix_statistics(const MatrixJob& job, const GroupedSums& sums
   found.conductance = means(MatrixSums::g, 1);
   found.largest = means(MatrixSums::largest, 1);
   found.eigenvalues = means(places.eigenvalues(), places.bins);
+  found.kept = places.kept;
+  if (found.kept < n) found.filtered = means(places.filtered(), places.bins);
   found.conductance_variance = estimate([=](double samples, Sums s) {
     return Values{variance(samples, s[MatrixSums::g], s[MatrixSums::g_squared])};
   });
@@ -221,117 +250,9 @@ MatrixStatistics matrix_statistics(const MatrixJob& job, const GroupedSums& sums
   const double slack = 1e-12 + 300 * job.settings.options.tolerance, samples = sums.total_samples();
   found.power = {total[MatrixSums::power_error].real() / samples, slack};
   found.reciprocity = {total[MatrixSums::reciprocity_error].real() / samples, slack};
+  found.unit_cell = {total[MatrixSums::unit_cell_error].real(),
+                     total[MatrixSums::unit_cell_limit].real()};
   return found;
-}
-
-std::vector<double> bimodal_counts(double g, std::size_t n, std::size_t bins) {
-  const auto above = [&](double value) {  // number of eigenvalues above a value
-    return value <= 0 ? static_cast<double>(n)
-                      : std::min(static_cast<double>(n), g * std::acosh(1 / std::sqrt(value)));
-  };
-  std::vector<double> counts;
-  for (std::size_t i = 0; i < bins; ++i)
-    counts.push_back(above(static_cast<double>(i) / static_cast<double>(bins)) -
-                     above(static_cast<double>(i + 1) / static_cast<double>(bins)));
-  return counts;
-}
-
-const DatasetTable matrix_table{
-    "matrix",
-    {{"light_sine", Data::scale, "", "1", "k_x / k of a light channel at the front"},
-     {"transmittance", Data::estimate, "light_sine", "1",
-      "transmitted power of each light channel"},
-     {"reflectance", Data::estimate, "light_sine", "1", "reflected power of each light channel"},
-     {"conductance", Data::estimate, "", "1", "g: transmittance summed over light channels"},
-     {"conductance_variance", Data::estimate, "", "1", "variance of g over placements"},
-     {"c2", Data::estimate, "", "1",
-      "relative variance of the transmittance of a channel, averaged over channels"},
-     {"c3", Data::estimate, "", "1", "relative variance of the conductance"},
-     {"largest_eigenvalue", Data::estimate, "", "1", "transmittance of the most open eigenchannel"},
-     {"eigenvalue", Data::scale, "", "1", "transmission eigenvalue, centre of a bin"},
-     {"eigenvalue_count", Data::estimate, "eigenvalue", "1",
-      "mean number of transmission eigenvalues in each bin"},
-     {"bimodal_count", Data::real, "eigenvalue", "1",
-      "eigenvalue_count by Dorokhov's law for the measured conductance"},
-     {"channel_shift", Data::numbers, "", "1", "shift of light and view, in channels"},
-     {"tilt", Data::real, "channel_shift", "1", "shift of sin(angle)"},
-     {"tilt_correlation", Data::estimate, "channel_shift", "1",
-      "field correlation C_E of tilted light, over all light channels"},
-     {"normal_tilt_correlation", Data::estimate, "channel_shift", "1",
-      "field correlation C_E for light tilted from normal incidence"},
-     {"open_tilt_correlation", Data::estimate, "channel_shift", "1",
-      "field correlation C_E of the most open eigenchannel, tilted"},
-     {"focus_enhancement", Data::estimate, "", "1",
-      "enhancement of the intensity in a channel by phases of all light channels"},
-     {"focus_theory", Data::real, "", "1", "focus_enhancement for independent Gaussian amplitudes"},
-     {"invariants/power", Data::invariant, "", "1",
-      "mean over placements of the largest deviation from conservation of power"},
-     {"invariants/reciprocity", Data::invariant, "", "1",
-      "mean over placements of the largest deviation from reciprocity"}}};
-
-void write_statistics(ResultFile& file, const MatrixJob& job, const MatrixStatistics& found) {
-  const ResultGroup root(file, matrix_table);
-  const std::size_t bins = job.settings.eigenvalue_bins, n = job.channels.size();
-  std::vector<double> centres, tilts;
-  for (std::size_t i = 0; i < bins; ++i)
-    centres.push_back((static_cast<double>(i) + 0.5) / static_cast<double>(bins));
-  for (std::size_t d = 0; d <= job.settings.shifts; ++d)
-    tilts.push_back(job.channels[n / 2 + d].sine - job.channels[n / 2].sine);
-  root.put("light_sine", column(job.channels, &CellChannel::sine));
-  root.put("transmittance", found.transmittance);
-  root.put("reflectance", found.reflectance);
-  root.put("conductance", found.conductance);
-  root.put("conductance_variance", found.conductance_variance);
-  root.put("c2", found.channel_variance);
-  root.put("c3", found.relative_variance);
-  root.put("largest_eigenvalue", found.largest);
-  root.put("eigenvalue", centres);
-  root.put("eigenvalue_count", found.eigenvalues);
-  root.put("bimodal_count", bimodal_counts(found.conductance.value[0].real(), n, bins));
-  root.number("channel_shift", job.settings.shifts + 1);
-  root.put("tilt", tilts);
-  root.put("tilt_correlation", found.tilt_correlation);
-  root.put("normal_tilt_correlation", found.normal_correlation);
-  root.put("open_tilt_correlation", found.open_correlation);
-  root.put("focus_enhancement", found.focus);
-  root.put("focus_theory", found.focus_theory);
-  root.check("invariants/power", found.power);
-  root.check("invariants/reciprocity", found.reciprocity);
-}
-
-const DatasetTable scattering_matrix_table{
-    "solve in a periodic cell",
-    {{"light_side", Data::numbers, "", "1", "side of the light: 0 front (z < 0), 1 back"},
-     {"light_sine", Data::scale, "", "1", "k_x / k of a light channel"},
-     {"side", Data::numbers, "", "1", "side of the outgoing wave: 0 front, 1 back"},
-     {"sine", Data::scale, "", "1", "k_x / k of an outgoing channel"},
-     {"scattering_matrix", Data::complex, "light_side light_sine side sine", "1",
-      "amplitudes of outgoing channels with unit flux, phase origin at r = 0"},
-     {"absorptance", Data::real, "light_side light_sine", "1", "absorbed power"},
-     {"eigenchannel", Data::numbers, "", "1", "number of a transmission eigenchannel"},
-     {"transmission_eigenvalue", Data::real, "eigenchannel", "1",
-      "eigenvalue of t^H t for light from the front"},
-     {"solve/residual", Data::real, "", "1", "relative residual of the unscaled equations"},
-     {"invariants/power", Data::invariant, "", "1",
-      "largest deviation from conservation of power and, without absorption, from unitarity"},
-     {"invariants/reciprocity", Data::invariant, "", "1",
-      "largest deviation from reciprocity, for phases 0 and pi"}}};
-
-void write_scattering_matrix(ResultFile& file, const ScatteringMatrix& found) {
-  const ResultGroup root(file, scattering_matrix_table);
-  const auto sines = column(found.channels, &CellChannel::sine);
-  root.number("light_side", 2);
-  root.put("light_sine", sines);
-  root.number("side", 2);
-  root.put("sine", sines);
-  root.put("scattering_matrix", found.s);
-  root.put("absorptance", found.absorbed);
-  root.number("eigenchannel", found.channels.size());
-  root.put("transmission_eigenvalue",
-           open_channel(found.quarter(false, true), found.channels.size()).eigenvalues);
-  root.put("solve/residual", found.residual);
-  root.check("invariants/power", found.power);
-  root.check("invariants/reciprocity", found.reciprocity);
 }
 
 }  // namespace flatspeckle::wave

@@ -11,11 +11,21 @@
 
 namespace flatspeckle::wave {
 
+/// Transmission eigenvalues of a matrix t, in descending order, and the most open eigenchannel.
+struct OpenChannel {
+  std::vector<double> eigenvalues;
+  std::vector<Complex> wave;  ///< amplitudes of the light channels, with the norm 1
+};
+/// t: n x n, column-major, with a column for each light channel.
+OpenChannel open_channel(std::vector<Complex> t, std::size_t n);
+
 /// Settings of an ensemble of scattering matrices.
 struct MatrixSettings {
   double phase = 0;  ///< Bloch phase of a period, the width of the box
   std::size_t eigenvalue_bins = 20;
   std::size_t shifts = 10;  ///< largest shift of channels for correlations
+  /// Largest |sin| of the channels, on both sides, of the filtered part of t.
+  double numerical_aperture = 1;
   SolveOptions options;
 };
 
@@ -44,16 +54,15 @@ struct MatrixStatistics {
   /// variance of g / <g>^2 (C3); mean of the largest eigenvalue; enhancement of focusing.
   Estimate conductance, conductance_variance, channel_variance, relative_variance, largest, focus;
   Estimate eigenvalues;  ///< mean number of eigenvalues in each bin
+  Estimate filtered;     ///< the same for the filtered part of t, if it is smaller than t
+  std::size_t kept = 0;  ///< number of channels of the filtered part
   /// [shift = 0 .. shifts]
   Estimate tilt_correlation, normal_correlation, open_correlation;
   double focus_theory = 0;  ///< enhancement for independent Gaussian amplitudes (Vellekoop 2007)
   Invariant power, reciprocity;
+  Invariant unit_cell;  ///< of the first placement; its limit is 0 if unit cells are not compared
 };
 MatrixStatistics matrix_statistics(const MatrixJob& job, const GroupedSums& sums);
-
-/// Returns the mean number of eigenvalues in each of `bins` equal bins of (0, 1) by Dorokhov's
-/// bimodal law for a conductance g and n channels, whose smallest eigenvalue is 1 / cosh^2(n / g).
-std::vector<double> bimodal_counts(double g, std::size_t n, std::size_t bins);
 
 extern const DatasetTable matrix_table, scattering_matrix_table;
 void write_statistics(ResultFile& file, const MatrixJob& job, const MatrixStatistics& found);

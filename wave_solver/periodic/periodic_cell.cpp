@@ -4,12 +4,12 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "core/error.h"
 #include "wave_solver/dense/blas.h"
 #include "wave_solver/dense/dense_factor.h"
-#include "wave_solver/skeletons/fast_direct.h"
 #include "wave_solver/sums/fast_product.h"
 
 namespace flatspeckle::wave {
@@ -86,44 +86,53 @@ CellImages cell_images(double k, const Period& period, const Rectangle& region, 
 }
 
 PeriodicCell::PeriodicCell(const Placement& placement, double k, const CellImages& images,
-                           double tolerance)
-    : images_(images), near_(checked(placement, images.period), k, tolerance, {}, 1, images.near) {
-  for (const ImageWaves& waves : images.waves) {
-    towards_.push_back(near_.plane_waves(waves.w, waves.right));
-    away_.push_back(near_.plane_waves(reversed(waves.w), waves.left));
+                           double tolerance, std::span<const Vec> sensors)
+    : images_(images),
+      near_(checked(placement, images.period), k, tolerance, sensors, 1, images.near) {}
+
+std::vector<std::size_t> PeriodicCell::all_unknowns() const {
+  std::vector<std::size_t> all(unknowns());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  return all;
+}
+
+PeriodicCell::Far PeriodicCell::far(std::span<const std::size_t> unknowns) const {
+  Far far;
+  for (const ImageWaves& waves : images_.waves) {
+    far.towards.push_back(near_.plane_waves(waves.w, waves.right, unknowns));
+    far.away.push_back(near_.plane_waves(reversed(waves.w), waves.left, unknowns));
   }
+  return far;
 }
 
-std::vector<PeriodicCell::Far> PeriodicCell::far() const {
-  return {{&towards_.front(), &away_.front(), &images_.waves.front().coupling},
-          {&away_.back(), &towards_.back(), &images_.waves.back().coupling}};
-}
-
-void PeriodicCell::add_far(std::span<const Complex> x, std::span<Complex> y) const {
-  for (const Far& part : far())
-    add_low_rank(unknowns(), *part.received, *part.coupling, *part.sent, x, y);
+void PeriodicCell::add_far(std::span<const std::size_t> unknowns, Complex* matrix) const {
+  const std::size_t n = unknowns.size();
+  const Far far = this->far(unknowns);
+  const auto add = [&](const auto& received, const auto& sent, const auto& coupling) {
+    const std::size_t rank = received.size() / n;
+    std::vector<Complex> coupled(n * rank);
+    multiply(CblasNoTrans, CblasNoTrans, n, rank, rank, 1, received.data(), n, coupling.data(),
+             rank, 0, coupled.data(), n);
+    multiply(CblasNoTrans, CblasTrans, n, n, rank, 1, coupled.data(), n, sent.data(), n, 1, matrix,
+             n);
+  };
+  add(far.towards.front(), far.away.front(), images_.waves.front().coupling);
+  add(far.away.back(), far.towards.back(), images_.waves.back().coupling);
 }
 
 Entries PeriodicCell::matrix() const {
-  const std::size_t n = unknowns();
   Entries matrix = near_.matrix();
-  for (const Far& part : far()) {
-    const std::size_t rank = part.received->size() / n;
-    std::vector<Complex> coupled(n * rank);
-    multiply(CblasNoTrans, CblasNoTrans, n, rank, rank, 1, part.received->data(), n,
-             part.coupling->data(), rank, 0, coupled.data(), n);
-    multiply(CblasNoTrans, CblasTrans, n, n, rank, 1, coupled.data(), n, part.sent->data(), n, 1,
-             matrix.data(), n);
-  }
+  add_far(all_unknowns(), matrix.data());
   return matrix;
 }
 
 // Sums over the near copies as over additional scatterers.
-BlockMap PeriodicCell::product(double tolerance) const {
+BlockMap PeriodicCell::product(const std::shared_ptr<const TMatrixSystem>& all,
+                               double tolerance) const {
   const Copies& copies = near_.copies();
-  const auto all = std::make_shared<const TMatrixSystem>(near_.with_explicit_copies());
   const auto fast = std::make_shared<const FastProduct>(*all, tolerance);
-  return [this, all, fast, copies](std::span<const Complex> x) {
+  const auto far = std::make_shared<const Far>(this->far(all_unknowns()));
+  return [this, all, fast, far, copies](std::span<const Complex> x) {
     const std::size_t n = unknowns();
     std::vector<Complex> repeated;
     for (std::size_t column = 0; column < x.size(); column += n) {
@@ -139,71 +148,81 @@ BlockMap PeriodicCell::product(double tolerance) const {
       const auto first = sums.begin() + static_cast<std::ptrdiff_t>(column * all->unknowns());
       y.insert(y.end(), first, first + static_cast<std::ptrdiff_t>(n));
     }
-    add_far(x, y);
+    const auto& waves = images_.waves;
+    add_low_rank(n, far->towards.front(), waves.front().coupling, far->away.front(), x, y);
+    add_low_rank(n, far->away.back(), waves.back().coupling, far->towards.back(), x, y);
     return y;
   };
 }
 
-// Applies M^-1 = A - A P (1 + K P^T A P)^-1 K P^T A with A = M_near^-1, P = (U, V) and K = (0, C;
-// C, 0).
-BlockMap PeriodicCell::inverse(double tolerance) const {
-  const std::size_t n = unknowns(), rank = towards_.front().size() / n;
-  const auto factor = std::make_shared<const FastDirect>(near_, tolerance);
-  std::vector<Complex> p = towards_.front();
-  append(p, away_.front());
-  const auto response = std::make_shared<std::vector<Complex>>(p);
-  factor->solve(*response);
-  const auto couple = [this, rank](const std::vector<Complex>& sums) {  // K times columns
-    const std::size_t columns = sums.size() / (2 * rank);
-    std::vector<Complex> result(sums.size());
-    for (const std::size_t half : {std::size_t{0}, rank})
-      multiply(CblasNoTrans, CblasNoTrans, rank, columns, rank, 1,
-               images_.waves.front().coupling.data(), rank, &sums[rank - half], 2 * rank, 0,
-               &result[half], 2 * rank);
-    return result;
+// The coupling to copies is the difference of the entries of M_near and those without copies.
+FastDirect PeriodicCell::factored(const TMatrixSystem& all, double tolerance, bool solves) const {
+  FastDirect::Options options{.copies = 2 * static_cast<std::size_t>(near_.copies().count),
+                              .solves = solves};
+  options.coupling = [&](std::span<const std::size_t> unknowns, std::vector<Complex>& matrix) {
+    const std::size_t n = unknowns.size();
+    std::vector<Complex> part(n * n);
+    near_.entries(unknowns, unknowns, part.data(), n);
+    for (std::size_t i = 0; i < part.size(); ++i) matrix[i] += part[i];
+    all.entries(unknowns, unknowns, part.data(), n);
+    for (std::size_t i = 0; i < part.size(); ++i) matrix[i] -= part[i];
+    add_far(unknowns, matrix.data());
   };
-  auto inner = couple(transposed_product(p, response->data(), 2 * rank, n));
-  for (std::size_t i = 0; i < 2 * rank; ++i) inner[i * (2 * rank + 1)] += 1;
-  return [n, rank, factor, response, couple, p = std::move(p),
-          inner = std::move(inner)](std::span<const Complex> x) {
-    std::vector<Complex> y(x.begin(), x.end());
-    factor->solve(y);
-    auto sums = couple(transposed_product(p, y.data(), y.size() / n, n));
-    solve_small(inner, 2 * rank, sums);
-    multiply(CblasNoTrans, CblasNoTrans, n, y.size() / n, 2 * rank, -1, response->data(), n,
-             sums.data(), 2 * rank, 1, y.data(), n);
-    return y;
-  };
+  return {all, tolerance, options};
 }
 
 SolvableEquations PeriodicCell::equations() const {
-  SolvableEquations equations{unknowns(), symmetric(), [this] { return matrix(); },
-                              [this](double tolerance) { return product(tolerance); }};
+  const auto all = std::make_shared<const TMatrixSystem>(near_.with_explicit_copies());
   // There are many right-hand sides. It is cheaper to factor more accurately than to refine them.
   constexpr double finer = 0.03;
-  if (symmetric() && unknowns() > 0)
-    equations.inverse = [this](double tolerance) { return inverse(finer * tolerance); };
-  return equations;
+  return {unknowns(), symmetric(), [this] { return matrix(); },
+          [this, all](double tolerance) { return product(all, tolerance); },
+          [this, all](double tolerance) -> BlockMap {
+            const auto factor =
+                std::make_shared<const FastDirect>(factored(*all, finer * tolerance, true));
+            return [factor](std::span<const Complex> x) {
+              std::vector<Complex> y(x.begin(), x.end());
+              factor->solve(y);
+              return y;
+            };
+          }};
+}
+
+PeriodicCell::Solver PeriodicCell::reduced(double tolerance) const {
+  const auto factor =
+      std::make_shared<const FastDirect>(factored(near_.with_explicit_copies(), tolerance, false));
+  const auto unknowns = factor->root_unknowns();
+  return {{unknowns.begin(), unknowns.end()}, [factor](std::span<const Complex> x) {
+            std::vector<Complex> y(x.begin(), x.end());
+            factor->solve_root(y);
+            return y;
+          }};
+}
+
+PeriodicCell::Solver PeriodicCell::whole(EquationSolver& solver) const {
+  return {all_unknowns(), [&solver](std::span<const Complex> x) {
+            return solver.solve({x.begin(), x.end()});
+          }};
 }
 
 // With the grazing channels the matrix is M + U D^-1 V^T, where D is proportional to their k_z. Its
 // solution is X - M^-1 U (D + V^T M^-1 U)^-1 V^T X with X = M^-1 rhs.
-std::vector<Complex> PeriodicCell::solve(EquationSolver& solver, std::vector<Complex> rhs) const {
-  const std::size_t n = unknowns(), size = rhs.size();
+PeriodicCell::Solution PeriodicCell::solve(const Solver& solver, std::vector<Complex> rhs) const {
+  const std::size_t n = solver.unknowns.size(), size = rhs.size();
   std::vector<Complex> v, d;
   for (std::size_t side = 0; side < 2; ++side) {
     const ImageWaves& waves = side == 0 ? images_.waves.front() : images_.waves.back();
     if (!waves.grazing) continue;
     const auto [w, coupling, grazing] = *waves.grazing;
-    const auto towards = near_.plane_waves(std::vector{w}, waves.right),
-               away = near_.plane_waves(std::vector{-w}, waves.left);
+    const auto towards = near_.plane_waves(std::vector{w}, waves.right, solver.unknowns),
+               away = near_.plane_waves(std::vector{-w}, waves.left, solver.unknowns);
     append(rhs, side == 0 ? towards : away);
     append(v, side == 0 ? away : towards);
     d.push_back(grazing / coupling);
   }
   auto x = solver.solve(rhs);
   const std::size_t extra = d.size(), columns = size / n;
-  if (extra == 0) return x;
+  if (extra == 0) return {std::move(x), {}};
   const std::vector<Complex> response(x.begin() + static_cast<std::ptrdiff_t>(size), x.end());
   x.resize(size);
   auto inner = transposed_product(v, response.data(), extra, n);
@@ -212,17 +231,54 @@ std::vector<Complex> PeriodicCell::solve(EquationSolver& solver, std::vector<Com
   solve_small(std::move(inner), extra, sums);
   multiply(CblasNoTrans, CblasNoTrans, n, columns, extra, -1, response.data(), n, sums.data(),
            extra, 1, x.data(), n);
-  return x;
+  return {std::move(x), std::move(sums)};
 }
 
-std::vector<Complex> PeriodicCell::right_hand_sides(std::span<const WaveDirection> waves) const {
-  auto rhs = near_.plane_waves(waves);
+std::vector<Complex> PeriodicCell::right_hand_side(std::span<const PlaneWave> waves) const {
+  std::vector<Complex> rhs(unknowns());
+  for (const PlaneWave& wave : waves) {
+    const auto part = near_.plane_waves(std::vector{wave.w}, wave.origin);
+    for (std::size_t i = 0; i < rhs.size(); ++i) rhs[i] -= wave.amplitude * part[i];
+  }
+  return rhs;
+}
+
+std::vector<PlaneWave> PeriodicCell::image_field(const Solution& solution,
+                                                 std::size_t column) const {
+  const std::size_t n = unknowns();
+  const Complex* const x = &solution.x[n * column];
+  const std::size_t extra = solution.grazing.size() * n / solution.x.size();
+  std::size_t grazing = extra * column;
+  std::vector<PlaneWave> field;
+  for (const bool from_right : {true, false}) {
+    const ImageWaves& waves = from_right ? images_.waves.front() : images_.waves.back();
+    const std::size_t rank = waves.w.size();
+    const Vec origin = from_right ? waves.right : waves.left;
+    const auto sent = from_right ? near_.plane_waves(reversed(waves.w), waves.left)
+                                 : near_.plane_waves(waves.w, waves.right);
+    const auto received = transposed_product(sent, x, 1, n);
+    std::vector<Complex> amplitudes(rank);
+    multiply(CblasNoTrans, CblasNoTrans, rank, 1, rank, 1, waves.coupling.data(), rank,
+             received.data(), rank, 0, amplitudes.data(), rank);
+    const auto add = [&](const WaveDirection& w, Complex amplitude) {
+      field.push_back({from_right ? w : -w, amplitude, origin});
+    };
+    for (std::size_t i = 0; i < rank; ++i) add(waves.w[i], amplitudes[i]);
+    if (waves.grazing) add(waves.grazing->w, solution.grazing[grazing++]);
+  }
+  return field;
+}
+
+std::vector<Complex> PeriodicCell::right_hand_sides(std::span<const WaveDirection> waves,
+                                                    std::span<const std::size_t> unknowns) const {
+  auto rhs = near_.plane_waves(waves, {}, unknowns);
   for (Complex& value : rhs) value = -value;
   return rhs;
 }
 
-std::vector<Complex> PeriodicCell::outgoing_rows(std::span<const WaveDirection> waves) const {
-  auto rows = near_.plane_waves(reversed({waves.begin(), waves.end()}));
+std::vector<Complex> PeriodicCell::outgoing_rows(std::span<const WaveDirection> waves,
+                                                 std::span<const std::size_t> unknowns) const {
+  auto rows = near_.plane_waves(reversed({waves.begin(), waves.end()}), {}, unknowns);
   for (Complex& value : rows) value *= 2 / period().width;
   return rows;
 }

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "core/numbers/complex.h"
 #include "flatland/placement/placement.h"
 #include "wave_solver/equations/t_matrix_system.h"
+#include "wave_solver/maps/field_map.h"
 #include "wave_solver/periodic/image_waves.h"
+#include "wave_solver/skeletons/fast_direct.h"
 #include "wave_solver/solutions/equation_solver.h"
 
 namespace flatspeckle::wave {
@@ -47,8 +50,9 @@ class PeriodicCell {
  public:
   /// placement: lies in the region of the images, which must exist longer than this object.
   /// tolerance: accuracy of the solution. Throws InputError for scatterers that overlap with each
-  /// other or with a copy.
-  PeriodicCell(const Placement& placement, double k, const CellImages& images, double tolerance);
+  /// other or with a copy. sensors: points at which the field will be evaluated.
+  PeriodicCell(const Placement& placement, double k, const CellImages& images, double tolerance,
+               std::span<const Vec> sensors = {});
 
   const TMatrixSystem& near() const { return near_; }
   const Period& period() const { return images_.period; }
@@ -57,30 +61,54 @@ class PeriodicCell {
   /// M without grazing channels; refers to this object.
   SolvableEquations equations() const;
 
-  /// Solves for right-hand sides [column][unknown].
-  std::vector<Complex> solve(EquationSolver& solver, std::vector<Complex> rhs) const;
+  /// A solver of M, without grazing channels, for columns over some of the unknowns.
+  struct Solver {
+    std::vector<std::size_t> unknowns;
+    BlockMap solve;
+  };
+  /// Returns a solver for the unknowns that represent all others in waves to and from the outside
+  /// of the slab. Products of right_hand_sides() and outgoing_rows() with its solutions agree with
+  /// those over all unknowns up to about the tolerance. Factors of boxes are not stored.
+  Solver reduced(double tolerance) const;
+  Solver whole(EquationSolver& solver) const;
 
-  /// Returns the right-hand sides for unit plane waves (phase origin r = 0): [wave][unknown].
-  std::vector<Complex> right_hand_sides(std::span<const WaveDirection> waves) const;
-  /// Returns the contribution of each unknown to the amplitude of the outgoing plane waves along
-  /// these directions, times their |k_z|: [wave][unknown].
-  std::vector<Complex> outgoing_rows(std::span<const WaveDirection> waves) const;
+  struct Solution {
+    std::vector<Complex> x;        ///< [column][unknown]
+    std::vector<Complex> grazing;  ///< amplitudes of the grazing channels: [column][side]
+  };
+  /// Solves, with grazing channels, for right-hand sides over the unknowns of the solver.
+  Solution solve(const Solver& solver, std::vector<Complex> rhs) const;
+
+  /// Returns the right-hand side for a sum of plane waves.
+  std::vector<Complex> right_hand_side(std::span<const PlaneWave> waves) const;
+  /// Returns the waves from the images to the region, for a column of a solution over all unknowns.
+  std::vector<PlaneWave> image_field(const Solution& solution, std::size_t column) const;
+
+  /// Returns the right-hand sides for unit plane waves (phase origin r = 0) and some of the
+  /// unknowns: [wave][unknown].
+  std::vector<Complex> right_hand_sides(std::span<const WaveDirection> waves,
+                                        std::span<const std::size_t> unknowns) const;
+  /// Returns the contribution of unknowns to the amplitude of the outgoing plane waves along these
+  /// directions, times their |k_z|: [wave][unknown].
+  std::vector<Complex> outgoing_rows(std::span<const WaveDirection> waves,
+                                     std::span<const std::size_t> unknowns) const;
 
  private:
-  // Sum of U C V^T over one or both directions along x. U and V: [wave][unknown].
+  // Sum of U C V^T over both directions along x, for some of the unknowns. U and V are w or -w of
+  // the ImageWaves: [wave][unknown].
   struct Far {
-    const std::vector<Complex>*received, *sent, *coupling;
+    std::vector<std::vector<Complex>> towards, away;
   };
-  std::vector<Far> far() const;
-  void add_far(std::span<const Complex> x, std::span<Complex> y) const;
+  Far far(std::span<const std::size_t> unknowns) const;
+  // Adds the sum, as a matrix over these unknowns.
+  void add_far(std::span<const std::size_t> unknowns, Complex* matrix) const;
   Entries matrix() const;
-  BlockMap product(double tolerance) const;
-  BlockMap inverse(double tolerance) const;
+  BlockMap product(const std::shared_ptr<const TMatrixSystem>& all, double tolerance) const;
+  FastDirect factored(const TMatrixSystem& all, double tolerance, bool solves) const;
+  std::vector<std::size_t> all_unknowns() const;
 
   const CellImages& images_;
   TMatrixSystem near_;
-  // For each of the ImageWaves: w and -w, evaluated for all unknowns.
-  std::vector<std::vector<Complex>> towards_, away_;
 };
 
 }  // namespace flatspeckle::wave

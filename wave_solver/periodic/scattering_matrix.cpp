@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "core/error.h"
@@ -14,7 +16,10 @@ namespace flatspeckle::wave {
 
 namespace {
 
-constexpr std::size_t at_once = 256;  // columns that are computed and stored at once
+constexpr std::size_t at_once = 256;    // columns that are computed and stored at once
+constexpr double skeleton_share = 0.1;  // tolerance of skeletons, relative to that of the result
+constexpr std::size_t most_compared = 200'000;  // unknowns for which unit cells are compared
+constexpr double other_start = 1.0 / 3;  // far from the boundaries of halved boxes, on all levels
 
 std::vector<WaveDirection> directions(const std::vector<CellChannel>& channels, bool lights) {
   std::vector<WaveDirection> waves;
@@ -24,30 +29,28 @@ std::vector<WaveDirection> directions(const std::vector<CellChannel>& channels, 
   return waves;
 }
 
-// Adds the scattered waves to S.
-void solve_channels(const PeriodicCell& cell, EquationSolver& solver, ScatteringMatrix& found) {
-  const std::size_t n = cell.unknowns(), size = found.size(), half = found.channels.size();
+/// Right-hand sides and solutions of the channels first, first + 1, ...
+using SolvedChannels = std::function<void(std::size_t first, const std::vector<Complex>& rhs,
+                                          const std::vector<Complex>& solutions)>;
+
+// Adds the scattered waves to S, and calls `solved` for the solutions.
+void solve_channels(const PeriodicCell& cell, const PeriodicCell::Solver& solver,
+                    ScatteringMatrix& found, const SolvedChannels& solved) {
+  const std::size_t n = solver.unknowns.size(), size = found.size(), half = found.channels.size();
   const double k = cell.near().k();
   const auto lights = directions(found.channels, true),
              outgoing = directions(found.channels, false);
-  const auto absorption = absorption_of(cell.near());
-  std::vector<double> weights;
-  for (std::size_t i = 0; i < n; ++i) weights.push_back(cell.near().strength(i));
   for (std::size_t first = 0; first < size; first += at_once) {
     const std::size_t columns = std::min(at_once, size - first);
-    const auto rhs = cell.right_hand_sides(std::span(lights).subspan(first, columns));
-    const auto x = cell.solve(solver, rhs);
-    found.residual =
-        std::max(found.residual, relative_size(solver.combined_residual(), rhs, weights));
-    for (std::size_t j = 0; j < columns; ++j) {
-      const double incident = cell.period().width * found.channels[(first + j) % half].cosine;
-      for (std::size_t i = 0; i < n; ++i)
-        found.absorbed[first + j] += absorption[i] * std::norm(x[i + n * j]) / incident;
-    }
+    const auto rhs =
+        cell.right_hand_sides(std::span(lights).subspan(first, columns), solver.unknowns);
+    const auto x = cell.solve(solver, rhs).x;
+    if (solved) solved(first, rhs, x);
     for (std::size_t row = 0; row < size; row += at_once) {
       const std::size_t count = std::min(at_once, size - row);
       const auto amplitudes = transposed_product(
-          cell.outgoing_rows(std::span(outgoing).subspan(row, count)), x.data(), columns, n);
+          cell.outgoing_rows(std::span(outgoing).subspan(row, count), solver.unknowns), x.data(),
+          columns, n);
       for (std::size_t j = 0; j < columns; ++j)
         for (std::size_t i = 0; i < count; ++i)
           found.s[row + i + size * (first + j)] +=
@@ -56,7 +59,39 @@ void solve_channels(const PeriodicCell& cell, EquationSolver& solver, Scattering
                              found.channels[(first + j) % half].cosine));
     }
   }
+}
+
+// Solves for all unknowns, with the residual and the absorbed power.
+void solve_whole(const PeriodicCell& cell, Method method, double tolerance,
+                 const std::vector<double>& absorption, ScatteringMatrix& found) {
+  const std::size_t n = cell.unknowns(), half = found.channels.size();
+  EquationSolver solver(cell.equations(), method, tolerance);
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < n; ++i) weights.push_back(cell.near().strength(i));
+  found.residual = 0;
+  solve_channels(
+      cell, cell.whole(solver), found, [&](std::size_t first, const auto& rhs, const auto& x) {
+        found.residual =
+            std::max(found.residual, relative_size(solver.combined_residual(), rhs, weights));
+        for (std::size_t j = 0; j < x.size() / n; ++j) {
+          const double incident = cell.period().width * found.channels[(first + j) % half].cosine;
+          for (std::size_t i = 0; i < n; ++i)
+            found.absorbed[first + j] += absorption[i] * std::norm(x[i + n * j]) / incident;
+        }
+      });
   found.method = solver.description();
+}
+
+// Solves for the waves outside of the slab alone, for scatterers that absorb nothing.
+void solve_reduced(const PeriodicCell& cell, double tolerance, ScatteringMatrix& found) {
+  const auto solver = cell.reduced(skeleton_share * tolerance);
+  solve_channels(cell, solver, found, nullptr);
+  found.method =
+      "recursive skeletonization to " + std::to_string(solver.unknowns.size()) + " unknowns";
+}
+
+double allowed_error(const ScatteringMatrix& found, const SolveOptions& options) {
+  return 1e-12 + 100 * options.tolerance + 100 * std::max(found.residual, 0.0);
 }
 
 double power_error(const ScatteringMatrix& found) {
@@ -85,16 +120,22 @@ double reciprocity_error(const ScatteringMatrix& found) {
   return worst;
 }
 
-// Moves all positions into one cell, which begins at the lowest of them.
-Placement in_one_cell(Placement placement, double width) {
+}  // namespace
+
+Method cell_method(std::size_t unknowns, const SolveOptions& options) {
+  return options.method == Method::automatic ? method_for(unknowns, options.tolerance)
+                                             : options.method;
+}
+
+Placement in_one_cell(Placement placement, double width, double start) {
   double low = placement.empty() ? 0 : placement.front().position.x;
   for (const auto& placed : placement) low = std::min(low, placed.position.x);
+  low += start * width;
   for (auto& placed : placement)
     placed.position.x -= width * std::floor((placed.position.x - low) / width);
   return placement;
 }
 
-// Returns a rectangle that contains all scatterers, rims included.
 Rectangle region_of(const Placement& placement) {
   if (placement.empty()) return {};
   const Rectangle region = bounds_of(placement, &PlacedScatterer::position);
@@ -102,8 +143,6 @@ Rectangle region_of(const Placement& placement) {
   for (const auto& placed : placement) radius = std::max(radius, placed.scatterer.disk_radius());
   return {region.low - Vec{radius, radius}, region.high + Vec{radius, radius}};
 }
-
-}  // namespace
 
 std::vector<Complex> ScatteringMatrix::quarter(bool back_light, bool back) const {
   const std::size_t n = channels.size();
@@ -129,7 +168,7 @@ ScatteringMatrix scattering_matrix_in_region(const Placement& placement, double 
                                              const SolveOptions& options) {
   const Period& period = images.period;
   const PeriodicCell cell(placement, k, images, options.tolerance);
-  ScatteringMatrix found{channels_of(k, period), {}, {}, 0, cell.unknowns(), {}};
+  ScatteringMatrix found{channels_of(k, period), {}, {}, -1, cell.unknowns(), {}};
   const std::size_t size = found.size(), half = found.channels.size();
   if (half == 0)
     throw InputError("period", period.width, "has no propagating channel at this wavelength");
@@ -138,19 +177,31 @@ ScatteringMatrix scattering_matrix_in_region(const Placement& placement, double 
   for (std::size_t i = 0; i < size; ++i)  // without scatterers all light is transmitted
     found.s[(i + half) % size + size * i] = 1;
   if (cell.unknowns() > 0) {
-    Method method = options.method == Method::automatic
-                        ? method_for(cell.unknowns(), options.tolerance)
-                        : options.method;
-    if (method == Method::fast && !cell.symmetric())
-      throw InputError("period_phase", period.phase,
-                       "must be 0 or pi for the fast solver; use solver = dense for other phases");
-    EquationSolver solver(cell.equations(), method, options.tolerance);
-    solve_channels(cell, solver, found);
+    const Method method = cell_method(cell.unknowns(), options);
+    const auto absorption = absorption_of(cell.near());
+    if (method == Method::fast && std::ranges::all_of(absorption, [](double a) { return a == 0; }))
+      solve_reduced(cell, options.tolerance, found);
+    else
+      solve_whole(cell, method, options.tolerance, absorption, found);
   }
-  const double slack = 1e-12 + 100 * options.tolerance + 100 * found.residual;
+  const double slack = allowed_error(found, options);
   found.power = {power_error(found), slack};
   if (cell.symmetric()) found.reciprocity = {reciprocity_error(found), slack};
   return found;
+}
+
+void compare_unit_cells(ScatteringMatrix& found, const Placement& placement, double k,
+                        const Period& period, const SolveOptions& options) {
+  if (found.residual >= 0 || found.unknowns == 0) return;
+  if (found.unknowns > most_compared) {
+    found.method += "; too large to compare unit cells";
+    return;
+  }
+  const auto other =
+      scattering_matrix(in_one_cell(placement, period.width, other_start), k, period, options);
+  found.unit_cell.limit = allowed_error(found, options);
+  for (std::size_t i = 0; i < found.s.size(); ++i)
+    found.unit_cell.off = std::max(found.unit_cell.off, std::abs(found.s[i] - other.s[i]));
 }
 
 }  // namespace flatspeckle::wave

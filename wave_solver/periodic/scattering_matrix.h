@@ -21,7 +21,8 @@ struct ScatteringMatrix {
   std::vector<CellChannel> channels;
   std::vector<Complex> s;        ///< [light][outgoing]
   std::vector<double> absorbed;  ///< absorbed part of the power: [light]
-  double residual = 0;           ///< relative residual of the equations
+  /// Relative residual of the equations; -1 if only waves outside of the slab were solved for.
+  double residual = -1;
   std::size_t unknowns = 0;
   std::string method;
   /// Largest deviation of outgoing plus absorbed power from 1 and, if nothing is absorbed, of S^H S
@@ -29,6 +30,8 @@ struct ScatteringMatrix {
   Invariant power = {};
   /// Largest deviation of S from its transpose, with k_x reversed. Requires a phase of 0 or pi.
   Invariant reciprocity = {};
+  /// Largest change of S if the unit cell begins at another x; see compare_unit_cells().
+  Invariant unit_cell = {};
 
   std::size_t size() const { return 2 * channels.size(); }
   /// Returns a quarter of S as a column-major matrix with a column for each light. back_light: of
@@ -36,6 +39,14 @@ struct ScatteringMatrix {
   /// quarter(false, true), the reflection matrix r is quarter(false, false).
   std::vector<Complex> quarter(bool back_light, bool back) const;
 };
+
+/// Moves all positions by multiples of the period into one cell, which begins `start` periods above
+/// the lowest of them.
+Placement in_one_cell(Placement placement, double width, double start = 0);
+/// Returns a rectangle that contains all scatterers, rims included.
+Rectangle region_of(const Placement& placement);
+/// Returns the method of the options, or the one that `automatic` selects.
+Method cell_method(std::size_t unknowns, const SolveOptions& options);
 
 /// Solves for all channels. The scatterers are moved by multiples of the period into one cell.
 /// Throws InputError if there is no propagating channel, and under the conditions of PeriodicCell
@@ -45,6 +56,13 @@ ScatteringMatrix scattering_matrix(const Placement& placement, double k, const P
 /// Solves a placement in the region of the images.
 ScatteringMatrix scattering_matrix_in_region(const Placement& placement, double k,
                                              const CellImages& images, const SolveOptions& options);
+
+/// Estimates the error of S if no residual was computed: solves again for a unit cell that begins
+/// at another x, which changes boxes, skeletons, near copies and image waves, but not the exact S.
+/// Sets `found.unit_cell`. Doubles the computing time, and is therefore omitted for large cells,
+/// which `found.method` reports. Errors due to basis orders are common to both solutions.
+void compare_unit_cells(ScatteringMatrix& found, const Placement& placement, double k,
+                        const Period& period, const SolveOptions& options);
 
 /// Returns the accuracy of CellImages that a tolerance of the solution requires.
 inline double image_tolerance(double tolerance) {

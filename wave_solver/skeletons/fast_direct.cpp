@@ -132,6 +132,12 @@ void SkeletonElimination::congruence() {
   });
 }
 
+void SkeletonElimination::forget() {
+  redundant_ = {};
+  t_ = {};
+  e_ = l_ = {};
+}
+
 double SkeletonElimination::bytes() const {
   return static_cast<double>(sizeof(double) * t_.size() +
                              sizeof(Complex) * (e_.size() + l_.size()) +
@@ -165,20 +171,23 @@ void SkeletonElimination::backward(Complex* x, std::size_t columns) const {
 // Builds the factors from the leaves upwards. active_: unknowns of each box that are not
 // eliminated. Before the box is processed they are all unknowns of a leaf, or the skeletons of both
 // halves of another box; afterwards they are the skeleton of the box. schur_complement_: Schur
-// complement of each processed box.
+// complement of each processed box. shift_: displacements of the copies, and 0.
 class FastDirect::Builder {
  public:
-  Builder(const WaveEquations& system, double tolerance, double memory)
+  Builder(const WaveEquations& system, double tolerance, const Options& options)
       : system_(system),
-        memory_(memory),
+        options_(options),
         skeletonization_(system, tolerance),
         disks_(disks_of(system)),
-        tree_(disks_, leaf_unknowns),
+        own_(disks_.size() / (options.copies + 1)),
+        tree_(std::span(disks_).first(own_), leaf_unknowns),
         active_(tree_.boxes().size()),
         schur_complement_(tree_.boxes().size()),
         cpu_seconds_(tree_.boxes().size()) {
     for (std::size_t box = 0; box < active_.size(); ++box)
       if (tree_.boxes()[box].is_leaf()) active_[box] = own_unknowns(box);
+    for (std::size_t copy = 0; own_ > 0 && copy <= options.copies; ++copy)
+      shift_.push_back(disks_[copy * own_].centre - disks_[0].centre);
   }
 
   void build(FastDirect& result) {
@@ -219,11 +228,11 @@ class FastDirect::Builder {
       largest = std::max(largest, block);
     }
     bytes += 3 * largest * omp_get_max_threads();
-    if (bytes <= memory_) return;
+    if (bytes <= options_.memory) return;
     throw InputError(
         "unknowns", system_.unknowns(),
         "the fast direct solver may need " + std::to_string(static_cast<long long>(bytes)) +
-            " bytes; available bytes: " + std::to_string(static_cast<long long>(memory_)) +
+            " bytes; available bytes: " + std::to_string(static_cast<long long>(options_.memory)) +
             "; use fewer scatterers or a larger tolerance");
   }
 
@@ -257,28 +266,26 @@ class FastDirect::Builder {
     std::vector<Complex>().swap(schur_complement_[half]);
   }
 
-  // Returns the distance between a rectangle and the nearest copy of another one.
-  double copy_distance(const Rectangle& hull, const Rectangle& other) const {
-    const Copies& copies = system_.copies();
-    double nearest = hull.distance(other);
-    for (const double side : {-copies.period, copies.period})
-      if (copies.count > 0)
-        nearest =
-            std::min(nearest, hull.distance({other.low + Vec{side, 0}, other.high + Vec{side, 0}}));
-    return nearest;
+  // Returns the unknowns outside a box, those of copies included, that are not yet eliminated when
+  // the box's level is processed, and that belong to disks whose rims are nearer to the box than
+  // `distance`.
+  std::vector<std::size_t> near_unknowns(std::size_t box, double distance) const {
+    std::vector<std::size_t> found;
+    for (std::size_t copy = 0; copy < shift_.size(); ++copy)
+      append_near(box, distance, copy, found);
+    return found;
   }
 
-  // Returns the unknowns outside a box that are not yet eliminated when the box's level is
-  // processed, and that belong to disks whose rims, or those of their copies, are nearer to the box
-  // than `distance`.
-  std::vector<std::size_t> near_unknowns(std::size_t box, double distance) const {
+  void append_near(std::size_t box, double distance, std::size_t copy,
+                   std::vector<std::size_t>& found) const {
     const auto& boxes = tree_.boxes();
-    const Rectangle& hull = boxes[box].hull;
-    std::vector<std::size_t> found, open{0};
+    const Vec shift = shift_[copy];
+    const Rectangle hull{boxes[box].hull.low - shift, boxes[box].hull.high - shift};
+    std::vector<std::size_t> open{0};
     while (!open.empty()) {
       const std::size_t other = open.back();
       open.pop_back();
-      if (other == box || copy_distance(hull, boxes[other].hull) >= distance) continue;
+      if ((other == box && copy == 0) || hull.distance(boxes[other].hull) >= distance) continue;
       if (boxes[other].level < boxes[box].level && !boxes[other].is_leaf()) {
         open.push_back(boxes[other].child);
         open.push_back(boxes[other].child + 1);
@@ -286,11 +293,10 @@ class FastDirect::Builder {
       }
       for (std::size_t unknown : active_[other]) {
         const SortedDisk& disk = disks_[system_.body_of(unknown)];
-        if (copy_distance(hull, {disk.centre, disk.centre}) - disk.radius < distance)
-          found.push_back(unknown);
+        if (hull.distance(disk.centre) - disk.radius < distance)
+          found.push_back(unknown + system_.first(copy * own_));
       }
     }
-    return found;
   }
 
   SkeletonElimination eliminate(std::size_t box) {
@@ -302,6 +308,7 @@ class FastDirect::Builder {
     const auto interpolation = skeletonization_(active, near, RandomStream(0, 0, box));
     SkeletonElimination elimination(active_[box], block(box), interpolation);
     schur_complement_[box] = elimination.take_schur_complement();
+    if (!options_.solves) elimination.forget();
     cpu_seconds_[box] = thread_cpu_seconds() - start;
     return elimination;
   }
@@ -337,33 +344,50 @@ class FastDirect::Builder {
     const std::size_t n = active_[0].size();
     result.root_ = block(0);
     result.root_unknowns_ = active_[0];
-    if (!factor_symmetric(result.root_.data(), n, n))
-      throw std::runtime_error("the multiple-scattering equations are singular or not finite");
+    result.factor_root(options_.coupling);
     result.statistics_.root = n;
     result.statistics_.bytes += sizeof(Complex) * square(n);
     cpu_seconds_[0] = thread_cpu_seconds() - start;
   }
 
   const WaveEquations& system_;
-  double memory_;
+  const Options& options_;
   Skeletonization skeletonization_;
   std::vector<SortedDisk> disks_;
+  std::size_t own_;  // number of disks that are not copies
   BoxTree tree_;
+  std::vector<Vec> shift_;
   std::vector<std::vector<std::size_t>> active_;
   std::vector<std::vector<Complex>> schur_complement_;
   std::vector<double> cpu_seconds_;
 };
 
-FastDirect::FastDirect(const WaveEquations& system, double tolerance, double memory)
-    : unknowns_(system.unknowns()) {
+FastDirect::FastDirect(const WaveEquations& system, double tolerance, const Options& options)
+    : unknowns_(system.unknowns() / (options.copies + 1)), solves_(options.solves) {
   FS_EXPECT(tolerance > 0 && tolerance < 1);
   blas_single_thread();
   const Stopwatch watch;
-  Builder(system, tolerance, memory).build(*this);
+  Builder(system, tolerance, options).build(*this);
   statistics_.wall_seconds = watch.seconds();
 }
 
+void FastDirect::factor_root(const RootCoupling& coupling) {
+  const std::size_t n = root_unknowns_.size();
+  bool factored = false;
+  if (coupling) {
+    coupling(root_unknowns_, root_);
+    pivots_.resize(n);
+    factored = LAPACKE_zgetrf(LAPACK_COL_MAJOR, blas_size(n), blas_size(n), root_.data(),
+                              blas_size(n), pivots_.data()) == 0;
+  } else {
+    factored = factor_symmetric(root_.data(), n, n);
+  }
+  if (!factored)
+    throw std::runtime_error("the multiple-scattering equations are singular or not finite");
+}
+
 void FastDirect::solve(std::span<Complex> x) const {
+  FS_EXPECT(solves_);
   if (unknowns_ == 0) return;
   constexpr std::size_t most = 64;  // columns that are solved at once
   for (std::size_t first = 0; first < x.size(); first += most * unknowns_) {
@@ -375,7 +399,7 @@ void FastDirect::solve(std::span<Complex> x) const {
     });
     for (const auto& level : levels_)
       parallel_for(level.size(), [&](std::size_t i) { level[i].forward(turned.data(), columns); });
-    solve_root(turned, columns);
+    solve_root_of(turned, columns);
     for (auto level = levels_.rbegin(); level != levels_.rend(); ++level)
       parallel_for(level->size(),
                    [&](std::size_t i) { (*level)[i].backward(turned.data(), columns); });
@@ -385,14 +409,25 @@ void FastDirect::solve(std::span<Complex> x) const {
   }
 }
 
-void FastDirect::solve_root(std::vector<Complex>& x, std::size_t columns) const {
+void FastDirect::solve_root(std::span<Complex> x) const {
+  const std::size_t n = root_unknowns_.size(), columns = n == 0 ? 0 : x.size() / n;
+  if (columns == 0) return;
+  if (pivots_.empty()) {
+    solve_forward(root_.data(), n, n, x.data(), columns, n);
+    solve_backward(root_.data(), n, n, x.data(), columns, n);
+  } else {
+    LAPACKE_zgetrs(LAPACK_COL_MAJOR, 'N', blas_size(n), blas_size(columns), root_.data(),
+                   blas_size(n), pivots_.data(), x.data(), blas_size(n));
+  }
+}
+
+void FastDirect::solve_root_of(std::vector<Complex>& x, std::size_t columns) const {
   const std::size_t n = root_unknowns_.size();
   std::vector<Complex> part(n * columns);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t column = 0; column < columns; ++column)
       part[i + n * column] = x[root_unknowns_[i] * columns + column];
-  solve_forward(root_.data(), n, n, part.data(), columns, n);
-  solve_backward(root_.data(), n, n, part.data(), columns, n);
+  solve_root(part);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t column = 0; column < columns; ++column)
       x[root_unknowns_[i] * columns + column] = part[i + n * column];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -31,6 +32,8 @@ class SkeletonElimination {
   double bytes() const;
   /// Moves M_SS - E E^T (both triangles) out of this object; to be called once.
   std::vector<Complex> take_schur_complement() { return std::move(schur_complement_); }
+  /// Frees all but the skeleton. forward() and backward() are then undefined.
+  void forget();
 
   /// Forward and backward substitution, in place, for the unknowns of this box. x: columns over all
   /// unknowns of M, [unknown][column].
@@ -74,24 +77,50 @@ class FastDirect {
     std::size_t root = 0;                      ///< unknowns of the last, dense factorization
   };
 
+  /// Adds coupling between distant bodies to the Schur complement of all unknowns but the listed
+  /// ones, a column-major matrix, which need not stay symmetric.
+  using RootCoupling =
+      std::function<void(std::span<const std::size_t> unknowns, std::vector<Complex>& matrix)>;
+  struct Options {
+    double memory = memory_of_system();
+    /// Number of copies of the first bodies that follow them in the system, each displaced as a
+    /// whole. Only the first bodies are solved for. Skeletons also represent their waves at the
+    /// copies, and waves from the copies, so that the coupling to them can be added at the root.
+    std::size_t copies = 0;
+    RootCoupling coupling = nullptr;
+    bool solves = true;  ///< keeps the factors of boxes, which solve() requires
+  };
+
   /// Factors M. Threaded over the boxes of a level; the result does not depend on the number of
-  /// threads. Throws InputError before a level that might need more than `memory` bytes, and
+  /// threads. Throws InputError before a level that might need more memory than available, and
   /// std::runtime_error for singular equations. Precondition: 0 < tolerance < 1.
-  FastDirect(const WaveEquations& system, double tolerance, double memory = memory_of_system());
+  FastDirect(const WaveEquations& system, double tolerance, const Options& options);
+  FastDirect(const WaveEquations& system, double tolerance)
+      : FastDirect(system, tolerance, Options()) {}
 
   /// Replaces x, [column][unknown], by M^-1 x. Threaded over the boxes of a level.
   void solve(std::span<Complex> x) const;
+
+  /// The last unknowns, which represent all others in waves to and from the outside of the system:
+  /// if b and c are coefficients of waves from outside, such as right-hand sides of plane waves,
+  /// then c^T M^-1 b is the same sum over these unknowns alone, with solve_root() instead of M^-1.
+  std::span<const std::size_t> root_unknowns() const { return root_unknowns_; }
+  /// Replaces columns over root_unknowns().
+  void solve_root(std::span<Complex> x) const;
 
   const Statistics& statistics() const { return statistics_; }
 
  private:
   class Builder;
-  void solve_root(std::vector<Complex>& x, std::size_t columns) const;
+  void factor_root(const RootCoupling& coupling);
+  void solve_root_of(std::vector<Complex>& x, std::size_t columns) const;
 
   std::size_t unknowns_;
+  bool solves_;
   std::vector<std::vector<SkeletonElimination>> levels_;  // boxes by level, from the leaves upwards
   std::vector<std::size_t> root_unknowns_;
-  std::vector<Complex> root_;  // lower triangular factor for root_unknowns_
+  std::vector<Complex> root_;  // lower triangular factor for root_unknowns_, or LU with pivots_
+  std::vector<int> pivots_;
   Statistics statistics_;
 };
 

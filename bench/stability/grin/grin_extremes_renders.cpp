@@ -10,7 +10,9 @@
 #include "bench/oracles/lamp_map.h"
 #include "bench/oracles/peierls_slab.h"
 #include "bench/scenes/furnaces.h"
+#include "bench/scenes/render_scenes.h"
 #include "bench/stability/extreme_rows.h"
+#include "grin/media/scattering/labelled_media.h"
 #include "grin/render/pictures/map_datasets.h"
 #include "grin/render/pictures/render_datasets.h"
 #include "grin/render/transport/path_score.h"
@@ -134,6 +136,8 @@ void add_furnaces(ExtremeRows& rows) {
   density[62] = 1e3;
   const ScatteringMedium spike{
       0.1, 0, {RayleighPhase{}}, std::make_shared<DensityGrid>(grid, density)};
+  LabelVolume voxels{grid.origin, grid.spacing, {4, 4, 4}, std::vector<std::uint16_t>(64, 1)};
+  voxels.labels[21] = 2;
   add(false, "white furnace, g 0.999", in_box(Homogeneous{0.3}, peaked), 4000);
   add(true, "white furnace, OD 200", in_box(Homogeneous{0.3}, fog(100, 0, 0)), 2000);
   add(true, "white furnace, fisheye, n from 4 to 0.12",
@@ -147,6 +151,9 @@ void add_furnaces(ExtremeRows& rows) {
   add(false, "white furnace, ball of index 3, light trapped",
       with_ball(in_box(Homogeneous{2}, thin)), 4000);
   add(false, "white furnace, density of contrast 1e6", in_box(Homogeneous{0.3}, spike), 2000);
+  add(false, "white furnace, one voxel of 1e6 times the extinction of others",
+      in_box(Homogeneous{0.3}, labelled_medium(voxels, {1e-4, 0, 0, 1e-4, 0, 0, 100, 0, 0.9}, "")),
+      2000);
   rows.add_timed(false, "picture of an empty stage under an environment", "each pixel is 1",
                  even_picture, in_box(Homogeneous{}, {}), 30'000);
   rows.add_timed(false, "picture of a scattering ball under an environment", "each pixel is 1",
@@ -220,6 +227,14 @@ void add_gradients(ExtremeRows& rows) {
   });
 }
 
+/// Checks the power on a disk at a distance in tissue.
+Finding far_disk(double distance, std::uint64_t samples) {
+  const RenderScene scene = tissue_disk(distance);
+  const RenderJob job = render_job(scene, {RenderMethod::forward}, 1);
+  const SensorResult found = render_result(scene, job, run_state(job, samples).sums)[0];
+  return in_errors(*found.total, {power_on_tissue_disk(distance)}, 0.1, 1e-3);
+}
+
 /// Compares the fluence rate of a map without sensors.
 Finding map_row(RenderScene scene, const std::vector<double>& expected, std::uint64_t samples) {
   scene.sensors.clear();
@@ -270,6 +285,11 @@ void add_field_gradients(ExtremeRows& rows) {
     const Estimate found = field_derivative(make_render_scene(values), 64);
     return Finding{std::abs(found.value[0].real() / exact - 1), 1e-4};
   });
+}
+
+void add_far_disks(ExtremeRows& rows) {
+  rows.add_slow("disk at 60 mm in tissue: 8e-11 of the light", "harmonics (reflectance), in errors",
+                far_disk, 60, 4000);
 }
 
 void add_maps(ExtremeRows& rows) {
@@ -359,6 +379,7 @@ void render_extremes(ExtremeRows& rows) {
   add_slabs(rows);
   add_gradients(rows);
   add_field_gradients(rows);
+  add_far_disks(rows);
   add_maps(rows);
   add_deep_slabs(rows);
   add_choices(rows);

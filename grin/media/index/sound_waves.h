@@ -12,6 +12,12 @@ namespace flatspeckle::grin {
 /// cos(k.x - phase). It solves the wave equation exactly if all |k| are equal.
 class SoundWaves {
  public:
+  struct Wave {
+    Vec3 k;
+    double amplitude, phase;  ///< phase: phase of the wave at the origin
+    double rate;              ///< frequency of this wave relative to the highest frequency
+  };
+  const std::vector<Wave>& waves() const { return waves_; }
   double background() const { return background_; }
   /// Returns an upper bound of the change of the index by the sound, |excess - background|.
   double largest() const {
@@ -64,11 +70,6 @@ class SoundWaves {
  protected:
   explicit SoundWaves(double background) : background_(background) {}
 
-  struct Wave {
-    Vec3 k;
-    double amplitude, phase;  ///< phase: phase of the wave at the origin
-    double rate;              ///< frequency of this wave relative to the highest frequency
-  };
   double background_;
   std::vector<Wave> waves_;
 };

@@ -5,6 +5,8 @@
 
 #include "core/keys/kinds.h"
 #include "grin/media/index/field_file.h"
+#include "grin/media/labels/label_volume.h"
+#include "grin/media/scattering/labelled_media.h"
 
 namespace flatspeckle::grin {
 
@@ -57,9 +59,23 @@ void add_keys(Keys& keys, MediumValues& values, const std::string& prefix) {
            "attributes origin, spacing; 0 outside the grid")
       .file()
       .only_of(scattering);
+  keys.add(
+          prefix + "labels", values.labels,
+          "Labels of voxels, which select their media in " + prefix +
+              "label_media, instead of mu_s and mu_a: HDF5 with labels[x, y, z] and its attributes "
+              "origin, spacing; NIfTI-1 (.nii); or shapes of an MCX scene (.json)")
+      .file();
+  keys.add(prefix + "label_media", values.label_media,
+           "mu_s mu_a g of each label, from label 0 on, which is also the medium outside of the "
+           "voxels")
+      .each_of(3, "mu_s mu_a g")
+      .only_of(prefix + "labels");
 }
 
 ScatteringMedium make_medium(const Keys& keys, const MediumValues& values) {
+  if (!keys.read(values.labels).empty())
+    return labelled_medium(read_field(keys, values.labels, read_labels),
+                           keys.required(values.label_media), keys.name(values.label_media));
   ScatteringMedium medium{keys.read(values.mu_s).value_or(0), keys.read(values.mu_a).value_or(0)};
   if (!values.mu_s && !values.mu_a) return medium;
   with_kind(values.kinds, keys.read(values.phase),

@@ -166,7 +166,8 @@ class FisheyeRays final : public RayFieldOf<Fisheye> {
   bool has_lanes() const override { return false; }
   SegmentStop fly(const SegmentDomain& domain, double longest, double& weight, RandomStream& random,
                   RayState& ray, RayTangent* tangent) const override {
-    if (domain.medium.grid()) return RayFieldOf::fly(domain, longest, weight, random, ray, tangent);
+    if (domain.medium.varies())
+      return RayFieldOf::fly(domain, longest, weight, random, ray, tangent);
     const FisheyeOrbit orbit(in_units(ray.x), ray.v.normalized());
     const double out = unit_ * orbit.exit_distance(radius_ - 1e-9 / 8 * domain.step / unit_);
     const double collision = domain.medium.scatters()

@@ -125,7 +125,8 @@ class LuneburgRays final : public RayFieldOf<Luneburg> {
   bool has_lanes() const override { return false; }
   SegmentStop fly(const SegmentDomain& domain, double longest, double& weight, RandomStream& random,
                   RayState& ray, RayTangent* tangent) const override {
-    if (domain.medium.grid()) return RayFieldOf::fly(domain, longest, weight, random, ray, tangent);
+    if (domain.medium.varies())
+      return RayFieldOf::fly(domain, longest, weight, random, ray, tangent);
     const double end = radius_ - 1e-9 / 8 * domain.step / unit_;
     const LuneburgOrbit orbit(in_units(ray.x), ray.v);
     const auto collision =

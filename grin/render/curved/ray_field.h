@@ -40,7 +40,7 @@ struct SegmentProgress {
 /// Samples the arc length of the first tentative collision beyond arc length `after`; infinite in a
 /// uniform medium that does not scatter.
 inline double next_collision(const PartMedium& medium, double after, RandomStream& random) {
-  if (!medium.scatters() && !medium.grid()) return std::numeric_limits<double>::infinity();
+  if (!medium.scatters() && !medium.varies()) return std::numeric_limits<double>::infinity();
   return after + sample_free_flight(medium.majorant(), random.uniform());
 }
 

@@ -193,7 +193,7 @@ SegmentEnd Space::end_on_surface(RayState& ray) const {
 }
 
 void Space::end_segment(Flight& flight, const RayState& ray, double weight) const {
-  if (!medium().scatters() && !medium().grid())
+  if (!medium().scatters() && !medium().varies())
     weight *= transmittance(medium().mu_t(), ray.arc_length);
   attenuate(flight, weight);
   flight.point.x = ray.x;
@@ -259,7 +259,7 @@ bool Space::goes_outside(const Vec3& x, const Vec3& direction) const {
 }
 
 double Space::transmitted(const PathPoint& p, const Connection& curve, RandomStream& random) const {
-  if (!medium().grid()) return transmittance(medium().mu_t(), curve.arc_length);
+  if (!medium().varies()) return transmittance(medium().mu_t(), curve.arc_length);
   return field_->ratio_tracked(segment_domain(), start_ray(*field_, p.x, curve.start_direction),
                                curve.sigma, curve.steps, random);
 }

@@ -36,11 +36,12 @@ void for_points(const FlightSegment& segment, const PartMedium& medium, double a
   const bool absorbs = !medium.scatters() && medium.mu_t() > 0;
   const auto collide = [&] { return sample_free_flight(medium.majorant(), random.uniform()); };
   double left = segment.weight;
-  double tentative = absorbs && medium.grid() ? collide() : std::numeric_limits<double>::infinity();
+  double tentative =
+      absorbs && medium.varies() ? collide() : std::numeric_limits<double>::infinity();
   for (double i = 0; i < count; ++i) {
     const double s = (i + offset) * spacing;
     for (; tentative < s; tentative += collide()) left *= medium.lacking(x_at(tentative));
-    const bool is_even = absorbs && !medium.grid();
+    const bool is_even = absorbs && !medium.varies();
     use(x_at(s), spacing * (is_even ? left * transmittance(medium.mu_t(), s) : left));
   }
 }

@@ -1,6 +1,12 @@
 #pragma once
 
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "grin/render/lights/aim.h"
+#include "grin/render/lights/environment_map.h"
 #include "grin/render/lights/light_kind.h"
 
 namespace flatspeckle::grin {
@@ -9,13 +15,14 @@ class FaceLightEnd;
 
 /// A light on the part of the boundary within `radius` of `centre`. It is Lambertian: it emits
 /// inwards with the same L/n^2, `radiance`, in all directions. An infinite radius is the whole
-/// boundary (environment). Requires a sphere or a box as boundary (BoundaryPatch). Its power is pi
+/// boundary (environment); its radiance may be multiplied by a map of directions. Requires a sphere or a box as boundary (BoundaryPatch). Its power is pi
 /// times `radiance` times the integral of n^2 over the emitting area.
 struct FaceLight {
   using End = FaceLightEnd;
   Vec3 centre = Vec3::Zero();
   double radius;
   double radiance = 1;
+  std::shared_ptr<const EnvironmentMap> map = nullptr;
 };
 
 class FaceLightEnd {
@@ -38,7 +45,9 @@ class FaceLightEnd {
 
  private:
   BoundaryPatch patch_;
-  double radiance_, power_;
+  double radiance_;
+  std::shared_ptr<const EnvironmentMap> map_;
+  double power_;
   bool surrounds_;
   std::optional<Aim> aim_ = {};
 };
@@ -47,6 +56,8 @@ struct FaceLightValues {
   using Light = FaceLight;
   std::vector<double> face_light{};
   std::optional<double> environment = {};
+  std::string environment_map{};
+  std::vector<double> environment_centre{0, 0, 1}, environment_up{0, 1, 0};
 };
 
 void add_keys(Keys& keys, FaceLightValues& values);

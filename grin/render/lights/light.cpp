@@ -149,17 +149,15 @@ EmissionChange StageLights::by_index(const EndPosition& at, const Vec3& directio
                     source_[at.light].end);
 }
 
-bool StageLights::can_be_aimed() const {
-  return std::ranges::any_of(faces_, [&](int light) {
-    return !std::get<FaceLightEnd>(source_[light].end).surrounds();
-  });
-}
-
-void StageLights::aim(const Aim& at) {
+bool StageLights::aim(const Aim& at) {
+  bool is_any = false;
   for (const int light : faces_) {
     auto& face = std::get<FaceLightEnd>(source_[light].end);
-    if (!face.surrounds()) face.aim(at);
+    if (face.surrounds()) continue;
+    face.aim(at);
+    is_any = true;
   }
+  return is_any;
 }
 
 EndDirection StageLights::towards(const EndPosition& at, const Vec3& direction) const {

@@ -89,10 +89,9 @@ class StageLights {
 
   double power() const { return power_; }
 
-  /// Whether some light can be aimed: a face light that does not surround the stage.
-  bool can_be_aimed() const;
-  /// Aims these lights, which changes only how directions are sampled.
-  void aim(const Aim& at);
+  /// Aims the face lights that do not surround the stage, which changes only how directions are
+  /// sampled. Returns whether there are any.
+  bool aim(const Aim& at);
 
  private:
   struct Source {

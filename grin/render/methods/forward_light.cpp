@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <cstdint>
 #include <functional>
 #include <numbers>
@@ -60,7 +61,8 @@ struct Branch {
   UnsplitPath absorption = {};
   PathScore score = {};
   MomentumTransfer transfer = {};
-  int flight = 0;  ///< number of the current flight in MovingPaths
+  std::complex<double> modulation = 0;  ///< by the sound (TaggingSound)
+  int flight = 0;                       ///< number of the current flight in MovingPaths
 };
 
 /// Start of a path: its random stream and its stratum in (0, 1) within the batch, from which the
@@ -84,8 +86,8 @@ class ForwardWalk {
   ForwardWalk(const ForwardBatch& batch, Fresh fresh)
       : batch_(batch), fresh_(std::move(fresh)), tally_(batch.film.energy) {
     if (batch.moving) moving_.emplace(*batch.moving, batch.film, batch.counts);
-    if (const auto* variates = forward_controls(batch.transport, batch.target != nullptr))
-      controls_.emplace(*variates, batch.film.control_variates);
+    const auto* variates = forward_controls(batch.transport, batch.target != nullptr);
+    if (variates && !batch.film.sound()) controls_.emplace(*variates, batch.film.control_variates);
   }
   ~ForwardWalk() { tally_.end_path(); }
 
@@ -101,8 +103,12 @@ class ForwardWalk {
     if (!lane.now) return std::nullopt;
     return Space::FlightStart{lane.now->from.point, lane.now->direction, &lane.now->random};
   }
-  /// Returns the log that the control variates need of the next flight, or null.
-  FlightLog* log() { return controls_ ? controls_->log() : nullptr; }
+  /// Returns the log that the control variates or the sound need of the next flight, or null.
+  FlightLog* log() {
+    if (!batch_.film.sound()) return controls_ ? controls_->log() : nullptr;
+    log_.clear();
+    return &log_;
+  }
 
  private:
   void begin(Lane& lane) {
@@ -154,10 +160,15 @@ class ForwardWalk {
       return false;
     }
     now.score.flew(flight.arc_length);
+    if (const TaggingSound* const sound = batch_.film.sound())
+      for (const FlightSegment& segment : log_)
+        if (segment.start.part == sound->part)
+          now.modulation += sound->flown(segment.start.x, segment.direction, segment.length);
     PathVertex next = moved(now.from, flight, batch_.space.index(flight.point));
     if (flight.end == Flight::End::boundary) {
       tally_.left(now.from, flight);
-      if (!now.of_beam || next.vertices > 2) arrive(now, next, flight.arc_length);
+      if (!now.of_beam || next.vertices > 2 || batch_.film.sound())
+        arrive(now, next, flight.arc_length);
       return false;
     }
     if (next.vertices - 2 >= batch_.transport.max_scatterings) {
@@ -165,7 +176,7 @@ class ForwardWalk {
       return false;
     }
     ++counts.light_collisions;
-    const ScatteringMedium& medium = batch_.transport.medium(next.point.part);
+    const ScatteringMedium& medium = batch_.transport.medium(next.point);
     next.weight *= medium.albedo();
     const double before = next.weight;
     const bool survives =
@@ -186,6 +197,9 @@ class ForwardWalk {
     if (batch_.film.has_derivatives()) branch.score.turned(medium, branch.from.arrived, direction);
     if (batch_.film.has_decay())
       branch.transfer.turned(branch.from.point.part, branch.from.arrived, direction);
+    if (const TaggingSound* const sound = batch_.film.sound();
+        sound && branch.from.point.part == sound->part)
+      branch.modulation += sound->turned(branch.from.point.x, branch.from.arrived, direction);
   }
 
   /// Splits a branch at a collision in proportion to its importance. Russian roulette favours
@@ -232,6 +246,8 @@ class ForwardWalk {
         deposit(batch_.film, batch_.counts, hit.direction.pixel, value, last.optical_path,
                 now.transfer);
         batch_.film.add_hit(hit.direction.pixel, value);
+        if (batch_.film.sound())
+          batch_.film.add_sidebands(hit.direction.pixel, value, now.modulation);
         if (batch_.film.has_derivatives())
           now.score.add_to(batch_.film, hit.direction.pixel, value,
                            batch_.transport.medium(last.point.part));
@@ -244,6 +260,7 @@ class ForwardWalk {
   LightTally tally_;
   std::optional<MovingPaths> moving_;
   std::optional<PathControls> controls_;
+  FlightLog log_;
 };
 
 /// Random streams of the paths of a batch.

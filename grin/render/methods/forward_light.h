@@ -57,7 +57,8 @@ const ControlVariates* forward_controls(const Transport& transport, bool has_tar
 /// connections. Each is cheap, and no contribution greatly exceeds the power of its path. With a
 /// target, paths that head for the sensors are split, and most other paths are terminated. Flights
 /// are traced in SIMD lanes if the space supports them; each path has its own random stream.
-/// Unscattered light of beams is left out (unscattered_beams.h). moving: the field of the space if
+/// Unscattered light of beams is left out (unscattered_beams.h), except with sound that tags it.
+/// moving: the field of the space if
 /// derivatives by its parameters are requested, else null.
 PathKernel forward_kernel(std::shared_ptr<const Transport> transport,
                           std::shared_ptr<const Space> space, std::optional<SensorTarget> target,

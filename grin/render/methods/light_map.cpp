@@ -40,7 +40,9 @@ RingCells::RingCells(const Vec3& from, const Vec3& to, double radius,
       axis_((to - from).normalized()),
       counts_(counts),
       width_(radius / counts[0]),
-      height_((to - from).norm() / counts[1]) {}
+      height_((to - from).norm() / counts[1]),
+      rings_per_length_(1 / width_),
+      slices_per_length_(1 / height_) {}
 
 Box RingCells::bounds() const {
   const Vec3 to = from_ + height_ * counts_[1] * axis_;
@@ -55,9 +57,10 @@ double RingCells::volume(int cell) const {
 
 int RingCells::cell_at(const Vec3& x) const {
   const Vec3 away = x - from_;
-  const double depth = away.dot(axis_) / height_;
-  const double radius = (away - away.dot(axis_) * axis_).norm() / width_;
-  if (!(depth >= 0 && depth < counts_[1] && radius < counts_[0])) return -1;
+  const double along = away.dot(axis_), depth = along * slices_per_length_;
+  if (!(depth >= 0 && depth < counts_[1])) return -1;
+  const double radius = (away - along * axis_).norm() * rings_per_length_;
+  if (!(radius < counts_[0])) return -1;
   return static_cast<int>(radius) * counts_[1] + static_cast<int>(depth);
 }
 

@@ -53,6 +53,7 @@ class RingCells {
   Vec3 from_, axis_;
   std::array<int, 2> counts_;
   double width_, height_;
+  double rings_per_length_, slices_per_length_;
 };
 
 /// Cells in the stage for the fluence rate and the absorbed power.

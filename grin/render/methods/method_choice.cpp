@@ -291,8 +291,7 @@ std::vector<Candidate> candidates(const Tracers& tracers) {
   for (const RenderMethod method :
        {RenderMethod::bidirectional, RenderMethod::path, RenderMethod::light})
     if (can_be_tried(tracers.scene(), method)) found.push_back({tracers.make(method)});
-  if (can_be_forward(tracers.scene()))
-    found.push_back({tracers.make(RenderMethod::forward)});
+  if (can_be_forward(tracers.scene())) found.push_back({tracers.make(RenderMethod::forward)});
   return found;
 }
 
@@ -345,38 +344,87 @@ std::optional<std::size_t> best_of(const std::vector<Needed>& needs, bool of_kno
 }
 
 /// Whether the estimate for the best method is reliable, and no other method that finds the light
-/// could need much less work, allowing for two standard errors.
+/// could need much less work, allowing for two standard errors as factors.
 bool is_settled(const std::vector<Needed>& needs, std::size_t best) {
   constexpr double much = 1.5;
   const double most = needs[best].work * (1 + 2 * needs[best].variance_error);
   for (std::size_t i = 0; i < needs.size(); ++i) {
-    const double least = needs[i].work * std::max(1 - 2 * needs[i].variance_error, 0.0);
+    const double least = needs[i].work / (1 + 2 * needs[i].variance_error);
     if (i != best && std::isfinite(needs[i].work) && most > much * least) return false;
   }
   return needs[best].is_known;
 }
 
+/// Whether rare paths may carry much of the variance: path and light tracing sample each path in
+/// one way only.
+bool has_rare_paths(const Tracer& tracer) {
+  return tracer.method == RenderMethod::path || tracer.method == RenderMethod::light;
+}
+
+/// Methods with their trials.
+class Trials {
+ public:
+  explicit Trials(const Tracers& tracers)
+      : tracers_(tracers),
+        refracts_(!tracers.plan().curved && !has_even_index(tracers.scene())),
+        all_(candidates(tracers)) {}
+
+  /// Runs trials of all methods; returns whether one remains.
+  bool run(double effort) {
+    try_all(tracers_, effort, all_);
+    if (!all_.empty()) compare();
+    return !all_.empty();
+  }
+  bool is_settled() const {
+    return all_.size() == 1 || (best_ && grin::is_settled(needs_, *best_));
+  }
+  /// Whether the best method is still the best after a trial of its own that is `effort` times as
+  /// long, in which rare paths are found if there are any.
+  bool is_confirmed(double effort) {
+    if (all_.size() == 1 || !has_rare_paths(all_[*best_].tracer)) return true;
+    const auto before = best_;
+    const auto trial = tried(tracers_, all_[*best_].tracer, effort);
+    if (!trial) return false;
+    all_[*best_].trial = *trial;
+    compare();
+    return best_ == before && is_settled();
+  }
+  /// Returns the best method. Methods with reliable estimates are preferred.
+  Tracer best() const {
+    auto best = best_;
+    if (best && !needs_[*best].is_known)
+      if (const auto known = best_of(needs_, true)) best = known;
+    return all_[best.value_or(0)].tracer;
+  }
+
+ private:
+  void compare() {
+    needs_ = needs_of(all_, refracts_);
+    best_ = best_of(needs_, false);
+  }
+
+  const Tracers& tracers_;
+  bool refracts_;
+  std::vector<Candidate> all_;
+  std::vector<Needed> needs_;
+  std::optional<std::size_t> best_;
+};
+
 }  // namespace
 
 /// Repeats trials of increasing length until the best method is settled: an estimate of the work is
-/// too low if the trial lacks the paths of highest weight. After the last trial, methods with
-/// reliable estimates are preferred.
+/// too low if the trial lacks the paths of highest weight.
 Tracer best_tracer(const Tracers& tracers) {
   if (!tracers.walks()) return tracers.make(RenderMethod::light);
-  const bool refracts = !tracers.plan().curved && !has_even_index(tracers.scene());
-  auto all = candidates(tracers);
-  std::vector<Needed> needs;
-  std::optional<std::size_t> best;
-  for (const double effort : {1, 4, 16}) {
-    try_all(tracers, effort, all);
-    if (all.empty()) return tracers.make(RenderMethod::bidirectional);
-    needs = needs_of(all, refracts);
-    best = best_of(needs, false);
-    if (all.size() == 1 || (best && is_settled(needs, *best))) break;
+  // other methods starve at sensors that few paths reach, so that trials could not compare them
+  if (tracers.are_guided()) return tracers.make(RenderMethod::forward);
+  Trials trials(tracers);
+  constexpr double longer = 4;
+  for (const double effort : {1.0, longer, longer * longer}) {
+    if (!trials.run(effort)) return tracers.make(RenderMethod::bidirectional);
+    if (trials.is_settled() && (effort > 1 || trials.is_confirmed(longer))) break;
   }
-  if (best && !needs[*best].is_known)
-    if (const auto known = best_of(needs, true)) best = known;
-  return all[best.value_or(0)].tracer;
+  return trials.best();
 }
 
 }  // namespace flatspeckle::grin

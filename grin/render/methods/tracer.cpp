@@ -43,14 +43,13 @@ class MapTally : public LightTally {
   void add(const Vec3& x, double power_length, const ScatteringMedium& medium) {
     const int cell = cells_.cell_at(x);
     if (cell < 0) return;
-    const double fluence = power_length / cells_.volume(cell);
-    if (!std::isfinite(fluence)) {
+    if (!std::isfinite(power_length)) {
       ++counts_.lost_values;
       return;
     }
     Complex* const sums = &sums_[sums_per_cell * static_cast<std::size_t>(cell)];
-    sums[0] += fluence;
-    sums[1] += fluence * medium.absorption(x);
+    sums[0] += power_length;
+    sums[1] += power_length * medium.absorption(x);
   }
 
   const Cells& cells_;
@@ -283,6 +282,9 @@ MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> trans
               walk_light(*transport, *space, random, tally, counts);
             }
           }
+          for (std::size_t i = 0; i < sums_per_cell * static_cast<std::size_t>(grin::cells(map));
+               ++i)
+            sums[i] /= cells.volume(static_cast<int>(i / sums_per_cell));
         },
         map);
   };
@@ -297,7 +299,7 @@ RenderPlan render_plan(const RenderScene& scene) {
   const auto add = [&](const ScatteringMedium& medium) {
     plan.scatters |= medium.mu_s > 0;
     plan.absorbs |= medium.mu_a > 0;
-    plan.gridded |= medium.density && medium.mu_t() > 0;
+    plan.gridded |= !medium.is_uniform() && medium.mu_t() > 0;
   };
   add(scene.stage.medium);
   for (const Body& body : scene.stage.bodies) add(body.medium);
@@ -335,7 +337,11 @@ Tracers::Tracers(const RenderScene& scene, const RenderRequest& request)
   if (!scene.parameters.empty()) find_motion();
   if (scene.sensors.empty()) return;
   find_beams();
-  if (walks_ && can_be_forward(scene)) find_aim();
+  const bool may_be_forward =
+      request.method.value_or(RenderMethod::forward) == RenderMethod::forward;
+  if (!walks_ || !may_be_forward || !can_be_forward(scene)) return;
+  find_guide();
+  if (!guide_) find_aim();
 }
 
 void Tracers::find_depth() {
@@ -360,7 +366,7 @@ void Tracers::find_motion() {
 /// beams may take longer than a pilot run.
 void Tracers::find_beams() {
   const auto transport = transport_of(scene_, request_, RenderMethod::bidirectional);
-  if (!(transport->lights.beam_power() > 0)) return;
+  if (scene_.bins.sound || !(transport->lights.beam_power() > 0)) return;
   walks_ = plan_.scatters || !transport->lights.are_beams() || !are_followed(*transport);
   const BeamsRequest asked{scene_.random_phase, !walks_, moving_};
   const std::shared_ptr<const Space> space =
@@ -369,15 +375,19 @@ void Tracers::find_beams() {
   if (walks_ && plan_.curved) few_rays_per_path_ = rays_beside_path(transport->lights, *space);
 }
 
-/// Aims the lights of counted paths at the sensors: zones of directions are sampled in proportion to
-/// the root mean square of the light that reaches the sensors from them, by a pilot run, and at
+void Tracers::find_guide() {
+  if (auto guide = PathGuide::of(scene_)) guide_ = std::make_shared<const PathGuide>(*guide);
+}
+
+/// Aims the lights of counted paths at the sensors: zones of directions are sampled in proportion
+/// to the root mean square of the light that reaches the sensors from them, by a pilot run, and at
 /// least half as often as a neighbour. A quarter of the paths are not aimed, so that no path has a
 /// high weight.
 void Tracers::find_aim() {
   constexpr int paths = 64;  // in each zone
   constexpr double unaimed = 0.25, much = 2;
   const Tracer pilot = untuned(RenderMethod::forward);
-  if (!pilot.transport->lights.can_be_aimed()) return;
+  if (!pilot.transport->lights.aim(Aim::at_zone(0))) return;
   const int pixels = pilot.transport->pixels();
   std::vector<Complex> sums(static_cast<std::size_t>(pixels) * scene_.bins.sums());
   const std::vector<PixelShare> all(static_cast<std::size_t>(pixels), PixelShare{0, 1});
@@ -447,7 +457,7 @@ double Tracers::cost_of_flight() const {
   const double diagonal = (box.high - box.low).norm();
   double tentative = 0;
   const auto add = [&](const ScatteringMedium& medium) {
-    if (medium.density) tentative += medium.mu_t() * medium.density->largest() * diagonal;
+    if (!medium.is_uniform()) tentative += medium.mu_t() * medium.largest_relative() * diagonal;
   };
   add(scene_.stage.medium);
   for (const Body& body : scene_.stage.bodies) add(body.medium);
@@ -483,6 +493,11 @@ Tracer Tracers::untuned(RenderMethod method) const {
   if (!plan_.curved) transport->depth = depth_;
   const std::shared_ptr<const Space> space =
       make_space(scene_.field, scene_.stage, options(spreading_of(method)));
+  if (method == RenderMethod::forward && guide_) {
+    Tracer tracer{method, transport, guided_kernel(guide_, transport, space)};
+    tracer.is_guided = true;
+    return tracer;
+  }
   if (method == RenderMethod::forward) {
     if (aim_) transport->lights.aim(*aim_);
     const auto target = SensorTarget::of(*transport, *space, bending_of(scene_));

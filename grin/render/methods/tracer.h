@@ -6,6 +6,7 @@
 
 #include "core/numbers/complex.h"
 #include "grin/render/flights/space.h"
+#include "grin/render/methods/guided_walk.h"
 #include "grin/render/methods/light_map.h"
 #include "grin/render/methods/path_kernels.h"
 #include "grin/render/methods/render_scene.h"
@@ -14,9 +15,10 @@
 
 namespace flatspeckle::grin {
 
-/// Adds light paths to the sums of a map, [cell][fluence rate, absorbed power density], and their
-/// power to an energy balance. Each segment of a path contributes to a cell in proportion to its
-/// length in the cell (track-length estimator). Lengths are sampled by points along the segment.
+/// Computes the sums of a map over light paths, [cell][fluence rate, absorbed power density], which
+/// are 0 before, and adds their power to an energy balance. Each segment of a path contributes to a
+/// cell in proportion to its length in the cell (track-length estimator). Lengths are sampled by
+/// points along the segment.
 using MapKernel = std::function<void(int paths, RandomStream& random, std::span<Complex> sums,
                                      EnergyBalance& energy, TransportCounts& counts)>;
 inline constexpr std::size_t sums_per_cell = 2;
@@ -52,7 +54,8 @@ struct Tracer {
   double cost_of_closed_connection = 0;
   Spreading spreading = Spreading::all;
   bool has_control_variates = false;  ///< whether light paths accumulate control variates
-  bool is_aimed = false;  ///< whether a pilot run has aimed its lights at the sensors
+  bool is_guided = false;             ///< whether light paths are guided to far sensors (PathGuide)
+  bool is_aimed = false;              ///< whether a pilot run has aimed its lights at the sensors
 
   void add(int paths, RandomStream& random, Film& film, TransportCounts& counts) const;
 };
@@ -78,6 +81,9 @@ class Tracers {
   /// Whether paths are traced; if not, all lights are beams and nothing scatters.
   bool walks() const { return walks_; }
 
+  /// Whether forward tracing guides its paths, since few would reach some sensor.
+  bool are_guided() const { return guide_ != nullptr; }
+
   const RenderScene& scene() const { return scene_; }
   const RenderPlan& plan() const { return plan_; }
 
@@ -85,6 +91,7 @@ class Tracers {
   void find_depth();
   void find_motion();
   void find_beams();
+  void find_guide();
   void find_aim();
   Tracer untuned(RenderMethod method) const;
   /// Tunes the connections by pilot runs; returns the flights per pair.
@@ -96,7 +103,8 @@ class Tracers {
   const RenderRequest& request_;
   RenderPlan plan_;
   bool walks_ = true;
-  std::optional<Aim> aim_;  ///< for counted paths; set if it saves much work
+  std::shared_ptr<const PathGuide> guide_;  ///< for counted paths; set if few reach some sensor
+  std::optional<Aim> aim_;                        ///< for counted paths; set if it saves much work
   std::shared_ptr<const DepthImportance> depth_;  ///< set if the plan is deep
   /// Set if derivatives by parameters of the field are requested (gradient_by).
   std::shared_ptr<const MovingField> moving_;

@@ -8,16 +8,14 @@ namespace flatspeckle::grin {
 
 namespace {
 
-/// Returns the estimator of the powers within the outer edge of each ring.
-Estimator nested_powers(std::vector<double> areas, std::size_t first_pixel, const TimeBins& bins) {
-  const auto stride = static_cast<std::size_t>(bins.sums());
-  const auto parts = static_cast<std::size_t>(bins.parts());
+/// Returns the estimator of the powers within the outer edge of each ring. first: index of the sum
+/// of the innermost ring.
+Estimator nested_powers(std::vector<double> areas, std::size_t first) {
   return [=](double samples, std::span<const Complex> all) {
     std::vector<Complex> powers;
     Complex within = 0;
     for (std::size_t ring = 0; ring < areas.size(); ++ring) {
-      for (const Complex part : all.subspan((first_pixel + ring) * stride, parts))
-        within += areas[ring] * part;
+      within += areas[ring] * all[first + ring];
       powers.push_back(within / samples);
     }
     return powers;
@@ -60,19 +58,19 @@ void scale_to(const std::vector<double>& errors, std::vector<double>& covariance
 
 std::optional<PowersWithin> powers_within(const Sensor& sensor, const LightCheck& check,
                                           std::size_t first_pixel, const RenderJob& job,
-                                          const GroupedSums& sums) {
+                                          const GroupedSums& steady) {
   const auto* disks = std::get_if<RadialDetector>(&sensor);
   if (!disks || disks->radii.empty()) return std::nullopt;
   const PixelRings rings = picture_of(*disks);
   std::vector<double> areas;
   for (int ring = 0; ring < disks->rings; ++ring) areas.push_back(rings.area(ring));
-  const Estimator theta = nested_powers(areas, first_pixel, job.bins);
-  PowersWithin found{disks->radii, job.estimate_of(check, sums, theta), {}};
-  if (sums.groups() < 2) {
+  const Estimator theta = nested_powers(areas, job.first_steady() + first_pixel);
+  PowersWithin found{disks->radii, job.estimate_of(check, steady, theta), {}};
+  if (steady.groups() < 2) {
     found.covariance.assign(areas.size() * areas.size(), found.power.error.front());
     return found;
   }
-  found.covariance = covariance_of_means(sums, theta, found.power.value);
+  found.covariance = covariance_of_means(steady, theta, found.power.value);
   scale_to(found.power.error, found.covariance);
   return found;
 }

@@ -17,10 +17,11 @@ struct PowersWithin {
 };
 
 /// Returns the powers of a sensor that lists radii (RadialDetector), nullopt for others. check:
-/// check of the sensor; first_pixel: its first pixel in the sums of a batch.
+/// check of the sensor; first_pixel: number of its first pixel; steady:
+/// steady_sums().
 std::optional<PowersWithin> powers_within(const Sensor& sensor, const LightCheck& check,
                                           std::size_t first_pixel, const RenderJob& job,
-                                          const GroupedSums& sums);
+                                          const GroupedSums& steady);
 
 /// Returns the largest relative error of the powers; infinity if a power is 0 or less than ten
 /// times its error while undersampled, since few paths that found little light do not prove that

@@ -225,12 +225,12 @@ void add_paths(SensorResult& result, const GroupedSums& sums, const Pixels& pixe
 
 SensorResult sensor_result(const DatasetTable& table, const Pixels& pixels, const RenderJob& job,
                            const RenderedPicture& all, const LightCheck& check,
-                           const GroupedSums& sums) {
+                           const GroupedSums& sums, const GroupedSums& steady) {
   SensorResult result{.picture = {.bins = own_part(all.bins, pixels, pixels.bins.count),
                                   .steady = own_part(all.steady, pixels, 1),
                                   .before = own_part(all.before, pixels, 1),
                                   .after = own_part(all.after, pixels, 1)},
-                      .mean = bounded(sensor_mean(job, sums, check, pixels.first, pixels.of))};
+                      .mean = bounded(sensor_mean(job, steady, check, pixels.first, pixels.of))};
   const bool has_total = has_row(table, "total");
   if (has_total) result.total = scaled(result.mean, pixels.of.area);
   if (pixels.bins.count > 1) add_pulses(result, job, sums, pixels, has_total ? pixels.of.area : 1);
@@ -279,6 +279,7 @@ void write_sensor(const ResultGroup& group, const SensorPixels& pixels,
   }
   if (result.gradients) write_gradients(group, pixels, result.total.has_value(), *result.gradients);
   if (result.decay) write_decay(group, *result.decay);
+  if (result.sidebands) write_sidebands(group, *result.sidebands);
   if (!result.pulse.value.empty()) {
     group.put("transient", result.picture.bins);
     group.put("transient_before", result.picture.before);
@@ -401,6 +402,8 @@ const DatasetTable render_table{
          {"parameter", Data::numbers, "", "1",
           "parameters of derivatives: see the attribute names"},
          {"delay", Data::scale, "", "1", "delay, as k^2 D tau"},
+         {"sideband", Data::numbers, "", "1",
+          "number of the sound's frequencies by which light is shifted, up or down"},
          {"body", Data::numbers, "", "1",
           "0: the stage outside of bodies; then the bodies, from the largest to the smallest"},
          {"transport/flights", Data::count, "", "1", "free flights from one event to the next"},
@@ -426,18 +429,20 @@ const DatasetTable render_table{
 RenderResult render_result(const RenderScene& scene, const RenderJob& job,
                            const GroupedSums& sums) {
   const RenderedPicture all = rendered_picture(job, sums);
+  const GroupedSums steady = steady_sums(job, sums);
   const std::vector<LightCheck> checks = light_checks(job, sums);
   RenderResult result;
   std::size_t first = 0;
   for (const Sensor& sensor : scene.sensors) {
     const LightCheck& check = checks[result.size()];
     const Pixels pixels{pixels_of(sensor), first, job.bins};
-    result.push_back(sensor_result(table_of(sensor), pixels, job, all, check, sums));
+    result.push_back(sensor_result(table_of(sensor), pixels, job, all, check, sums, steady));
     widen_errors(check, pixels.of.area, result.back());
-    result.back().within = powers_within(sensor, check, first, job, sums);
+    result.back().within = powers_within(sensor, check, first, job, steady);
     if (job.bins.derivatives > 0 || job.bins.by_field > 0)
       result.back().gradients = power_gradients(sensor, first, job.bins, sums);
     if (job.bins.decay) result.back().decay = decay_result(pixels.of, first, job.bins, sums);
+    if (job.bins.sound) result.back().sidebands = sideband_result(pixels.of, first, job.bins, sums);
     first += pixels.count();
   }
   return result;
@@ -465,6 +470,7 @@ void write_render(ResultFile& file, const RenderScene& scene, const RenderJob& j
     root.put("delay", job.bins.decay->delays);
     root.number("body", job.bins.decay->parts());
   }
+  if (job.bins.sound) root.number("sideband", sidebands);
   if (job.bins.count > 1) write_bins(root, job.bins, length_unit);
   for (std::size_t i = 0; i < result.size(); ++i)
     write_sensor({file, table_of(scene.sensors[i]),

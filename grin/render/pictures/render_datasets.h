@@ -11,6 +11,7 @@
 #include "grin/render/pictures/decay_results.h"
 #include "grin/render/pictures/powers_within.h"
 #include "grin/render/pictures/render_job.h"
+#include "grin/render/pictures/sideband_results.h"
 
 namespace flatspeckle::grin {
 
@@ -54,6 +55,7 @@ struct SensorResult {
   std::optional<PowersWithin> within = {};
   std::optional<PowerGradients> gradients = {};
   std::optional<DecayResult> decay = {};
+  std::optional<SidebandResult> sidebands = {};
   /// Total power, or the mean if there is no total, in each bin of optical path, and before and
   /// after all bins.
   Estimate pulse = {}, pulse_before = {}, pulse_after = {};

@@ -80,12 +80,25 @@ Estimator for_each_pixel(std::size_t pictures, const TimeBins& bins, std::size_t
   };
 }
 
-Estimator steady_picture(std::size_t pictures, const TimeBins& bins) {
-  return for_each_pixel(pictures, bins, 1,
-                        [parts = static_cast<std::size_t>(bins.parts())](
-                            double samples, std::span<const Complex> own, std::span<Complex> to) {
-                          for (const Complex part : own.first(parts)) to[0] += part / samples;
-                        });
+/// Returns the entries first .. first + count - 1 of all groups.
+GroupedSums some_of(const GroupedSums& sums, std::size_t first, std::size_t count) {
+  GroupedSums some(count);
+  for (std::size_t group = 0; group < sums.groups(); ++group)
+    some.add(sums.group_samples(group), sums.group_sums(group).subspan(first, count));
+  return some;
+}
+
+/// Estimates the steady pictures.
+Estimate steady_picture(const RenderJob& job, const GroupedSums& sums) {
+  const std::size_t pixels = job.pixels(), first = job.first_steady();
+  if (job.controls > 0)
+    return job.estimate(
+        steady_sums(job, sums),
+        [=](double samples, std::span<const Complex> all) {
+          return sample_mean(samples, all.subspan(first, pixels));
+        },
+        job.few_of_pictures);
+  return jackknife(sums, EntryRange{job.first_of_steady(), pixels}, job.few_of_pictures);
 }
 
 /// Makes the estimator of the means of `count` sums of each pixel, beginning with sum `first`.
@@ -152,17 +165,23 @@ double error_of_light(const Estimate& light) {
 double largest_error(const RenderJob& job, const std::vector<LightCheck>& checks,
                      const std::vector<Sensor>& kinds, const std::optional<RenderTarget>& target,
                      const Estimate& picture, const GroupedSums& sums) {
+  const auto target_of = [&](const Sensor& sensor) {
+    return target.value_or(usual_target(sensor));
+  };
+  const bool are_pictures = std::ranges::all_of(
+      kinds, [&](const Sensor& sensor) { return target_of(sensor) == RenderTarget::picture; });
+  const GroupedSums steady = are_pictures ? GroupedSums() : steady_sums(job, sums);
   double largest = 0;
   std::size_t first = 0;
   for (std::size_t i = 0; i < kinds.size(); ++i) {
     const SensorPixels pixels = pixels_of(kinds[i]);
     const auto count = static_cast<std::size_t>(pixels.grid.count());
-    const RenderTarget of = target.value_or(usual_target(kinds[i]));
+    const RenderTarget of = target_of(kinds[i]);
     if (of == RenderTarget::powers) {
       largest =
-          std::max(largest, largest_error(*powers_within(kinds[i], checks[i], first, job, sums)));
+          std::max(largest, largest_error(*powers_within(kinds[i], checks[i], first, job, steady)));
     } else {
-      Estimate own = of == RenderTarget::total ? sensor_mean(job, sums, checks[i], first, pixels)
+      Estimate own = of == RenderTarget::total ? sensor_mean(job, steady, checks[i], first, pixels)
                                                : part(picture, first, count);
       bound_errors(own, of == RenderTarget::total ? PixelGrid{} : pixels.grid);
       largest = std::max(largest, error_of_light(own));
@@ -199,15 +218,22 @@ void add_means_by(const Tracer& tracer, int paths, const TimeBins& bins,
   for (std::size_t i = 0; i < means.size(); ++i) means[i] += own[i] * paths / few;
 }
 
-/// Returns the entries first .. first + count - 1 of all groups.
-GroupedSums some_of(const GroupedSums& sums, std::size_t first, std::size_t count) {
-  GroupedSums some(count);
-  for (std::size_t group = 0; group < sums.groups(); ++group)
-    some.add(sums.group_samples(group), sums.group_sums(group).subspan(first, count));
-  return some;
-}
-
 }  // namespace
+
+GroupedSums steady_sums(const RenderJob& job, const GroupedSums& sums) {
+  GroupedSums steady(job.first_steady() + job.pixels() + job.controls);
+  std::vector<Complex> of_group;
+  for (std::size_t group = 0; group < sums.groups(); ++group) {
+    const auto all = sums.group_sums(group);
+    of_group.clear();
+    for (const auto part :
+         {all.subspan(job.first_of_checks(), 2 * job.sensors),
+          all.subspan(job.first_of_steady(), job.pixels()), all.last(job.controls)})
+      of_group.insert(of_group.end(), part.begin(), part.end());
+    steady.add(sums.group_samples(group), of_group);
+  }
+  return steady;
+}
 
 std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& sums) {
   constexpr double rounding = 1e-6;  // relative error due to rounding of the end points of flights
@@ -228,7 +254,7 @@ std::vector<LightCheck> light_checks(const RenderJob& job, const GroupedSums& su
     const std::size_t off = count + i, other = 2 * count + i;
     const double mean = all.value[i].real();
     LightCheck& check = checks[i];
-    check = {{}, mean, all.value[other].real(), job.first_of_checks() + off};
+    check = {{}, mean, all.value[other].real(), off};
     const bool is_known = is_enough && check.other > 0 && all.rare[other] == 0,
                is_undersampled = all.rare[i] != 0 && all.error[i] > mean / 2;
     if (is_known && !is_undersampled) {
@@ -258,18 +284,16 @@ RenderTarget usual_target(const Sensor& sensor) {
   return pixels_of(sensor).grid.count() > 1 ? RenderTarget::picture : RenderTarget::total;
 }
 
-Estimate sensor_mean(const RenderJob& job, const GroupedSums& sums, const LightCheck& check,
+Estimate sensor_mean(const RenderJob& job, const GroupedSums& steady, const LightCheck& check,
                      std::size_t first_pixel, const SensorPixels& pixels) {
-  const auto parts = static_cast<std::size_t>(job.bins.parts());
-  const auto stride = static_cast<std::size_t>(job.bins.sums());
   const auto mean = [&](double samples, std::span<const Complex> all) {
+    const auto own = all.subspan(job.first_steady() + first_pixel);
     Complex sum = 0;
     for (std::size_t i = 0; i < static_cast<std::size_t>(pixels.grid.count()); ++i)
-      for (const Complex part : all.subspan((first_pixel + i) * stride, parts))
-        sum += pixels.share(i) * part;
+      sum += pixels.share(i) * own[i];
     return std::vector{sum / samples};
   };
-  return job.estimate_of(check, sums, mean);
+  return job.estimate_of(check, steady, mean);
 }
 
 std::string sensor_name(const RenderScene& scene, std::size_t sensor) {
@@ -317,6 +341,8 @@ void check(const RenderScene& scene, const RenderRequest& request) {
     throw InputError("gradient: requires method = forward");
   if (scene.bins.decay && request.method != RenderMethod::forward)
     throw InputError("delays: requires method = forward");
+  if (scene.bins.sound && request.method != RenderMethod::forward)
+    throw InputError("tag_wavelength: requires method = forward");
   if (!scene.parameters.empty() && request.method != RenderMethod::forward)
     throw InputError("gradient_by: requires method = forward");
   if (scene.random_phase) make_ray_field(scene.field)->frozen(0);
@@ -344,6 +370,9 @@ struct RenderBatch {
     RandomStream random = stream(Stream::render, number);
     if (!shares.empty()) tracer.add(paths, random, film, counts);
     add_checks(film, number, sums.subspan(job.first_of_checks(), 2 * job.sensors));
+    if (job.keeps_steady())
+      for (std::size_t pixel = 0; pixel < shares.size(); ++pixel)
+        sums[job.first_of_steady() + pixel] += film.steady(pixel);
     for (std::size_t i = 0; i < job.controls; ++i)
       sums[sums.size() - job.controls + i] += film.control_variates[i];
     if (map) {
@@ -391,6 +420,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.plan = described(scene, request, tracer.method) + tracers.plan().describe() +
              described_steps(scene, tracers.plan()) + described_sensors(scene) +
              described_map(scene) + (tracers.walks() ? "" : "; rays of beams alone") +
+             (tracer.is_guided ? "; paths guided to the sensors and turned about the light" : "") +
              (tracer.is_aimed ? "; lights aimed at the sensors" : "");
   job.pictures = static_cast<std::size_t>(pixels) * scene.bins.sums();
   const bool tallies_power = walks_light(tracer.method) && pixels > 0;
@@ -398,7 +428,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   if (tracer.has_control_variates) job.controls = control_variate_count;
   job.sensors = scene.sensors.size();
   job.batches.size = job.first_of_map() + (map ? sums_per_cell * cells(*scene.map) : 0) +
-                     job.controls;
+                     (job.keeps_steady() ? job.pixels() : 0) + job.controls;
   const int least =
       paths_per_batch(tracer, tracers.plan().scatters, tracers.cost_of_flight(), job.batches.size);
   const int paths =
@@ -414,19 +444,13 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   if (tracer.method == RenderMethod::path) batch.other = tracers.make(RenderMethod::bidirectional);
   job.batches.run = batch;
   job.few_of_pictures = few_of(tracer.transport->sensors);
-  const EntrySums steady_sums{static_cast<std::size_t>(pixels),
-                              static_cast<std::size_t>(scene.bins.sums()),
-                              static_cast<std::size_t>(scene.bins.parts())};
-  job.batches.relative_error = [=, layout = job, kinds = scene.sensors, cells = scene.map,
-                                steady = steady_picture(job.pictures, scene.bins),
+  job.batches.relative_error = [layout = job, kinds = scene.sensors, cells = scene.map,
                                 target = request.target](const GroupedSums& sums) {
     const std::vector<LightCheck> checks = light_checks(layout, sums);
     if (!std::ranges::all_of(checks, &LightCheck::holds))
       return std::numeric_limits<double>::infinity();
-    const double few = layout.few_of_pictures;
-    const Estimate picture = layout.controls > 0 ? layout.estimate(sums, steady, few)
-                                                        : jackknife(sums, steady_sums, few);
-    const double of_pictures = largest_error(layout, checks, kinds, target, picture, sums);
+    const double of_pictures =
+        largest_error(layout, checks, kinds, target, steady_picture(layout, sums), sums);
     return cells
                ? std::max(of_pictures, error_of_light(fluence(sums, layout.first_of_map(), *cells)))
                : of_pictures;
@@ -434,23 +458,28 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   return job;
 }
 
-std::vector<std::size_t> RenderJob::control_sums() const {
-  std::vector<std::size_t> all(controls);
-  std::iota(all.begin(), all.end(), batches.size - controls);
-  return all;
+namespace {
+
+/// Returns the indices of the last `count` of all sums.
+std::vector<std::size_t> last_of(const GroupedSums& sums, std::size_t count) {
+  std::vector<std::size_t> last(count);
+  std::iota(last.begin(), last.end(), sums.size() - count);
+  return last;
 }
 
+}  // namespace
+
 Estimate RenderJob::estimate(const GroupedSums& sums, const Estimator& theta, double few) const {
-  return controls > 0 ? controlled_jackknife(sums, theta, control_sums(), few)
+  return controls > 0 ? controlled_jackknife(sums, theta, last_of(sums, controls), few)
                       : jackknife(sums, theta, few);
 }
 
-Estimate RenderJob::estimate_of(const LightCheck& check, const GroupedSums& sums,
+Estimate RenderJob::estimate_of(const LightCheck& check, const GroupedSums& steady,
                                 const Estimator& theta) const {
-  if (!check.is_control) return estimate(sums, theta);
-  std::vector<std::size_t> all = control_sums();
+  if (!check.is_control) return estimate(steady, theta);
+  std::vector<std::size_t> all = last_of(steady, controls);
   all.push_back(check.difference);
-  return controlled_jackknife(sums, theta, all, few_of_values);
+  return controlled_jackknife(steady, theta, all, few_of_values);
 }
 
 RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {
@@ -459,7 +488,7 @@ RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) 
     return job.estimate(sums, theta, job.few_of_pictures);
   };
   RenderedPicture picture{.bins = estimate(some_sums(job, bins.count > 1 ? 1 : 0, bins.count)),
-                          .steady = estimate(steady_picture(job.pictures, bins))};
+                          .steady = steady_picture(job, sums)};
   if (bins.count == 1) return picture;
   picture.before = estimate(some_sums(job, 0, 1));
   picture.after = estimate(some_sums(job, bins.count + 1, 1));

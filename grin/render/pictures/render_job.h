@@ -21,32 +21,41 @@ struct LightCheck;
 /// The sums of a batch, with imaginary part 0, are: [pixel][TimeBins::sums], sensor after sensor;
 /// then [Termination], if light paths are traced to their ends; then TransportCounts; then the
 /// means over the pixels of each sensor, and what independent estimates of them exceed them by
-/// (LightCheck); then the sums of a map (MapKernel); and last the control variates
-/// (ControlVariates).
+/// (LightCheck); then the sums of a map (MapKernel); then the steady pictures [pixel], if a pixel
+/// has several sums; and last the control variates (ControlVariates).
 struct RenderJob {
   BatchJob batches;
   TimeBins bins;
-  std::size_t pictures = 0;          ///< number of sums of all pixels
-  bool has_energy = false;           ///< whether there are sums by Termination
-  std::size_t controls = 0;          ///< number of control variates
-  std::string plan;                  ///< method and features, as text
+  std::size_t pictures = 0;  ///< number of sums of all pixels
+  bool has_energy = false;   ///< whether there are sums by Termination
+  std::size_t controls = 0;  ///< number of control variates
+  std::string plan;          ///< method and features, as text
   std::size_t sensors = 0;
   std::size_t first_of_counts() const { return pictures + (has_energy ? EnergyBalance::size : 0); }
   std::size_t first_of_checks() const { return first_of_counts() + TransportCounts::size; }
   std::size_t first_of_map() const { return first_of_checks() + 2 * sensors; }
-  /// Indices of the sums of the control variates.
-  std::vector<std::size_t> control_sums() const;
-  /// Estimates pictures by jackknife(), with the control variates if there are any. few: effective
-  /// number of groups below which an entry is undersampled.
+  std::size_t pixels() const { return pictures / static_cast<std::size_t>(bins.sums()); }
+  bool keeps_steady() const { return bins.sums() > 1; }
+  std::size_t first_of_steady() const {
+    return keeps_steady() ? batches.size - controls - pixels() : 0;
+  }
+  /// Estimates pictures by jackknife(), with the control variates, the last of the sums, if there
+  /// are any. few: effective number of groups below which an entry is undersampled.
   Estimate estimate(const GroupedSums& sums, const Estimator& theta,
                     double few = few_of_values) const;
   /// Estimates means or powers of one sensor. Where light paths hit the sensor often enough, the
   /// difference between the two estimates of its mean (LightCheck) is a further control variate, so
   /// that the better of the two determines the error.
-  Estimate estimate_of(const LightCheck& check, const GroupedSums& sums,
+  Estimate estimate_of(const LightCheck& check, const GroupedSums& steady,
                        const Estimator& theta) const;
+  /// Index of the first pixel in steady_sums().
+  std::size_t first_steady() const { return 2 * sensors; }
   double few_of_pictures = few_of_values;
 };
+
+/// Returns those sums from which means and powers of sensors are estimated: those of LightCheck,
+/// the steady pictures and the control variates.
+GroupedSums steady_sums(const RenderJob& job, const GroupedSums& sums);
 
 /// Counters of all batches in the sums, including those of resumed runs.
 TransportCounts transport_counts(const RenderJob& job, const GroupedSums& sums);
@@ -58,7 +67,7 @@ TransportCounts transport_counts(const RenderJob& job, const GroupedSums& sums);
 /// Both are 0 if too few paths hit.
 struct LightCheck : Invariant {
   double mean = 0, other = 0;
-  std::size_t difference = 0;  ///< index of the difference in the sums of a batch
+  std::size_t difference = 0;  ///< index of the difference in steady_sums()
   /// Whether the difference is a control variate: enough paths hit the sensor, and the two means
   /// agree but differ by more than rounding.
   bool is_control = false;
@@ -73,8 +82,9 @@ std::optional<Invariant> worst_light(const std::vector<LightCheck>& checks);
 /// a sensor of one pixel, else the picture.
 RenderTarget usual_target(const Sensor& sensor);
 
-/// Returns the mean over the pixels of a sensor. first_pixel: its first pixel in the sums.
-Estimate sensor_mean(const RenderJob& job, const GroupedSums& sums, const LightCheck& check,
+/// Returns the mean over the pixels of a sensor. first_pixel: number of its first pixel; steady:
+/// steady_sums().
+Estimate sensor_mean(const RenderJob& job, const GroupedSums& steady, const LightCheck& check,
                      std::size_t first_pixel, const SensorPixels& pixels);
 
 /// Throws InputError for lights and sensors that do not fit the stage, for media in which paths

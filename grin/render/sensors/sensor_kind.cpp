@@ -70,6 +70,11 @@ DatasetTable sensor_table(const SensorWords& words) {
       "mean momentum transfer of the sensor's light: sum over collisions of 1 - cos");
   add("correlation_gradient", "body delay", "1",
       "derivative of mean_correlation by the diffusion factor of a body");
+  add("image_sideband", "sideband " + axes, "1",
+      "fraction of the pixel's light that the sound shifts by this number of its frequencies");
+  add("mean_sideband", "sideband", "1", "the same fraction of the sensor's light");
+  add("mean_modulation", "", "1",
+      "mean square of the amplitude, in rad, by which the sound modulates the phases of paths");
   return table;
 }
 

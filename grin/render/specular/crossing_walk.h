@@ -95,7 +95,7 @@ class Segments {
   double transmitted(Part part, const RayState& start, double length, RandomStream& random) const {
     const PartMedium& medium = stage_.medium(part);
     if (space_.is_curved(part)) {
-      if (!medium.grid()) return transmittance(medium.mu_t(), length);
+      if (!medium.varies()) return transmittance(medium.mu_t(), length);
       return space_.field_->ratio_tracked(space_.segment_domain(), start, length, random);
     }
     const Vec3 d = start.v.normalized();

@@ -40,13 +40,13 @@ void check_path_lengths(const ScatteringMedium& medium, const Surface& within, d
 /// frequent where the density is low, or beyond the grid, as where it is largest.
 void check_flights(const ScatteringMedium& medium, const Surface& within,
                    const std::string& prefix) {
-  if (!medium.density) return;
+  if (medium.is_uniform()) return;
   constexpr double most = 1e6;
   const auto [low, high] = bounds(within);
-  const double collisions = medium.mu_t() * medium.density->largest() * (high - low).norm();
+  const double collisions = medium.mu_t() * medium.largest_relative() * (high - low).norm();
   if (collisions <= most) return;
   std::ostringstream text;
-  text << "is too dense: a flight through its density grid may have " << collisions
+  text << "is too dense: a flight through its grid may have " << collisions
        << " tentative collisions, and more than " << most << " take too long";
   const bool scatters = medium.mu_s >= medium.mu_a;
   throw InputError(prefix + (scatters ? "mu_s" : "mu_a"), scatters ? medium.mu_s : medium.mu_a,

@@ -20,7 +20,7 @@ template <class End>
 EndDirection leaving(const Transport& transport, const End& end, const PathVertex& vertex,
                      const Vec3& direction) {
   if (vertex.end) return end.towards(*vertex.end, direction);
-  const double p = transport.medium(vertex.point.part).phase.density(vertex.arrived.dot(direction));
+  const double p = transport.medium(vertex.point).phase.density(vertex.arrived.dot(direction));
   return {direction, p, p};
 }
 

@@ -22,8 +22,8 @@ std::optional<Part> scattering_part(const Stage& stage) {
 
 /// Whether the modes of the medium are known (CaseMode).
 bool has_modes(const ScatteringMedium& medium) {
-  return !medium.density && (std::holds_alternative<IsotropicPhase>(medium.phase.which) ||
-                             std::holds_alternative<HgPhase>(medium.phase.which));
+  return medium.is_uniform() && (std::holds_alternative<IsotropicPhase>(medium.phase.which) ||
+                                 std::holds_alternative<HgPhase>(medium.phase.which));
 }
 
 /// Returns the axis of a box along its shortest edge, if that is unique; else `towards`.
@@ -64,9 +64,23 @@ ControlVariates::ControlVariates(const Stage& stage, Part part, const Vec3& axis
   const Box box = bounds(stage.surface(part));
   centre_ = (box.low + box.high) / 2;
   thickness_ = axis.cwiseAbs().dot(box.high - box.low);
+  tabulate();
   if (stage.parts() == 1) return;
   inside_excess_ = stage.excess_in(part);
   outside_excess_ = stage.excess_in(1 - part);
+}
+
+/// Tabulates the cubics through four values of the mode in each interval.
+void ControlVariates::tabulate() {
+  constexpr int intervals = 512;
+  for (int i = 0; i < intervals; ++i) {
+    double f[4];
+    for (int k = 0; k < 4; ++k) f[k] = mode_.angle(2 * (i + k / 3.0) / intervals - 1).scattered[0];
+    const double first = f[1] - f[0], second = f[2] - 2 * f[1] + f[0],
+                 third = f[3] - 3 * f[2] + 3 * f[1] - f[0];
+    cubics_.push_back(
+        {f[0], 3 * (first - second / 2 + third / 3), 4.5 * (second - third), 4.5 * third});
+  }
 }
 
 /// Compares the largest value of each mode in the part with its smallest value where light starts.
@@ -83,10 +97,11 @@ void ControlVariates::find_growth(std::span<const PathPoint> starts) {
   has_decaying_ = mode_.kappa() > 0 && rate * (high + thickness_ / 2) <= little;
 }
 
-ControlVariates::Departure ControlVariates::add_flight(const Flight& flight, const FlightLog& log,
-                                                       const Departure& from, double before,
-                                                       double after, Sums& sums) const {
-  Departure now = from;
+ControlVariates::Arrival ControlVariates::add_flight(const Flight& flight, const FlightLog& log,
+                                                     const Departure& from, double before,
+                                                     double after, Sums& sums) const {
+  Arrival end{from};
+  Departure& now = end.from;
   double weight = before;
   for (std::size_t i = 0; i < log.size(); ++i) {
     const FlightSegment& segment = log[i];
@@ -96,6 +111,10 @@ ControlVariates::Departure ControlVariates::add_flight(const Flight& flight, con
       const bool collides = is_last && flight.end == Flight::End::collision;
       const Modes there =
           collides ? arriving(grown, now.angle) : departing(part_, grown, now.angle);
+      if (collides) {
+        end.growth = grown;
+        end.arriving = there;
+      }
       const Modes change = after * segment.weight * there - weight * now.modes;
       sums[0] += change[0];
       sums[1] += change[1];
@@ -104,7 +123,7 @@ ControlVariates::Departure ControlVariates::add_flight(const Flight& flight, con
     weight = after * log[i + 1].weight;
     now = cross(segment, log[i + 1], weight, sums);
   }
-  return now;
+  return end;
 }
 
 ControlVariates::Departure ControlVariates::cross(const FlightSegment& from,

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "grin/media/scattering/diffusion_rate.h"
 #include "grin/render/flights/space.h"
@@ -33,9 +35,9 @@ class ControlVariates {
   /// Thickness of the part along the axis, in mean free paths.
   double depth() const { return mu_t_ * thickness_; }
   double albedo() const { return albedo_; }
-  /// Whether paths that are not split sample the growing mode well: it grows little from where light
-  /// starts. If not, the few paths of high growth may be missing, and the sum seems to have another
-  /// mean than 0.
+  /// Whether paths that are not split sample the growing mode well: it grows little from where
+  /// light starts. If not, the few paths of high growth may be missing, and the sum seems to have
+  /// another mean than 0.
   bool grows_little() const { return grows_little_; }
 
   /// Returns the growth of the modes at a position (CaseMode::growth).
@@ -43,7 +45,10 @@ class ControlVariates {
     const double z = mu_t_ * axis_.dot(x - centre_), grown = mode_.growth(z);
     return {grown, has_decaying_ ? 1 / grown : 0};
   }
-  CaseMode::Angle angle(const Vec3& direction) const { return mode_.angle(axis_.dot(direction)); }
+  CaseMode::Angle angle(const Vec3& direction) const {
+    const double mu = std::clamp(axis_.dot(direction), -1.0, 1.0);
+    return {mu, {scattered(mu), scattered(-mu)}};
+  }
   /// Returns the modes before a free flight, in a part.
   Modes departing(Part part, const Modes& growth, const CaseMode::Angle& along) const {
     if (part != part_) return {0, 0};
@@ -65,20 +70,39 @@ class ControlVariates {
     const CaseMode::Angle along = angle(direction);
     return {along, departing(part, growth, along)};
   }
-  /// Adds the changes during a flight. before: weight before the flight; after: weight that a flight
-  /// has if it loses nothing in parts that absorb without scattering. Returns the departure of the
-  /// last segment.
-  Departure add_flight(const Flight& flight, const FlightLog& log, const Departure& from,
-                       double before, double after, Sums& sums) const;
+  /// End of a flight: the departure of its last segment and, at a collision, growth() and
+  /// arriving() there.
+  struct Arrival {
+    Departure from{};
+    Modes growth = {0, 0}, arriving = {0, 0};
+  };
+  /// Adds the changes during a flight. before: weight before the flight; after: weight that a
+  /// flight has if it loses nothing in parts that absorb without scattering.
+  Arrival add_flight(const Flight& flight, const FlightLog& log, const Departure& from,
+                     double before, double after, Sums& sums) const;
 
  private:
   ControlVariates(const Stage& stage, Part part, const Vec3& axis);
   void find_growth(std::span<const PathPoint> starts);
+  void tabulate();
 
-  /// Adds the changes at the surface between two segments of a flight; returns the departure from it.
-  Departure cross(const FlightSegment& from, const FlightSegment& to, double weight, Sums& sums) const;
+  /// Returns CaseMode::Angle::scattered[0] for a cosine, by cubic interpolation with an error below
+  /// 1e-7.
+  double scattered(double mu) const {
+    const double at = (mu + 1) / 2 * static_cast<double>(cubics_.size());
+    const auto i = std::min(static_cast<std::size_t>(at), cubics_.size() - 1);
+    const double t = at - static_cast<double>(i);
+    const std::array<double, 4>& c = cubics_[i];
+    return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
+  }
+
+  /// Adds the changes at the surface between two segments of a flight; returns the departure from
+  /// it.
+  Departure cross(const FlightSegment& from, const FlightSegment& to, double weight,
+                  Sums& sums) const;
 
   CaseMode mode_;
+  std::vector<std::array<double, 4>> cubics_;  ///< coefficients in equal intervals of the cosine
   Part part_;
   double outside_excess_ = 0, inside_excess_ = 0;  ///< index - 1 around the part, and in it
   Vec3 axis_, centre_;
@@ -107,10 +131,8 @@ class PathControls {
   }
   /// Adds a flight. before, after: as in ControlVariates::add_flight().
   void flew(double before, double after, const Flight& flight) {
-    const auto last = of_.add_flight(flight, log_, from_, before, after, sums_);
-    if (flight.end != Flight::End::collision) return;
-    at_.growth = of_.growth(flight.point.x);
-    at_.arriving = of_.arriving(at_.growth, last.angle) / of_.albedo();
+    const auto end = of_.add_flight(flight, log_, from_, before, after, sums_);
+    at_ = {end.growth, end.arriving / of_.albedo()};
   }
   void turned(const PathVertex& here, const Vec3& direction) {
     from_ = of_.departure(here.point.part, at_.growth, direction);

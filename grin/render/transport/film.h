@@ -3,12 +3,14 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <complex>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "core/numbers/complex.h"
 #include "grin/render/transport/field_decay.h"
+#include "grin/render/transport/tagging_sound.h"
 
 namespace flatspeckle::grin {
 
@@ -67,6 +69,8 @@ struct TimeBins {
   /// times the decay of each path; the momentum transfer in each part, times the light; and the
   /// derivatives after each delay by the diffusion in each part, [part][delay].
   std::shared_ptr<const FieldDecay> decay = {};
+  /// If set, the sums of the sidebands follow (sideband_sums).
+  std::shared_ptr<const TaggingSound> sound = {};
 
   bool keeps_paths() const { return count > 1 || moments; }
   /// Number of intensity sums of a pixel: one before the bins, the bins, and one after them; or 1
@@ -79,7 +83,8 @@ struct TimeBins {
   int decay_parts() const { return decay ? static_cast<int>(decay->parts()) : 0; }
   int first_transfer() const { return first_decay() + delays() * parts(); }
   int first_decay_derivative() const { return first_transfer() + decay_parts(); }
-  int sums() const { return first_decay_derivative() + decay_parts() * delays(); }
+  int first_sideband() const { return first_decay_derivative() + decay_parts() * delays(); }
+  int sums() const { return first_sideband() + (sound ? sideband_sums : 0); }
 };
 
 /// The sensor of a pixel, and the pixel's share of the sensor area.
@@ -117,14 +122,17 @@ class Film {
     const PixelShare& of = shares[static_cast<std::size_t>(pixel)];
     hits[of.sensor] += of.share * value;
   }
-  /// Adds the light of all pixels, summed over the bins, to the mean of each sensor.
+  /// Adds the light of all pixels to the mean of each sensor.
   void add_means(std::span<double> means) const {
     for (std::size_t pixel = 0; pixel < shares.size(); ++pixel)
-      for (int part = 0; part < bins_.parts(); ++part)
-        means[shares[pixel].sensor] +=
-            shares[pixel].share *
-            sums_[pixel * static_cast<std::size_t>(per_pixel_) + static_cast<std::size_t>(part)]
-                .real();
+      means[shares[pixel].sensor] += shares[pixel].share * steady(pixel);
+  }
+  /// Returns the light of a pixel, summed over the bins.
+  double steady(std::size_t pixel) const {
+    double light = 0;
+    for (int part = 0; part < bins_.parts(); ++part)
+      light += sums_of(static_cast<int>(pixel))[part].real();
+    return light;
   }
 
   std::span<const PixelShare> shares;  ///< sensor and share of its area, for each pixel
@@ -141,6 +149,8 @@ class Film {
   }
 
   bool has_decay() const { return bins_.decay != nullptr; }
+  /// Requires has_decay().
+  const FieldDecay& decay() const { return *bins_.decay; }
   /// Adds a contribution to the field correlation.
   void add_decay(int pixel, double value, double optical_path, const MomentumTransfer& transfer) {
     const FieldDecay& decay = *bins_.decay;
@@ -157,12 +167,26 @@ class Film {
     }
   }
 
+  const TaggingSound* sound() const { return bins_.sound.get(); }
+  /// Adds a contribution of a path with the modulation m to the sidebands. The power in sideband n
+  /// is the square of the Bessel function J_n(|m|), on both sides of the unshifted light.
+  void add_sidebands(int pixel, double value, std::complex<double> m) {
+    if (pixel < 0 || !std::isfinite(value)) return;
+    Complex* const own = sums_of(pixel) + bins_.first_sideband();
+    const double depth = std::abs(m);
+    for (int n = 0; n < sidebands; ++n) {
+      const double bessel = ::jn(n, depth);
+      own[n] += value * bessel * bessel * (n > 0 ? 2 : 1);
+    }
+    own[sidebands] += value * depth * depth;
+  }
+
   EnergyBalance energy;  ///< power of light paths that are traced to their ends
   /// Sums of the control variates over the light paths that are traced to their ends.
   std::array<double, control_variate_count> control_variates{};
 
  private:
-  Complex* sums_of(int pixel) {
+  Complex* sums_of(int pixel) const {
     return sums_.data() + static_cast<std::size_t>(pixel) * static_cast<std::size_t>(per_pixel_);
   }
   /// Adds a contribution to the intensity sums that begin at `own`.

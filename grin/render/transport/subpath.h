@@ -38,11 +38,12 @@ void walk(const Transport& transport, const Space& space, const Choice& choice,
   // light tracing needs MIS densities only after the last flight
   const bool weighs_all = is_short || !transport.strategies.short_sensor;
   const auto phase = [&]() -> const auto& {
-    return transport.medium(here.point.part).phase;
+    return transport.medium(here.point).phase;
   };
   // Flies to the next collision; returns false if the path ends.
   const auto fly = [&] {
-    const Flight flight = tally.fly(space, here, direction, random, tree.log_gradient(), tree.log());
+    const Flight flight =
+        tally.fly(space, here, direction, random, tree.log_gradient(), tree.log());
     counts.add_flight(flight.end == Flight::End::lost);
     const double before = here.weight;
     if (flight.bias_weight != 1) {
@@ -75,7 +76,7 @@ void walk(const Transport& transport, const Space& space, const Choice& choice,
       tally.cut(here, flight);
       return false;
     }
-    const ScatteringMedium& medium = transport.medium(next.point.part);
+    const ScatteringMedium& medium = transport.medium(next.point);
     if (absorbs) next.weight *= medium.albedo();
     collided(next);
     if (absorbs && !tree.collide(here, flight, medium, next, random, counts, tally)) return false;

@@ -41,6 +41,10 @@ struct Transport {
   }
 
   const ScatteringMedium& medium(Part part) const { return stage.medium_in(part); }
+  /// Returns the medium at a point, which may be that of a label.
+  const ScatteringMedium& medium(const PathPoint& at) const {
+    return stage.medium_in(at.part).at(at.x);
+  }
 };
 
 }  // namespace flatspeckle::grin

@@ -269,7 +269,7 @@ void add_derivatives(RenderScene& scene) {
   const auto refuse = [](const std::string& why) { throw InputError("gradient: " + why); };
   if (!scene.stage.bodies.empty()) refuse("the stage must have a single medium: leave out bodies");
   const ScatteringMedium& medium = scene.stage.medium;
-  if (medium.density) refuse("the medium must be uniform: leave out density");
+  if (!medium.is_uniform()) refuse("the medium must be uniform: leave out density and labels");
   if (!(medium.mu_t() > 0)) refuse("the stage must have a medium: mu_s or mu_a must be positive");
   scene.bins.derivatives = static_cast<int>(parameters_of(medium).size());
 }
@@ -281,7 +281,8 @@ void add_motion(const RenderValues& values, const FieldUse& use, RenderScene& sc
     refuse("the field must bend rays; sound requires a nonzero amplitude");
   if (scene.random_phase) refuse("the sound must have a fixed phase: leave out random_phase");
   if (!scene.stage.bodies.empty()) refuse("the stage must have a single medium: leave out bodies");
-  if (scene.stage.medium.density) refuse("the medium must be uniform: leave out density");
+  if (!scene.stage.medium.is_uniform())
+    refuse("the medium must be uniform: leave out density and labels");
   const auto* box = std::get_if<Box>(&scene.stage.boundary);
   if (!box) refuse("the stage must be a box");
   for (const Sensor& sensor : scene.sensors) SensorEdges(sensor, *box, 0);
@@ -419,6 +420,8 @@ void add_keys(Keys& keys, RenderValues& values) {
            "to the smallest (default: 1)")
       .not_negative()
       .only_of("delays");
+  add_keys(keys, values.tagging);
+  keys.group("Picture");
   keys.add("length_unit", values.length_unit,
            "Unit of length, such as um or 1e-6, for the frequency of sound and the times of "
            "path_bins")
@@ -449,8 +452,9 @@ void add_keys(Keys& keys, RenderRequestValues& values) {
 
 RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
   const bool any_phase = keys.read(values.random_phase);
-  const auto [stage, field, index, use] =
+  auto [stage, field, index, use] =
       make_stage(keys, values.stage, values.field, any_phase, keys.read(values.length_unit));
+  const auto sound = make_tagging(keys, values.tagging, stage.field_part(), field);
   const Box box = bounds(stage.boundary);
   const double size = (box.high - box.low).norm();
   const AnyIndexField heard = without_silence(field, stage);
@@ -469,6 +473,7 @@ RenderScene make_render_scene(const Keys& keys, const RenderValues& values) {
                     .leapfrogs = steps.leapfrogs,
                     .index = index,
                     .is_silent = has_sound(field.field) && heard.index() != field.field.index()};
+  scene.bins.sound = sound;
   if (keys.read(values.gradient)) add_derivatives(scene);
   if (!keys.read(values.gradient_by).empty()) add_motion(values, use, scene);
   if (!keys.read(values.delays).empty()) add_decay(keys, values, scene);

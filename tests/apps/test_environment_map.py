@@ -1,0 +1,96 @@
+"""Light from a picture of all directions: its directions, and powers by every method."""
+
+import unittest
+
+import numpy as np
+
+from renders import BOX, RenderTest
+
+ROWS, COLUMNS = 8, 16
+
+
+def directions():
+    """Unit vectors to the middles of the pixels: centre z, up y, columns to the right (-x)."""
+    angle = np.pi * (np.arange(ROWS)[:, None] + 0.5) / ROWS
+    azimuth = 2 * np.pi * ((np.arange(COLUMNS)[None, :] + 0.5) / COLUMNS - 0.5)
+    return np.stack(np.broadcast_arrays(-np.sin(angle) * np.sin(azimuth), np.cos(angle),
+                                        np.sin(angle) * np.cos(azimuth)), axis=-1)
+
+
+def sky():
+    """A picture with a bright pixel: every pixel has another value."""
+    values = 0.5 + np.arange(ROWS * COLUMNS).reshape(ROWS, COLUMNS) / 100
+    values[2, 11] = 40
+    return values
+
+
+def write_pfm(path, values):
+    with open(path, "wb") as file:
+        file.write(f"Pf\n{values.shape[1]} {values.shape[0]}\n-1.0\n".encode())
+        file.write(values[::-1].astype("<f4").tobytes())
+
+
+class EnvironmentMap(RenderTest):
+    def setUp(self):
+        super().setUp()
+        self.values = sky()
+        np.save(self.folder / "sky.npy", self.values)
+
+    def test_directions(self):
+        """A narrow camera in an empty stage measures the pixel that it looks at, without noise."""
+        for row, column in ((2, 11), (0, 3), (5, 15), (7, 8), (3, 0)):
+            found = self.render(**BOX, environment_map="sky.npy", environment=2, sensor="camera",
+                                sensor_at=[0.1, 0, 2], sensor_direction=list(directions()[row, column]),
+                                sensor_up=[0.3, 0.2, 1], field_of_view=0.05, pixels=[2, 2],
+                                method="path", samples=400)
+            np.testing.assert_allclose(found["image"], 2 * self.values[row, column], rtol=1e-12)
+
+    def test_turned_and_as_pfm(self):
+        write_pfm(self.folder / "sky.pfm", self.values)
+        found = self.render(**BOX, environment_map="sky.pfm", environment_centre=[1, 0, 0],
+                            environment_up=[0, 0, 1], sensor="camera", sensor_at=[0.1, 0, 2],
+                            sensor_direction=[np.cos(0.2), -np.sin(0.2), 0.2], sensor_up=[0, 0, 1],
+                            field_of_view=0.02, pixels=[1, 1], method="path", samples=400)
+        np.testing.assert_allclose(found["image"], self.values[3, 8], rtol=1e-6)
+
+    def test_powers_by_every_method(self):
+        """The irradiance of an area in scattering fog: rays of an own sum are the reference where nothing
+        scatters, path tracing, which never samples the map, where the fog scatters."""
+        area = {"sensor": "area", "sensor_at": [0, 0, 4], "sensor_size": [1, 0.8], "pixels": [1, 1],
+                "samples": 60000}
+        fine = np.pi * (np.arange(400)[:, None] + 0.5) / 400
+        weights = np.sin(fine) * (np.pi / 400) * (2 * np.pi / 800)
+        azimuth = 2 * np.pi * ((np.arange(800)[None, :] + 0.5) / 800 - 0.5)
+        arriving = np.maximum(-np.sin(fine) * np.cos(azimuth), 0)  # cosine at the face z = 4
+        clear = np.sum(np.kron(self.values, np.ones((50, 50))) * arriving * weights)
+        fog = {}
+        for method in ("path", "light", "bidirectional", "forward"):
+            with self.subTest(method=method):
+                found = self.render(**BOX, **area, environment_map="sky.npy", method=method)
+                self.assertLess(abs(found["mean"] - clear), 4 * found["mean_error"] + 1e-3 * clear)
+                found = self.render(**BOX, **area, environment_map="sky.npy", method=method, mu_s=0.5)
+                fog[method] = found["mean"], found["mean_error"]
+                self.assertLess(found["mean_error"], 0.05 * found["mean"])
+        for method, (mean, error) in fog.items():
+            self.assertLess(abs(mean - fog["path"][0]), 4 * np.hypot(error, fog["path"][1]), method)
+
+    def test_refused(self):
+        for values, words in ((np.zeros((2, 2)), "some above 0"), (-self.values, "from 0 on"),
+                              (np.ones((3, 2, 2)), "one picture")):
+            np.save(self.folder / "bad.npy", values)
+            done = self.call("render", status=2, **BOX, environment_map="bad.npy", sensor="polar",
+                             sensor_direction=[0, 0, 1], rings=2, samples=100, out="bad.h5")
+            self.assertIn("environment_map", done.stderr)
+            self.assertIn(words, done.stderr)
+        (self.folder / "bad.pfm").write_bytes(b"Pf\n4 4\n-1.0\n123")
+        for keys, words in (({"environment_map": "bad.pfm"}, "4 bytes"),
+                            ({"environment_map": "sky.npy", "environment_up": [0, 0, 2]}, "parallel"),
+                            ({"environment": 1, "environment_up": [1, 0, 0]}, "environment_map")):
+            done = self.call("render", status=2, **BOX, **keys, sensor="polar",
+                             sensor_direction=[0, 0, 1], rings=2, samples=100, out="bad.h5")
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+            self.assertIn(words, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
