@@ -7,6 +7,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <malloc.h>
 #include <new>
 #include <poll.h>
 #include <string>
@@ -27,6 +28,17 @@ namespace {
 
 using namespace flatspeckle;
 using namespace flatspeckle::apps;
+
+/// Lets the process keep the memory that it frees. By default, temporaries of some megabytes are
+/// returned to the system and fetched again, which takes a third of the time of `reflectance` and
+/// a quarter of that of `matrix`.
+void keep_freed_memory() {
+#ifdef M_TRIM_THRESHOLD
+  constexpr int largest_kept = 1 << 29, largest_on_heap = 1 << 25;
+  mallopt(M_TRIM_THRESHOLD, largest_kept);
+  mallopt(M_MMAP_THRESHOLD, largest_on_heap);
+#endif
+}
 
 /// Returns the name of the OpenBLAS kernel that suits this processor if OpenBLAS has chosen its
 /// oldest kernel instead; otherwise nullptr.
@@ -168,6 +180,7 @@ int with_written_output(const CallEnd& end) {
 
 int main(int argc, char** argv) {
   prepare_blas(argv);
+  keep_freed_memory();
   set_signals();
   try {
     return with_written_output(run({argv, argv + argc}));

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <optional>
 #include <sstream>
+#include <vector>
 
 #include "apps/command/experiment.h"
 #include "apps/flatland/solver_keys.h"
@@ -29,6 +30,13 @@ class MatrixExperiment : public Experiment {
     keys.add("numerical_aperture", numerical_aperture_,
              "Largest |sin(angle)| of the channels of the filtered matrix, on both sides")
         .positive();
+    keys.add("segments", segments_,
+             "Numbers of segments (groups of neighbouring channels) with one phase each, for "
+             "focusing")
+        .from(1, 1e6);
+    keys.add("conjugated_fraction", conjugated_fraction_,
+             "Parts of the back channels that record light and return it by phase conjugation")
+        .positive_to(1);
     add_solver_keys(keys, cell_);
     add_run_keys(keys, run_);
   }
@@ -40,6 +48,8 @@ class MatrixExperiment : public Experiment {
     settings.shifts = static_cast<std::size_t>(keys.read(shifts_));
     settings.eigenvalue_bins = static_cast<std::size_t>(keys.read(bins_));
     settings.numerical_aperture = keys.read(numerical_aperture_);
+    settings.segments = keys.read(segments_);
+    settings.conjugated_fraction = keys.read(conjugated_fraction_);
     settings.options = solve_options(keys, cell_);
     scene_ = make_scene(keys, spec_);
     if (scene_->domain.kind != Domain::Kind::box)
@@ -75,7 +85,7 @@ class MatrixExperiment : public Experiment {
     line("C2", found.channel_variance);
     line("C3", found.relative_variance);
     char theory[40];
-    std::snprintf(theory, sizeof theory, " (Gaussian fields: %.4g)", found.focus_theory);
+    std::snprintf(theory, sizeof theory, " (Gaussian fields: %.4g)", found.focus_theory.front());
     line("enhancement of focusing", found.focus, theory);
     std::printf("largest errors: power %.1e, reciprocity %.1e\n", found.power.off,
                 found.reciprocity.off);
@@ -85,6 +95,8 @@ class MatrixExperiment : public Experiment {
   SolverKeys cell_{.tolerance = 1e-8};
   std::int64_t shifts_ = 5, bins_ = 20;
   double numerical_aperture_ = 1;
+  std::vector<std::int64_t> segments_;
+  std::vector<double> conjugated_fraction_;
   std::optional<Scene> scene_;
   wave::MatrixJob job_;
 };

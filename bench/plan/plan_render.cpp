@@ -168,7 +168,7 @@ TwoKernels light_to_small_disk() {
 /// Compares light paths to a disk at a distance in tissue. The specialised kernel guides them and
 /// turns them about the beam.
 TwoKernels light_to_far_disk() {
-  return forward_light(tissue_disk(20));
+  return forward_light(tissue_disk(8));
 }
 
 /// Compares powers with and without their derivatives with respect to the amplitude of the sound.
@@ -254,7 +254,7 @@ std::vector<PlanCase> render_plan_cases() {
                       sample, rays_alone),
       case_of_samples({"render", "paths past a small sensor", "guide of sound in tissue", ""},
                       other, error, light_to_small_disk),
-      case_of_samples({"render", "paths past a far sensor", "disk at 20 mm in tissue", ""}, other,
+      case_of_samples({"render", "paths past a far sensor", "disk at 8 mm in tissue", ""}, other,
                       error, light_to_far_disk),
       case_of_samples({"render", "derivatives by the field", "guide of sound in tissue", "path"},
                       same, sample, powers_alone),

@@ -185,7 +185,7 @@ RUNS = {
     "matrices_fast": ("matrix", {"width": 3.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2, "shifts": 1, "samples": 2,
                                  "solver": "fast"}),
     "matrices": ("matrix", {"width": 9.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2, "shifts": 3, "samples": 4,
-                            "numerical_aperture": 0.5}),
+                            "numerical_aperture": 0.5, "segments": [2, 6], "conjugated_fraction": [0.5, 1]}),
     "motif": ("solve", {"placement": "disks.csv", "scatterer": "tm", "t_matrix_gap": 3}),
     "solve_copies": ("solve", {"placement": "places.csv", "cluster": "motif.h5", **FAR}),
     "reflectance": ("reflectance", {"layers": "tissue.csv", "medium_index": 1.4, "distances": [5, 10], "ring_width": 1,

@@ -60,7 +60,8 @@ class OnePlacement(ProgramTest):
 
 class Ensemble(ProgramTest):
     def test_sums_agree(self):
-        self.call("matrix", **CELL, samples=6, shifts=3, numerical_aperture=0.5, out="matrix.h5")
+        self.call("matrix", **CELL, samples=6, shifts=3, numerical_aperture=0.5, segments=[1, 5], conjugated_fraction=[0.3, 1],
+                  out="matrix.h5")
         found = datasets(self.folder / "matrix.h5")
         np.testing.assert_allclose(found["transmittance"].sum(), found["conductance"])
         np.testing.assert_allclose(found["transmittance"] + found["reflectance"], 1, atol=1e-6)
@@ -69,11 +70,16 @@ class Ensemble(ProgramTest):
         np.testing.assert_allclose(found["filtered_eigenvalue_count"].sum(), kept)
         np.testing.assert_allclose(found["filtered_law_count"].sum(), kept)
         np.testing.assert_allclose(found["tilt_correlation"][0], 1)
+        np.testing.assert_allclose(found["segment_enhancement"][0], 1)
+        self.assertTrue(np.all(found["conjugation_peak"] < 1))
+        np.testing.assert_allclose(found["conjugated_fraction"], [6 / 19, 1])
         self.assertLessEqual(found["tilt_correlation"].max(), 1 + 1e-12)
 
     def test_refused(self):
         for keys, message in (({"shifts": 9}, "shifts = 9: must be less than half"),
                               ({"numerical_aperture": 0.01, "period_phase": 1}, "numerical_aperture = 0.01: must be larger"),
+                              ({"segments": [4, 20]}, "segments = 20: must not exceed the number of channels, 19"),
+                              ({"conjugated_fraction": 1.1}, "conjugated_fraction = 1.1: must be"),
                               ({"domain": "slab", "count": None, "width": None, "density": 0.1}, "domain"),
                               ({"width": 0.5, "count": 1}, "fewer than two channels")):
             self.assertIn(message, self.call("matrix", **{**CELL, **keys}, samples=2, out="no.h5", status=2).stderr)

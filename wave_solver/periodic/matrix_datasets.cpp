@@ -1,3 +1,4 @@
+#include <span>
 #include <vector>
 
 #include "core/result/result_group.h"
@@ -38,6 +39,18 @@ const DatasetTable matrix_table{
      {"focus_enhancement", Data::estimate, "", "1",
       "enhancement of the intensity in a channel by phases of all light channels"},
      {"focus_theory", Data::real, "", "1", "focus_enhancement for independent Gaussian amplitudes"},
+     {"segments", Data::scale, "", "1",
+      "number of segments, groups of neighbouring light channels"},
+     {"segment_enhancement", Data::estimate, "segments", "1",
+      "focus_enhancement by one phase for each segment"},
+     {"segment_theory", Data::real, "segments", "1",
+      "segment_enhancement for independent Gaussian amplitudes"},
+     {"conjugated_fraction", Data::scale, "", "1",
+      "part of the channels at the back that is recorded and phase-conjugated"},
+     {"conjugation_peak", Data::estimate, "conjugated_fraction", "1",
+      "part of the transmitted conjugated light that returns to the original channel"},
+     {"conjugation_theory", Data::real, "conjugated_fraction", "1",
+      "conjugation_peak of a lossless diffusive slab, by the bimodal law"},
      {"invariants/power", Data::invariant, "", "1",
       "mean over placements of the largest deviation from conservation of power"},
      {"invariants/reciprocity", Data::invariant, "", "1",
@@ -75,7 +88,18 @@ void write_statistics(ResultFile& file, const MatrixJob& job, const MatrixStatis
   root.put("normal_tilt_correlation", found.normal_correlation);
   root.put("open_tilt_correlation", found.open_correlation);
   root.put("focus_enhancement", found.focus);
-  root.put("focus_theory", found.focus_theory);
+  root.put("focus_theory", found.focus_theory.front());
+  if (!job.settings.segments.empty()) {
+    root.put("segments", column(job.settings.segments,
+                                [](std::int64_t number) { return static_cast<double>(number); }));
+    root.put("segment_enhancement", found.segment_focus);
+    root.put("segment_theory", std::span(found.focus_theory).subspan(1));
+  }
+  if (!found.recorded.empty()) {
+    root.put("conjugated_fraction", found.recorded);
+    root.put("conjugation_peak", found.conjugation);
+    root.put("conjugation_theory", found.conjugation_theory);
+  }
   root.check("invariants/power", found.power);
   root.check("invariants/reciprocity", found.reciprocity);
   if (found.unit_cell.limit > 0) root.check("invariants/unit_cell", found.unit_cell);

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include "core/error.h"
 #include "core/numbers/random.h"
 #include "flatland/scene/periodic_placement.h"
 #include "wave_solver/dense/blas.h"
+#include "wave_solver/periodic/shaped_light.h"
 
 namespace flatspeckle::wave {
 
@@ -19,16 +19,23 @@ constexpr std::size_t correlations = 3;
 // Places of the sums of a batch. Correlations are [kind][shift][numerator, both denominators].
 struct MatrixSums {
   MatrixSums(const std::vector<CellChannel>& channels, const MatrixSettings& settings)
-      : n(channels.size()), bins(settings.eigenvalue_bins), shifts(settings.shifts + 1) {
+      : n(channels.size()),
+        bins(settings.eigenvalue_bins),
+        shifts(settings.shifts + 1),
+        segments{n} {
+    for (const std::int64_t number : settings.segments)
+      segments.push_back(static_cast<std::size_t>(number));
+    for (const double fraction : settings.conjugated_fraction)
+      recorded.push_back(recorded_channels(fraction, n));
     for (std::size_t a = 0; a < n; ++a) {
       if (std::abs(channels[a].sine) > settings.numerical_aperture) continue;
       if (kept++ == 0) first_kept = a;
     }
   }
 
-  static constexpr std::size_t g = 0, g_squared = 1, largest = 2, focused = 3, power_error = 4,
-                               reciprocity_error = 5, unit_cell_error = 6, unit_cell_limit = 7,
-                               reflected = 8;
+  static constexpr std::size_t g = 0, g_squared = 1, largest = 2, power_error = 3,
+                               reciprocity_error = 4, unit_cell_error = 5, unit_cell_limit = 6,
+                               reflected = 7;
   std::size_t transmitted() const { return reflected + n; }
   std::size_t squares() const { return transmitted() + n; }
   std::size_t eigenvalues() const { return squares() + n; }
@@ -36,9 +43,13 @@ struct MatrixSums {
   std::size_t correlation(std::size_t kind, std::size_t shift) const {
     return filtered() + bins + 3 * (kind * shifts + shift);
   }
-  std::size_t size() const { return correlation(correlations, 0); }
+  std::size_t focused(std::size_t i) const { return correlation(correlations, 0) + 2 * i; }
+  std::size_t conjugated(std::size_t i) const { return focused(segments.size()) + 2 * i; }
+  std::size_t size() const { return conjugated(recorded.size()); }
 
   std::size_t n, bins, shifts;
+  std::vector<std::size_t> segments;     // numbers of segments: the first is n
+  std::vector<std::size_t> recorded;     // numbers of channels that are recorded and conjugated
   std::size_t first_kept = 0, kept = 0;  // channels within the numerical aperture
 };
 
@@ -102,13 +113,11 @@ void add_matrix(const MatrixSums& places, const ScatteringMatrix& found,
   const auto r = found.quarter(false, false);
   for (std::size_t i = 0; i < t.size(); ++i) t[i] *= to_back[i % n];
   double g = 0;
-  std::vector<double> amplitudes(n);
   for (std::size_t a = 0; a < n; ++a) {
     double transmitted = 0;
     for (std::size_t b = 0; b < n; ++b) {
       transmitted += std::norm(t[b + n * a]);
       sums[MatrixSums::reflected + a] += std::norm(r[b + n * a]);
-      amplitudes[b] += std::abs(t[b + n * a]);
     }
     sums[places.transmitted() + a] += transmitted;
     sums[places.squares() + a] += transmitted * transmitted;
@@ -116,7 +125,10 @@ void add_matrix(const MatrixSums& places, const ScatteringMatrix& found,
   }
   sums[MatrixSums::g] += g;
   sums[MatrixSums::g_squared] += g * g;
-  for (const double sum : amplitudes) sums[MatrixSums::focused] += sum * sum;
+  for (std::size_t i = 0; i < places.segments.size(); ++i)
+    add_focus(t, n, places.segments[i], sums.subspan(places.focused(i)).first<2>());
+  for (std::size_t i = 0; i < places.recorded.size(); ++i)
+    add_conjugation(t, n, places.recorded[i], sums.subspan(places.conjugated(i)).first<2>());
   sums[MatrixSums::power_error] += found.power.off;
   sums[MatrixSums::reciprocity_error] += found.reciprocity.off;
   sums[MatrixSums::unit_cell_error] += found.unit_cell.off;
@@ -129,15 +141,6 @@ void add_matrix(const MatrixSums& places, const ScatteringMatrix& found,
         open_channel(middle_part(t, n, places.first_kept, places.kept), places.kept).eigenvalues,
         sums.subspan(places.filtered(), places.bins));
   add_correlations(places, t, open, sums);
-}
-
-double expected_focus(const std::vector<double>& transmittance) {
-  double amplitudes = 0, powers = 0;
-  for (const double power : transmittance) {
-    amplitudes += std::sqrt(power);
-    powers += power;
-  }
-  return 1 + std::numbers::pi / 4 * (amplitudes * amplitudes / powers - 1);
 }
 
 }  // namespace
@@ -167,6 +170,10 @@ MatrixJob matrix_job(const Scene& scene, const MatrixSettings& settings, std::ui
   if (places.kept == 0)
     throw InputError("numerical_aperture", settings.numerical_aperture,
                      "must be larger: it contains no channel of this width");
+  for (const std::int64_t number : settings.segments)
+    if (static_cast<std::size_t>(number) > n)
+      throw InputError("segments", number,
+                       "must not exceed the number of channels, " + std::to_string(n));
   const Domain& box = scene.domain;
   const double radius = scene.scatterer.disk_radius();
   const Rectangle region{{-box.width / 2 - radius, -radius},
@@ -216,6 +223,14 @@ MatrixStatistics matrix_statistics(const MatrixJob& job, const GroupedSums& sums
       return values;
     });
   };
+  const auto ratios = [&](std::size_t first, std::size_t count) {
+    return estimate([=](double, Sums s) {
+      Values values;
+      for (std::size_t i = 0; i < count; ++i)
+        values.push_back(s[first + 2 * i] / s[first + 2 * i + 1]);
+      return values;
+    });
+  };
   MatrixStatistics found;
   found.transmittance = means(places.transmitted(), n);
   found.reflectance = means(MatrixSums::reflected, n);
@@ -240,12 +255,19 @@ MatrixStatistics matrix_statistics(const MatrixJob& job, const GroupedSums& sums
     }
     return Values{sum};
   });
-  found.focus =
-      estimate([](double, Sums s) { return Values{s[MatrixSums::focused] / s[MatrixSums::g]}; });
+  found.focus = ratios(places.focused(0), 1);
+  found.segment_focus = ratios(places.focused(1), places.segments.size() - 1);
+  found.conjugation = ratios(places.conjugated(0), places.recorded.size());
   found.tilt_correlation = correlation(0);
   found.normal_correlation = correlation(1);
   found.open_correlation = correlation(2);
-  found.focus_theory = expected_focus(real_parts(found.transmittance.value));
+  const auto transmittance = real_parts(found.transmittance.value);
+  for (const std::size_t number : places.segments)
+    found.focus_theory.push_back(expected_focus(transmittance, number));
+  for (const std::size_t number : places.recorded) {
+    found.recorded.push_back(static_cast<double>(number) / static_cast<double>(n));
+    found.conjugation_theory.push_back(expected_conjugation(transmittance, number));
+  }
   const auto total = sums.total();
   const double slack = 1e-12 + 300 * job.settings.options.tolerance, samples = sums.total_samples();
   found.power = {total[MatrixSums::power_error].real() / samples, slack};

@@ -26,6 +26,8 @@ struct MatrixSettings {
   std::size_t shifts = 10;  ///< largest shift of channels for correlations
   /// Largest |sin| of the channels, on both sides, of the filtered part of t.
   double numerical_aperture = 1;
+  std::vector<std::int64_t> segments;       ///< numbers of segments for focusing
+  std::vector<double> conjugated_fraction;  ///< parts of the back channels, for phase conjugation
   SolveOptions options;
 };
 
@@ -39,7 +41,10 @@ struct MatrixSettings {
 ///   slab: over all a and b != a, for the light closest to normal incidence (a fixed, b != a), and
 ///   for the most open eigenchannel, with its incident wave shifted;
 /// - focusing on a channel b by light of equal power in all channels with the best phases, compared
-///   with random phases: sum_b (sum_a |t_ba|)^2 / sum_b sum_a |t_ba|^2.
+///   with random phases: sum_b (sum_a |t_ba|)^2 / sum_b sum_a |t_ba|^2;
+/// - the same for segments of the light channels (add_focus), and the part of the light that
+/// returns
+///   to its channel by phase conjugation (add_conjugation).
 struct MatrixJob {
   BatchJob batches;
   std::vector<CellChannel> channels;
@@ -58,7 +63,11 @@ struct MatrixStatistics {
   std::size_t kept = 0;  ///< number of channels of the filtered part
   /// [shift = 0 .. shifts]
   Estimate tilt_correlation, normal_correlation, open_correlation;
-  double focus_theory = 0;  ///< enhancement for independent Gaussian amplitudes (Vellekoop 2007)
+  Estimate segment_focus;            ///< enhancement of focusing for each number of segments
+  std::vector<double> focus_theory;  ///< expected_focus() of all channels, and of each segmentation
+  std::vector<double> recorded;      ///< part of the channels that is recorded and conjugated
+  Estimate conjugation;              ///< for each of them, part of the light that returns
+  std::vector<double> conjugation_theory;
   Invariant power, reciprocity;
   Invariant unit_cell;  ///< of the first placement; its limit is 0 if unit cells are not compared
 };
