@@ -98,10 +98,9 @@ bool varies(const GroupedSums& sums);
 /// errors are 0.
 double relative_error(const Estimate& estimate);
 
-/// Defines `count` means for jackknife(): value i is the sum of the entries i * stride .. i *
-/// stride + parts - 1, divided by the number of samples.
-struct EntrySums {
-  std::size_t count, stride = 1, parts = 1;
+/// The entries first .. first + count - 1.
+struct EntryRange {
+  std::size_t first, count;
 };
 
 /// Effective number of groups, defined at jackknife(), below which an entry counts as undersampled
@@ -112,14 +111,14 @@ constexpr double few_groups = 24;
 /// undersampled entries.
 Estimate jackknife(const GroupedSums& sums, const Estimator& theta, double few);
 
-/// Computes the jackknife for the means that `of` defines. This is faster than with an Estimator,
+/// Computes the jackknife of the means of these entries. This is faster than with an Estimator,
 /// because means are linear in the sums: their errors follow directly from the means of the groups.
-Estimate jackknife(const GroupedSums& sums, const EntrySums& of, double few = few_groups);
+Estimate jackknife(const GroupedSums& sums, const EntryRange& of, double few = few_groups);
 
 /// Computes the jackknife of a theta that is linear in the sums, with control variates: the sums of
-/// indices `controls`, whose expectations are 0. Their coefficients follow from a regression over
-/// the groups, whose bias is of the order of 1 / samples. A control variate is used only if there
-/// are at least 32 groups and what it adds to the others clearly reduces the variance.
+/// indices `controls`, whose expectations are 0, one after the other. Their coefficients follow
+/// from regressions over the groups, whose bias is of the order of 1 / samples. A control variate
+/// is used only if there are at least 32 groups and it clearly reduces the variance.
 Estimate controlled_jackknife(const GroupedSums& sums, Estimator theta,
                               std::span<const std::size_t> controls, double few = few_groups);
 

@@ -1,12 +1,11 @@
 #include "grin/media/labels/label_volume.h"
 
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <string>
 
 #include "core/error.h"
+#include "core/keys/table_text.h"
 #include "grin/media/index/sample_grid.h"
 #include "grin/media/labels/mcx_shapes.h"
 
@@ -34,9 +33,7 @@ LabelVolume read_hdf5(const std::filesystem::path& path) {
 /// The bytes of a NIfTI-1 file; all numbers are little endian.
 class NiftiFile {
  public:
-  explicit NiftiFile(const std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    bytes_.assign(std::istreambuf_iterator<char>(file), {});
+  explicit NiftiFile(const std::filesystem::path& path) : bytes_(file_bytes(path)) {
     if (bytes_.size() >= 2 && bytes_[0] == '\x1f' && bytes_[1] == '\x8b')
       throw InputError("is compressed: unpack it with gunzip");
     constexpr std::size_t header = 348;
@@ -104,7 +101,7 @@ class NiftiFile {
           volume.labels[volume.number(i, j, k)] = label_of(number<Number>(at));
   }
 
-  std::vector<char> bytes_;
+  std::string bytes_;
 };
 
 }  // namespace

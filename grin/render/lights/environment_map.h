@@ -11,8 +11,8 @@ namespace flatspeckle::grin {
 
 /// L/n^2 of the light that arrives from each direction, constant within the pixels of an
 /// equirectangular picture. Rows are equal steps of the angle from `up`, the first row is upmost.
-/// Columns are equal steps of azimuth about `up`, to the right as seen from the stage; the direction
-/// `centre` is in the middle of the picture.
+/// Columns are equal steps of azimuth about `up`, to the right as seen from the stage; the
+/// direction `centre` is in the middle of the picture.
 class EnvironmentMap {
  public:
   /// radiance: [row][column], at least 0 and not 0 everywhere. centre and up must not be parallel.

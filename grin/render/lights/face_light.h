@@ -15,8 +15,9 @@ class FaceLightEnd;
 
 /// A light on the part of the boundary within `radius` of `centre`. It is Lambertian: it emits
 /// inwards with the same L/n^2, `radiance`, in all directions. An infinite radius is the whole
-/// boundary (environment); its radiance may be multiplied by a map of directions. Requires a sphere or a box as boundary (BoundaryPatch). Its power is pi
-/// times `radiance` times the integral of n^2 over the emitting area.
+/// boundary (environment); its radiance may be multiplied by a map of directions. Requires a sphere
+/// or a box as boundary (BoundaryPatch). Without a map its power is pi times `radiance` times the
+/// integral of n^2 over the emitting area.
 struct FaceLight {
   using End = FaceLightEnd;
   Vec3 centre = Vec3::Zero();
