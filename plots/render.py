@@ -77,8 +77,10 @@ def draw(results, arguments):
     height = np.clip(pictures.height_over_width(results[0]), 0.2, 2) * 0.36 * style.PAGE + 0.4
     figure, axes = plt.subplots(len(results), 2, squeeze=False,
                                 figsize=(style.PAGE, len(results) * height))
-    # The colour scale of errors begins at the power of ten below the smallest errors in all results.
-    best = min(np.quantile(relative_error(result).compressed(), 0.01) for result in results)
+    # The colour scale of errors begins at the power of ten below the smallest errors in all results, without those of
+    # pixels that are exact, such as of an even background.
+    found = np.concatenate([relative_error(result).compressed() for result in results])
+    best = np.quantile(found[found > 0], 0.01) if np.any(found > 0) else MOST
     errors = LogNorm(min(10 ** np.floor(np.log10(best)), MOST / 10), MOST, clip=True)
     quantities = [pictures.quantity(result) for result in results]  # all results with the same quantity share a scale
     norms = {name: pictures.tone([result.values("image") for result, own in zip(results, quantities)

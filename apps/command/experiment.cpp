@@ -9,6 +9,7 @@
 namespace flatspeckle::apps {
 
 int Experiment::run_alone(Session& session, const std::string& label) const {
+  session.require_same_run(inputs_);
   const PlannedExperiment planned = plan();
   return session.run(planned.plan, {{"", label, planned.batches, stop_}}, inputs_,
                      [&](ResultFile& file) { planned.write(file, session.sums(""), true); });

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cstdio>
+#include <span>
+#include <string>
 
 #include "apps/command/experiment.h"
 #include "apps/results/estimation.h"
@@ -11,6 +13,7 @@
 #include "flatland/media/layers.h"
 #include "flatland/scene/scene_datasets.h"
 #include "mc/distance/distance_job.h"
+#include "mc/distance/flow_plan.h"
 #include "mc/jobs/delay_results.h"
 
 namespace flatspeckle::apps {
@@ -45,7 +48,7 @@ void print_distances(const mc::DistanceRequest& request, const mc::DistanceEstim
 }
 
 /// Prints values [row][distance], one line per row.
-void print_rows(const char* name, const std::vector<double>& rows, const Estimate& values,
+void print_rows(const char* name, const std::vector<double>& rows, std::span<const double> values,
                 const mc::DistanceRequest& request) {
   if (rows.empty()) return;
   std::printf("%12s  at distance", name);
@@ -54,10 +57,44 @@ void print_rows(const char* name, const std::vector<double>& rows, const Estimat
   const std::size_t columns = request.detectors.size();
   for (std::size_t r = 0; r < rows.size(); ++r) {
     std::printf("%12.4g             ", rows[r]);
-    for (std::size_t d = 0; d < columns; ++d)
-      std::printf(" %-10.4g", values.value[r * columns + d].real());
+    for (std::size_t d = 0; d < columns; ++d) std::printf(" %-10.4g", values[r * columns + d]);
     std::printf("\n");
   }
+}
+
+/// Prints the best detector and exposure of an instrument.
+void print_flow(const mc::FlowPlan& plan, const mc::DistanceRequest& request,
+                const mc::Instrument& instrument) {
+  const auto& times = request.dynamics.exposure.times;
+  print_rows("photons per s", {instrument.averaging_time}, plan.rate, request);
+  print_rows("K^2: flow/error", times, plan.contrast_ratio, request);
+  print_rows("g2: flow/error", {instrument.averaging_time}, plan.correlation_ratio, request);
+  const auto print_best = [&](const std::string& name, const std::vector<double>& ratios,
+                              const std::vector<double>& crosstalk) {
+    const auto best = static_cast<std::size_t>(std::ranges::max_element(ratios) - ratios.begin());
+    const std::size_t row = best / request.detectors.size();
+    std::printf("%s: best distance %.4g", name.c_str(),
+                request.detectors[best % request.detectors.size()].distance);
+    if (name == "K^2") std::printf(", exposure %.4g s", times[row]);
+    if (ratios[best] > 0)
+      std::printf(", error of the flow %.3g %%, crosstalk %.3g", 100 / ratios[best],
+                  crosstalk[best]);
+    if (name == "K^2" && times.size() > 1 && (row == 0 || row + 1 == times.size()))
+      std::printf(" (exposures beyond those given may be better)");
+    std::printf("\n");
+  };
+  if (!times.empty()) {
+    print_best("K^2", plan.contrast_ratio, plan.contrast_crosstalk);
+    const auto best = std::ranges::max_element(plan.contrast_separated);
+    if (*best > 0)
+      std::printf("K^2: all distances and no other knowledge: %.3g %% at exposure %.4g s\n",
+                  100 / *best,
+                  times[static_cast<std::size_t>(best - plan.contrast_separated.begin())]);
+  }
+  print_best("g2", plan.correlation_ratio, plan.correlation_crosstalk);
+  if (plan.correlation_separated > 0)
+    std::printf("g2: all distances and no other knowledge: %.3g %%\n",
+                100 / plan.correlation_separated);
 }
 
 class ReflectanceExperiment : public Experiment {
@@ -100,10 +137,11 @@ class ReflectanceExperiment : public Experiment {
         .not_negative()
         .unit("length");
     add_length_unit_key(keys, request_.length_unit);
+    mc::add_keys(keys, instrument_values_);
     keys.group("Motion");
     mc::add_keys(keys, dynamics_);
     keys.group("Results");
-    keys.add("gradient", request_.gradient,
+    keys.add("gradient", gradient_,
              "Also compute derivatives by mu_a, mu_s and the diffusion factor of each layer");
     add_transport_keys(keys, methods_);
     add_run_keys(keys, run_);
@@ -114,15 +152,21 @@ class ReflectanceExperiment : public Experiment {
     stop_ = both_batches(methods_.tolerance);
     request_.detectors = detectors(keys);
     keys.read(request_.numerical_aperture);
-    keys.read(request_.gradient);
+    request_.gradient = keys.read(gradient_);
     keys.read(request_.length_unit);
     request_.dynamics = mc::make_dynamics(keys, dynamics_, spec_, length_unit(keys));
     const mc::Motion& motion = request_.dynamics.motion;
     if (motion.velocity != Vec{} || motion.shear != 0)
       throw InputError("velocity, shear: require covariance with method = mc");
     mc::check_exposure(request_.dynamics.exposure, request_.dynamics.delays);
+    instrument_ = mc::make_instrument(keys, instrument_values_, spec_, request_);
     scene_ = with_dimension(make_scene(keys, spec_), spec_);
     check_layers(*scene_);
+    if (instrument_) {
+      mc::set_flow(*instrument_, *scene_);
+      request_.gradient = true;
+      if (request_.dynamics.exposure.beta == 1) request_.dynamics.exposure.beta = instrument_->beta;
+    }
     mc::check_delays(*scene_, request_.dynamics.delays);
     inputs_ = inputs_text(*scene_) + inputs_text(keys);
   }
@@ -161,11 +205,19 @@ class ReflectanceExperiment : public Experiment {
     const mc::Dynamics& dynamics = request_.dynamics;
     if (prints) {
       print_distances(request_, found);
-      print_rows("delay: g1", dynamics.delays, found.correlation, request_);
-      print_rows("exposure: K^2", dynamics.exposure.times, found.contrast, request_);
+      print_rows("delay: g1", dynamics.delays, real_parts(found.correlation.value), request_);
+      print_rows("exposure: K^2", dynamics.exposure.times, real_parts(found.contrast.value),
+                 request_);
     }
     write_medium(file, *scene_);
-    mc::write_distance(file, request_, found);
+    mc::DistanceRequest asked = request_;
+    asked.gradient = gradient_;
+    mc::write_distance(file, asked, found);
+    if (instrument_) {
+      const auto plan = mc::flow_plan(*instrument_, request_, found);
+      if (prints) print_flow(plan, request_, *instrument_);
+      mc::write_flow(file, *instrument_, request_, plan);
+    }
     ResultGroup(file, mc::distance_table)
         .check("invariants/reciprocity", mc::reciprocity(*scene_, request_, methods_.tolerance));
     mc::write_numerical(file);
@@ -177,6 +229,9 @@ class ReflectanceExperiment : public Experiment {
   mc::DistanceRequest request_;
   std::vector<double> distances_;
   std::optional<double> detector_radius_, ring_width_;
+  bool gradient_ = false;
+  mc::InstrumentValues instrument_values_;
+  std::optional<mc::Instrument> instrument_;
   std::optional<Scene> scene_;
 };
 

@@ -20,7 +20,7 @@ extern const DatasetTable solution_table, space_solution_table, spectrum_table, 
 namespace mc {
 extern const DatasetTable diffusion_table, mean_table, intensity_table, full_table, pairs_table,
     moves_table, reflection_theory_table, gradient_table, delays_table, contrast_table,
-    frequency_table, numerical_table, flux_table, distance_table, field_table, imaging_table, picture_table,
+    frequency_table, numerical_table, flux_table, distance_table, flow_table, field_table, imaging_table, picture_table,
     blinking_table, simulated_picture_table, recovery_table, recovered_picture_table,
     contrast_map_table, separation_table, fit_table, plan_table;
 }
@@ -127,6 +127,7 @@ std::vector<const DatasetTable*> all_tables() {
                                              &wave::matrix_table,
                                              &mc::flux_table,
                                              &mc::distance_table,
+                                             &mc::flow_table,
                                              &mc::field_table,
                                              &mc::imaging_table,
                                              &mc::picture_table,

@@ -2,6 +2,7 @@
 
 #include "bench/plan/plan_timing.h"
 #include "bench/scenes/standard_scenes.h"
+#include "mc/distance/distance_job.h"
 #include "mc/slab/adding/space.h"
 #include "mc/slab/slab_covariance.h"
 
@@ -43,6 +44,19 @@ std::vector<Complex> with_derivatives(const Scene& slab) {
   return values;
 }
 
+/// Solves for g1 at two distances. gradient: whether derivatives by the coefficients, from which
+/// the error of the flow is computed, are also found.
+std::vector<Complex> distant(const Scene& slab, bool gradient) {
+  mc::DistanceRequest request;
+  for (const double distance : {1000.0, 3000.0})
+    request.detectors.push_back({mc::DistanceDetector::Kind::ring, distance, 200});
+  request.dynamics.delays = {1e-3, 1e-2};
+  request.gradient = gradient;
+  auto values = mc::distance_solution(slab, request, 1).value;
+  values.resize(request.detectors.size() * (request.dynamics.delays.size() + 1));
+  return values;
+}
+
 }  // namespace
 
 std::vector<PlanCase> transport_plan_cases() {
@@ -60,18 +74,26 @@ std::vector<PlanCase> transport_plan_cases() {
                             return {general, [=] { return alone(slab); }};
                           });
   };
-  return {on_slab("tilts one by one", [=] { return one_by_one(slab, alone); }),
-          case_of_values(
-              {"transport", "tilts one by one", "slab_hg g 0.9, 8 tilts in space", "solution"},
-              in_space_tolerance,
-              [=](bool) -> TwoAlternatives {
-                return {[=] { return one_by_one(space, covariance_in_space); },
-                        [=] { return covariance_in_space(space); }};
-              }),
-          // a tiny frequency shift makes all numbers complex
-          on_slab("a second frequency", [=] { return covariance(slab, {.shift = 1e-14}); }),
-          on_slab("faces", [=] { return with_faces(slab); }),
-          on_slab("derivatives", [=] { return with_derivatives(slab); })};
+  return {
+      on_slab("tilts one by one", [=] { return one_by_one(slab, alone); }),
+      case_of_values(
+          {"transport", "tilts one by one", "slab_hg g 0.9, 8 tilts in space", "solution"},
+          in_space_tolerance,
+          [=](bool) -> TwoAlternatives {
+            return {[=] { return one_by_one(space, covariance_in_space); },
+                    [=] { return covariance_in_space(space); }};
+          }),
+      // a tiny frequency shift makes all numbers complex
+      on_slab("a second frequency", [=] { return covariance(slab, {.shift = 1e-14}); }),
+      on_slab("faces", [=] { return with_faces(slab); }),
+      case_of_values(
+          {"transport", "derivatives for the error of the flow",
+           "slab_hg g 0.9 in space, two distances", "solution"},
+          1e-9,
+          [=](bool) -> TwoAlternatives {
+            return {[=] { return distant(space, true); }, [=] { return distant(space, false); }};
+          }),
+      on_slab("derivatives", [=] { return with_derivatives(slab); })};
 }
 
 }  // namespace flatspeckle::bench

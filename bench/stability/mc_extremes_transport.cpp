@@ -7,6 +7,7 @@
 #include "bench/stability/extreme_rows.h"
 #include "bench/stability/mc_extremes.h"
 #include "mc/distance/distance_job.h"
+#include "mc/distance/flow_plan.h"
 #include "mc/jobs/flux_job.h"
 #include "mc/slab/adding/space.h"
 #include "mc/slab/slab_covariance.h"
@@ -175,6 +176,53 @@ void add_far_powers(ExtremeRows& rows) {
                "power = that by the adjoint, relative", far_powers, bulk, index);
 }
 
+/// Photons detected per second and pixel, read noise, and decays of g1 per second.
+struct ExtremeCamera {
+  double rate, read_noise, decay;
+};
+
+/// Checks that nine times as many pixels have three times the signal-to-noise ratio of the flow.
+Finding many_pixels(const ExtremeCamera& camera) {
+  mc::DistanceRequest request;
+  request.detectors.push_back({mc::DistanceDetector::Kind::disk, 10, 1});
+  request.dynamics.exposure.times = {1e-3, 1e-2};
+  mc::DistanceEstimates found;
+  found.power.value = {camera.rate};
+  for (double delay = 1e-6; delay < 0.02; delay *= 2) {
+    const double g1 = std::exp(-camera.decay * delay);
+    request.dynamics.delays.push_back(delay);
+    found.correlation.value.emplace_back(g1);
+    found.correlation_gradient.value.emplace_back(-camera.decay * delay * g1);
+  }
+  const std::vector<Complex> derivatives = found.correlation_gradient.value;
+  for (int other = 1; other < mc::layer_coefficients; ++other)
+    found.correlation_gradient.value.insert(found.correlation_gradient.value.end(),
+                                            derivatives.begin(), derivatives.end());
+  mc::Instrument instrument{.photons = 1, .modes = request.detectors[0].area(), .density = 1};
+  instrument.read_noise = camera.read_noise;
+  instrument.flow = {1};
+  instrument.others = {0};
+  const mc::FlowPlan one = mc::flow_plan(instrument, request, found);
+  instrument.count *= 9;
+  const mc::FlowPlan nine = mc::flow_plan(instrument, request, found);
+  double worst = 0;
+  for (std::size_t e = 0; e < one.contrast_ratio.size(); ++e)
+    worst = larger(worst, std::abs(nine.contrast_ratio[e] - 3 * one.contrast_ratio[e]) /
+                              (1e-300 + nine.contrast_ratio[e]));
+  worst = larger(worst, std::abs(nine.correlation_ratio[0] - 3 * one.correlation_ratio[0]) /
+                            (1e-300 + nine.correlation_ratio[0]));
+  return {worst, 1e-9};
+}
+
+void add_cameras(ExtremeRows& rows) {
+  for (const ExtremeCamera& camera :
+       {ExtremeCamera{1e-30, 0, 100}, ExtremeCamera{1e-30, 1e9, 100}, ExtremeCamera{1e5, 1e9, 100},
+        ExtremeCamera{1e30, 0, 100}, ExtremeCamera{1e5, 2, 1e9}, ExtremeCamera{1e5, 2, 0}})
+    rows.add("flow from " + short_number(camera.rate) + " photons a second, read noise " +
+                 short_number(camera.read_noise) + ", decay " + short_number(camera.decay),
+             "flow / error by pixels^(1/2)", many_pixels, camera);
+}
+
 void add_faces(ExtremeRows& rows) {
   for (const double index : {0.5, 1.0001, 1.33, 4.0})
     for (const double incidence : {0.0, 1.56}) {
@@ -253,6 +301,7 @@ void mc_transport_extremes(ExtremeRows& rows) {
                "shift 1e-18 = none", same_frequencies, bulk, dimension);
   add_faces(rows);
   add_far_powers(rows);
+  add_cameras(rows);
   add_fits(rows);
 }
 

@@ -26,9 +26,9 @@ struct NamedUnit {
 
 constexpr Dimension of_length{.length = 1}, of_time{.time = 1}, of_frequency{.time = -1},
     of_angle{.angle = 1}, of_mass{.mass = 1}, of_temperature{.temperature = 1},
-    of_pressure{.length = -1, .time = -2, .mass = 1};
+    of_pressure{.length = -1, .time = -2, .mass = 1}, of_power{.length = 2, .time = -3, .mass = 1};
 
-constexpr std::array<NamedUnit, 29> named_units = {{
+constexpr std::array<NamedUnit, 31> named_units = {{
     {"nm", {of_length, 1e-9}},
     {"um", {of_length, 1e-6}},
     {"mm", {of_length, 1e-3}},
@@ -55,6 +55,8 @@ constexpr std::array<NamedUnit, 29> named_units = {{
     {"Pa", {of_pressure, 1}},
     {"kPa", {of_pressure, 1e3}},
     {"MPa", {of_pressure, 1e6}},
+    {"mW", {of_power, 1e-3}},
+    {"W", {of_power, 1}},
     {"mg", {of_mass, 1e-6}},
     {"g", {of_mass, 1e-3}},
     {"kg", {of_mass, 1}},

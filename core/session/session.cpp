@@ -297,20 +297,30 @@ bool Session::is_complete(const std::string& identity, bool has_begun) const {
   return true;
 }
 
-/// Reads the states of all runs from the output file: each later version of the file must contain
-/// all of them. Damaged files are rejected by their checksum, because HDF5 may crash on them.
-void Session::resume() {
+std::string Session::identity_of(const std::string& inputs) const {
+  return "flatspeckle " + version() + '\n' + keys_.identity() + inputs;
+}
+
+/// Damaged files are rejected by their checksum, because HDF5 may crash on them.
+void Session::require_same_run(const std::string& inputs) const {
   const std::string& path = settings_.out;
+  if (!settings_.resume || !stamp_of(path)) return;
   if (!is_checksummed(path))
     throw InputError("resume: " + path + " is damaged, or never contained a run of this program");
   const ResultReader file(path);
   const auto found = file.has_attribute("/", "identity")
                          ? file.attribute<std::string>("/", "identity")
                          : std::string();
-  if (found != identity_)
+  if (const std::string wanted = identity_of(inputs); found != wanted)
     throw InputError("resume: " + path + " contains another run (" +
-                     first_difference(found, identity_) +
+                     first_difference(found, wanted) +
                      "); scene, sensors, seed and program version must be the same");
+}
+
+/// Reads the states of all runs from the output file: each later version of the file must contain
+/// all of them.
+void Session::resume() {
+  const ResultReader file(settings_.out);
   const bool ended = file.attribute<bool>("/", "converged");
   already_complete_ = ended && !extends(file);
   if (already_complete_) return;
@@ -319,7 +329,7 @@ void Session::resume() {
       states_[name] = read_state(file, group, job.size);
   has_older_ = ended && !file.has("state");
   if (has_older_)
-    std::cerr << "note: " << path
+    std::cerr << "note: " << settings_.out
               << " does not contain the sums from which it could be extended (keep_state); "
               << "the run starts again\n";
 }
@@ -348,11 +358,12 @@ int Session::run(std::string plan, std::vector<PlannedRun> runs, const std::stri
   catch_interrupts();
   plan_ = std::move(plan);
   runs_ = std::move(runs);
-  identity_ = "flatspeckle " + version() + '\n' + keys_.identity() + inputs;
+  identity_ = identity_of(inputs);
   for (const auto& run : runs_) states_[run.name];
   known_ = stamp_of(settings_.out);
   const bool exists = known_.has_value();
   has_older_ = exists && !settings_.resume;
+  require_same_run(inputs);
   if (exists && settings_.resume) resume();
   if (has_older_) report_unfinished();
   if (already_complete_) {

@@ -120,6 +120,11 @@ class Session {
   /// Interrupted. Returns the exit status.
   int once(ResultFile file, const std::function<Made(ResultFile&)>& make) const;
 
+  /// Throws InputError if --resume is given and the output file exists but does not contain this
+  /// run. run() does the same; it can be called before a plan is made that takes time. inputs: see
+  /// run().
+  void require_same_run(const std::string& inputs) const;
+
   /// Computes all runs until they end or are interrupted, and returns the exit status. With
   /// --resume, continues the runs in the existing file, and extends finished runs if this call
   /// requires more samples. The output file contains a state that can be resumed while the runs are
@@ -147,6 +152,7 @@ class Session {
   static void commit(ResultFile& file, const Provenance& provenance);
 
  private:
+  std::string identity_of(const std::string& inputs) const;
   void resume();
   void report_unfinished() const;
   bool extends(const ResultReader& file) const;

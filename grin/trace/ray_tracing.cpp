@@ -368,34 +368,6 @@ class BundleTracer {
   std::vector<std::unique_ptr<const RayField>> plain_;
 };
 
-/// Calls use(name of the key of a kind of body, words of their faces).
-template <class Values, class Use>
-void for_each_face(Values& values, const Use& use) {
-  use("ball", values.ball_face);
-  use("block", values.block_face);
-  use("lens", values.lens_face);
-  use("asphere", values.asphere_face);
-}
-
-/// Sets what the surfaces of bodies do. Throws InputError unless there is a word for each body.
-void set_faces(const Keys& keys, const RayBodyValues& values, std::vector<Body>& bodies) {
-  for_each_face(values, [&](const std::string& kind, const std::vector<std::string>& member) {
-    const auto& words = keys.read(member);
-    std::size_t next = 0, count = 0;
-    for (const Body& body : bodies) count += std::string(body.keys) == kind + ", ";
-    if (words.empty()) return;
-    if (words.size() != count)
-      throw InputError(kind + "_face", words.size(), "requires a word for each " + kind);
-    for (Body& body : bodies) {
-      if (std::string(body.keys) != kind + ", ") continue;
-      const std::string& word = words[next++];
-      body.face = word == "mirror"   ? BodyFace::reflects
-                  : word == "absorb" ? BodyFace::absorbs
-                                     : BodyFace::refracts;
-    }
-  });
-}
-
 }  // namespace
 
 void add_keys(Keys& keys, RayBodyValues& values) {
@@ -404,13 +376,6 @@ void add_keys(Keys& keys, RayBodyValues& values) {
   keys.group("Body that rays pass", std::string("a body (") + body_key_names + ")");
   add_index_around(keys, values);
   add_keys(keys, values.plain_bodies);
-  for_each_face(values, [&](const char* body, std::vector<std::string>& words) {
-    keys.add(std::string(body) + "_face", words,
-             std::string("What the surface of each ") + body +
-                 " does: refract (default), mirror (reflects all light) or absorb")
-        .one_of({"refract", "mirror", "absorb"})
-        .only_of(body);
-  });
   keys.add("aperture_stop", values.aperture,
            "x y z nx ny nz radius: an opaque plane screen with a round hole; rays that miss the "
            "hole "
@@ -440,7 +405,6 @@ Stage make_ray_stage(const Keys& keys, const RayBodyValues& values, SceneField& 
     if (field.grid) check_within(body, *field.grid, "grid");
     stage.bodies.push_back(std::move(body));
   }
-  set_faces(keys, values, stage.bodies);
   if (stage.bodies.empty()) return stage;
   field.symmetry = Symmetry::none;
   sort_by_size(stage.bodies);

@@ -15,7 +15,6 @@ namespace flatspeckle::grin {
 /// Scene keys of the bodies that rays pass through; `render` uses the same keys.
 struct RayBodyValues : FieldBodyValues {
   PlainBodyValues plain_bodies{};
-  std::vector<std::string> ball_face{}, block_face{}, lens_face{}, asphere_face{};
   std::vector<double> aperture{};
 };
 

@@ -82,11 +82,4 @@ HankelContour::HankelContour(std::span<const DistanceDetector> detectors, double
   }
 }
 
-double HankelContour::power(std::size_t detector, std::span<const Complex> reflected) const {
-  double sum = 0;
-  for (std::size_t n = 0; n < reflected.size(); ++n)
-    sum += (weights_[detector][n] * reflected[n]).real();
-  return sum;
-}
-
 }  // namespace flatspeckle::mc

@@ -30,8 +30,11 @@ class HankelContour {
   HankelContour(std::span<const DistanceDetector> detectors, double source_radius);
 
   const std::vector<Complex>& frequencies() const { return frequencies_; }
-  /// Returns the power on a detector. reflected: R at each frequency.
-  double power(std::size_t detector, std::span<const Complex> reflected) const;
+  /// Returns the weight of a frequency: the power on a detector is the real part of the sum over
+  /// the frequencies of R times its weight.
+  Complex weight(std::size_t detector, std::size_t frequency) const {
+    return weights_[detector][frequency];
+  }
 
  private:
   std::vector<Complex> frequencies_;

@@ -6,7 +6,7 @@
 
 #include "core/keys/keys.h"
 #include "core/numbers/random.h"
-#include "mc/imaging/recovery/camera_noise.h"
+#include "mc/theory/detector_noise.h"
 
 namespace flatspeckle::mc {
 

@@ -11,7 +11,7 @@
 #include "mc/imaging/blinking.h"
 #include "mc/imaging/camera_exposure.h"
 #include "mc/imaging/line_camera.h"
-#include "mc/imaging/recovery/camera_noise.h"
+#include "mc/theory/detector_noise.h"
 #include "mc/imaging/recovery/deconvolution.h"
 #include "mc/imaging/recovery/image_score.h"
 #include "mc/imaging/recovery/line_object.h"

@@ -12,7 +12,7 @@
 #include "core/result/result_group.h"
 #include "mc/imaging/line_camera.h"
 #include "mc/imaging/media_statistics.h"
-#include "mc/imaging/recovery/camera_noise.h"
+#include "mc/theory/detector_noise.h"
 #include "mc/imaging/recovery/deconvolution.h"
 #include "mc/imaging/recovery/frame_statistics.h"
 #include "mc/imaging/recovery/line_spectrum.h"

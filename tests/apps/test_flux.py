@@ -34,6 +34,22 @@ class Flux(ProgramTest):
             spread = 36 * np.max(error) * 2 * np.pi / 36
             self.assertTrue(np.all(np.abs(through - file["transmittance"][:]) < spread))
 
+    def test_agrees_with_render(self):
+        """Counted paths through a slab of tissue under air, whose control variates leave 1/100 of the variance."""
+        with self.run_flux({"domain": "slab", "dimension": 3, "scatterer": "hg", "g": 0.9, "depth": 10, "albedo": 10 / 10.01,
+                            "mean_free_path": 1 / 10.01, "medium_index": 1.37, "polarisation": "unpolarised"}) as file:
+            transmitted = file["transmittance"][0]
+            reflected = file["reflectance"][0] + file["specular_reflectance"][0]
+        self.call("render", stage_box=[-60, -60, -0.001, 60, 60, 10.001], block=[-60, -60, 0, 60, 60, 10, 1.37, 10, 0.01, 0.9],
+                  beam_light=[0, 0, -0.001, 0, 0, 1, 0.1, 1], sensor=["area", "area"], sensor_at=[0, 0, 10.001, 0, 0, -0.001],
+                  sensor_up=[1, 0, 0, 1, 0, 0], sensor_size=[119, 119, 119, 119], pixels=[1, 1, 1, 1], method="forward",
+                  samples=10000, out="paths.h5")
+        with h5py.File(self.folder / "paths.h5") as paths:
+            for number, expected, precise in ((1, transmitted, 0.003), (2, reflected, 0.002)):
+                value, error = (paths[f"sensors/{number}/total{of}"][()] for of in ("", "_error"))
+                self.assertLess(abs(value - expected), 4 * error)
+                self.assertLess(error, precise * expected)
+
     def test_in_space(self):
         """Exit radiance is by polar angle; the slab is van de Hulst's."""
         keys = {"domain": "slab", "depth": 2, "optical_depth": 2, "scatterer": "hg", "g": 0.75,

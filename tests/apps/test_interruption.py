@@ -209,7 +209,8 @@ class Alike(ProgramTest):
     def check_other_measurement(self, keys):
         """Checks that a fit is not resumed with a table that has changed, though only in its errors."""
         process = self.start("fit", **keys, out="x.h5")
-        self.wait_until(process, lambda: (self.folder / "x.h5.search").exists())
+        self.wait_until(process, lambda: (self.folder / "x.h5.search").exists() and
+                        len(journals.records(self.folder / "x.h5.search")) > 0)
         process.kill()
         process.wait()
         self.write("curve.csv", "tilt,field_correlation,error\n0.002,0.8,0.05\n0.004,0.6,0.02\n")

@@ -108,6 +108,10 @@ KINDS = {
                                   "prediction_draws": 2, "prediction_paths": 2000, "paths_per_field": 500}),
     "tissue": ("reflectance", {"depth": 100, "mean_free_path": 0.1, "g": 0.9, "albedo": 0.99, "distances": [5, 10], "ring_width": 1,
                                "delays": [0, 1e-3], "tolerance": 0.05}),
+    "tissue_flow": ("reflectance", {"depth": 100, "mean_free_path": 0.1, "g": 0.9, "albedo": 0.99, "distances": [5, 10],
+                                    "ring_width": 1, "delays": [0, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2], "diffusion": "1e-12 m^2/s",
+                                    "wavelength": 850e-6, "length_unit": "mm", "exposures": [2e-3, 1e-2], "source_power": 0.05,
+                                    "pixel_area": 1, "tolerance": 0.05}),
     "matrices": ("matrix", {"width": 9.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2, "shifts": 3, "samples": 4,
                             "numerical_aperture": 0.5}),
     "cell": ("solve", {"width": 9.3, "period": 9.3, "depth": 4, "count": 5, "scatterer": "soft", "radius": 0.2, "map": [-3, 3, -1, 5],
@@ -127,7 +131,7 @@ OWN = {"memory_effect": {"grid", "points", "curve", "moves", "layers", "graded"}
        "contrast_map": {"contrasts"}, "image_success": {"pictures"}, "image": {"frames", "blinks"}, "sources": {"blinks", "separated"}, "fit": {"fitted"}, "fit_plan": {"planned"}, "rays": {"rays"}, "spot": {"spot"},
        "design": {"lens", "display", "core"}, "design_methods": {"lens", "display", "core"},
        "render": {"picture", "pulse", "mixed"}, "render_time": {"pulse"},
-       "light_map": {"light"}, "matrix": {"matrices"}, "ring_profile": {"rings", "mixed", "tagged"}, "sidebands": {"tagged"}, "tissue": {"tissue"}, "reflection_image": {"spectrum"}, "field_map": {"cell", "near"}}
+       "light_map": {"light"}, "matrix": {"matrices"}, "ring_profile": {"rings", "mixed", "tagged"}, "sidebands": {"tagged"}, "tissue": {"tissue", "tissue_flow"}, "reflection_image": {"spectrum"}, "field_map": {"cell", "near"}}
 
 
 def run_script(name, *words, drawn="fitted"):

@@ -85,6 +85,52 @@ class Reflectance(ProgramTest):
         self.assertAlmostEqual(file["distance_contrast"][0, 1], 0.5, delta=0.01)
         self.assertAlmostEqual(file["distance_contrast"][1, 1] / expected, 1, delta=0.02)
 
+    def flow(self, top=0.5, bottom=1, out="flow.h5", **keys):
+        """A laser of 20 mW, and 100 pixels at each distance from tissue whose lower layer holds the flow that is wanted."""
+        (self.folder / "tissue.csv").write_text(f"thickness,mu_s,mu_a,g,diffusion\n2,10,0.02,0.9,{top}\n1000,5,0.01,0.8,{bottom}\n")
+        return self.run_one(out=out, layers="tissue.csv", medium_index=1.4, wavelength=850e-6, length_unit="mm", distances=[5, 15],
+                            detector_radius=1, delays=["0", "1us:10ms:9:log"], diffusion="2e-12 m^2/s",
+                            tolerance=0.05, **{"exposures": "5ms", "source_power": "20mW", "pixel_area": 1, "detector_count": 100,
+                                               "flow_layers": 1, "read_noise": 2, **keys})
+
+    def test_instrument(self):
+        """Photons, noise and error of the flow of K^2 and g2; derivatives against differences of other flows."""
+        file = self.flow(quantum_efficiency=0.5, averaging_time=2, other_flow_error=0.2)
+        modes = 2 * np.pi * np.pi * 1**2 / 850e-6**2  # of a disk of radius 1 and a numerical aperture of 1
+        rate = 0.02 * 0.5 * 850e-9 / (6.62607015e-34 * 299792458) * 2 / modes * file["detected_power"][()]
+        np.testing.assert_allclose(file["detector_rate"], rate, rtol=1e-9)
+        photons = rate * 5e-3
+        np.testing.assert_allclose(file["contrast_noise"][0], 1 / photons + 4 / photons**2, rtol=1e-9)
+        contrast, beta = file["distance_contrast"][0], file["detector_rate"].attrs["beta"]
+        self.assertAlmostEqual(beta, 0.233, delta=0.001)  # half of that of polarised light, Goodman
+        independent = np.sqrt(2 / (100 * 400)) * (contrast + file["contrast_noise"][0])
+        self.assertTrue(np.all(file["contrast_deviation"][0] > independent))
+        self.assertTrue(np.all(file["contrast_deviation"][0] < 1.5 * independent))
+        changed = [self.flow(**flows, out=f"{name}.h5")["distance_contrast"][0] for name, flows in
+                   (("less", {"bottom": 0.98}), ("more", {"bottom": 1.02}), ("top_less", {"top": 0.49}), ("top_more", {"top": 0.51}))]
+        own, other = (changed[1] - changed[0]) / 0.04, (changed[3] - changed[2]) / 0.04
+        error = np.hypot(file["contrast_deviation"][0], 0.2 * other) / -own  # the flow of the other layer is known to 20 %
+        np.testing.assert_allclose(1 / file["contrast_flow_ratio"][0], error, rtol=0.01)
+        np.testing.assert_allclose(file["contrast_flow_crosstalk"][0], other / own, rtol=0.01)
+        normal = np.array([own, other]) @ (np.array([own, other]) / file["contrast_deviation"][0]**2).T
+        self.assertAlmostEqual(file["contrast_separated_ratio"][0] * np.sqrt(np.linalg.inv(normal)[0, 0]), 1, delta=0.02)
+
+    def test_flow_from_correlation(self):
+        """One mode: few photons limit g2, so that four times the time or the fibres halve the error."""
+        keys = {"source_power": 2e-6, "other_flow_error": 0, "pixel_area": None, "fibre_modes": 2, "exposures": None, "read_noise": None, "detector_count": 1}
+        one, longer, more = (self.flow(**{**keys, **change}, out=f"{number}.h5") for number, change in
+                             enumerate(({}, {"averaging_time": "4s"}, {"detector_count": 4})))
+        self.assertEqual(one["detector_rate"].attrs["beta"], 0.5)
+        np.testing.assert_allclose(one["distance_intensity_correlation"][0], 0.5)
+        for other in (longer, more):
+            np.testing.assert_allclose(other["correlation_flow_ratio"], 2 * one["correlation_flow_ratio"][()], rtol=1e-9)
+        rate, delay = one["detector_rate"][()], one["delay"][()]
+        bins = np.gradient(delay)[1:-1]  # half the distance between both neighbours
+        pairs = np.sqrt(1 + one["distance_intensity_correlation"][1:-1]) / (rate * np.sqrt(bins)[:, None])
+        self.assertTrue(np.all(one["correlation_deviation"][1:-1] > pairs))
+        np.testing.assert_allclose(one["correlation_deviation"][1], pairs[0], rtol=0.05)
+        self.assertLess(one["correlation_separated_ratio"][()], np.sqrt(np.sum(one["correlation_flow_ratio"][()]**2)))
+
     def test_shipped_scenes(self):
         for name in ("tissue_head", "tissue_forearm"):
             file = self.run_one(config=DATA / f"scenes/{name}.toml", out=f"{name}.h5")
@@ -110,6 +156,30 @@ class Refused(RefusingTest):
         (self.folder / "bad.csv").write_text("thickness,optical_depth,mu_a\n2,9,0.1\n")
         self.assert_refused(["mu_a"], "reflectance", layers="bad.csv", distances=5, ring_width=1)
         self.assert_refused(["velocity"], "reflectance", **TISSUE, delays=[0, 1], velocity=[1, 0])
+
+    def test_instruments(self):
+        flow = {**TISSUE, "delays": ["1us:1ms:8:log"], "diffusion": "1e-12 m^2/s", "wavelength": 850e-6, "length_unit": "mm",
+                "source_power": "10mW", "fibre_modes": 2}
+        def refuse(message, **keys):
+            self.assert_refused([message], "reflectance", **{**flow, **keys})
+        refuse("source_power", delays=None, diffusion=None)
+        refuse("source_power", diffusion=1, delays=[1, 2, 3, 4])
+        refuse("delays", delays=[0, 1e-6, 1e-5, 1e-4])
+        refuse("delays", delays=[1e-6, 1e-5, 1e-4, 1e-4, 1e-3])
+        refuse("fibre_modes, pixel_area", fibre_modes=None)
+        refuse("fibre_modes, pixel_area", pixel_area=1)
+        refuse("pixel_area", fibre_modes=None, pixel_area=0.001)
+        refuse("detector_count", detector_count=10**12)
+        refuse("exposures", exposures=[1e-3], averaging_time="100us")
+        refuse("read_noise", read_noise=2)  # without exposures
+        refuse("flow_layers", flow_layers=0)  # without layers
+        refuse("other_flow_error", other_flow_error=0.2)
+        refuse("source_power", source_power="-1W")
+        refuse("source_power", source_power="1mm")
+        (self.folder / "tissue.csv").write_text("thickness,mu_s,mu_a,g,diffusion\n2,10,0.02,0.9,0\n1000,5,0.01,0.8,1\n")
+        layered = {"layers": "tissue.csv", "depth": None, "mean_free_path": None, "albedo": None, "g": None}
+        refuse("flow_layers", **layered, flow_layers=2)
+        refuse("flow_layers", **layered, flow_layers=0)
 
     def test_delays_of_render(self):
         scene = {"stage_box": [-1, -1, 0, 1, 1, 1], "mu_s": 1, "point_light": [0, 0, 0.5, 1], "sensor": "area",

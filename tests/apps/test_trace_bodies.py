@@ -38,6 +38,25 @@ class Bodies(BodiesTest):
         path = 3 + after - 2 * np.sqrt(1 - h**2) + 3 * np.sqrt(1 - (h / 1.5)**2)
         np.testing.assert_allclose(found["optical_path"], path, rtol=1e-13)
 
+    def test_cylinder_lens(self):
+        """In a plane normal to its axis, a cylinder deflects rays as a ball does."""
+        found = self.trace(**PARALLEL, cylinder=[0, -2, 0, 0, 2, 0, 1, *GLASS], origin=[0, 0.3, -3], beam_radius=0.95,
+                           stop_plane=plane(2))
+        h = found["start/x"]
+        turn = 2 * (np.arcsin(h) - np.arcsin(h / 1.5))
+        np.testing.assert_allclose(found["exit/dx"], -np.sin(turn), atol=1e-13)
+        np.testing.assert_allclose(found["exit/x"], h / np.cos(turn) - 2 * np.tan(turn), atol=1e-13)
+        np.testing.assert_allclose(found["exit/y"], 0.3, atol=1e-14)
+
+    def test_turned_plate_displaces_rays(self):
+        """A plate of thickness t, turned by a, displaces rays by t sin a (1 - cos a / (n cos b))."""
+        found = self.trace(**PARALLEL, block=[-3, -3, -0.4, 3, 3, 0.4, *GLASS], block_turns=[0, 0.6, 0],
+                           origin=[0, 0, -3], beam_radius=0.5, stop_plane=plane(3))
+        inner = np.arcsin(np.sin(0.6) / 1.5)
+        moved = 0.8 * np.sin(0.6) * (1 - np.cos(0.6) / (1.5 * np.cos(inner)))
+        np.testing.assert_allclose(found["exit/x"], found["start/x"] + moved, atol=1e-13)
+        np.testing.assert_allclose(found["exit/dx"], 0, atol=1e-14)
+
     def test_lens_of_two_half_balls_is_a_ball(self):
         ball, lens = (self.trace(**PARALLEL, **body, origin=[0, 0, -3], beam_radius=0.9, stop_plane=plane(2))
                       for body in ({"ball": [0, 0, 0, 1, *GLASS]}, {"lens": [0, 0, -1, 1, 1, -1, 2, *GLASS]}))
@@ -57,6 +76,24 @@ class Bodies(BodiesTest):
         (ball, ball_error), (lens, lens_error) = totals
         self.assertLess(abs(ball - lens), 4 * np.hypot(ball_error, lens_error))
         self.assertLess(lens_error / lens, 0.03)
+
+    def test_render_has_mirrors_and_absorbing_bodies(self):
+        """A ball of half the radius of a beam takes a quarter of its light; a mirror in even light is not seen."""
+        keys = {"stage_box": [-3, -3, -3, 3, 3, 3], "threads": 1, "samples": 40_000}
+        beam = {"beam_light": [0, 0, -3, 0, 0, 1, 2, 1], "sensor": "area", "sensor_at": [0, 0, 3],
+                "sensor_size": [5, 5], "pixels": [1, 1]}
+        for word, where in (("absorb", "absorbed_body"), ("mirror", "specular")):
+            self.call("render", **keys, **beam, ball=[0, 0, 0, 1, *GLASS], ball_face=word, out="light.h5")
+            found = datasets(self.folder / "light.h5")
+            error = found["energy/" + where + "_error"]
+            self.assertLess(abs(found["energy/" + where] - 0.25), 4 * error + 1e-3)
+            self.assertLess(error, 0.005)
+            if word == "absorb":  # some light that grazes a mirror reaches the sensor
+                self.assertLess(abs(found["total"] - 0.75), 4 * found["total_error"] + 1e-3)
+        self.call("render", **keys, environment=1, sensor="camera", sensor_at=[0, 0, 2.9], sensor_direction=[0, 0, -1],
+                  sensor_up=[0, 1, 0], field_of_view=1, pixels=[16, 16], block=[-0.5, -0.5, 0, 0.6, 0.7, 0.5, *GLASS],
+                  block_turns=[0.3, 0.5, 0.1], block_face="mirror", out="even.h5")
+        np.testing.assert_allclose(datasets(self.folder / "even.h5")["image"], 1, atol=1e-12)
 
     def test_thick_lens_and_cemented_pair_on_the_axis(self):
         """Back focal distances agree with paraxial refraction, n' u' = n u - y (n' - n)/R."""
@@ -268,6 +305,12 @@ class Refused(BodiesTest):
                 ({"ball": [0, 0, 0, 1, *GLASS] * 2}, "ball from -1 -1 -1 to 1 1 1: coincides with ball from -1 -1 -1"),
                 ({"ball": [0, 0, 0, 1, *GLASS], "lens": [0, 0, -1, 1, 1, -1, 2, *GLASS]}, "coincides with"),
                 ({"block": [0, 0, 1, 1, 1, 1 + 1e-14, *GLASS]}, "block from 0 0 1 to 1 1 1: is too thin"),
+                ({"cylinder": [0, 0, 1, 0, 0, 1, 1, *GLASS]}, "cylinder = 0 0 1 0 0 1: must have two different ends"),
+                ({"cylinder": [0, 0, 1, 0, 0, 2, 0, *GLASS]}, "cylinder, radius = 0: must be positive"),
+                ({"block": [0, 0, 1, 1, 1, 2, *GLASS] * 2, "block_turns": [0, 1, 0]},
+                 "block_turns = 0 1 0: requires three numbers for each of 2 bodies"),
+                ({"ball": [0, 0, 0, 1, *GLASS] * 2, "ball_face": "mirror"}, "ball_face = 1: requires a word for each ball"),
+                ({"lens_turns": [0, 1, 0]}, "lens_turns = 0 1 0: requires three numbers for each of 0 bodies"),
                 ({"body_sphere": [0, 0, 0, 1], "connect": [0, 0, 0, 0, 0, 1], "light": None, "stop_plane": None},
                  "body_sphere")):
             self.assert_refused([message], "trace", **self.KEYS | keys)

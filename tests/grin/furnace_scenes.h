@@ -54,10 +54,24 @@ inline std::vector<NamedRender> furnaces_of_bodies(const ScatteringMedium& mediu
   layers.bodies.push_back({Box{{-0.7, -0.8, -0.5}, {0.9, 0.8, 0.6}}, medium});
   layers.bodies.push_back({Box{{-0.7, -0.8, -0.5}, {0.9, 0.8, 0.3}}, medium, 0.2});
   layers.bodies.push_back({Box{{-0.7, -0.8, -0.5}, {0.9, 0.8, -0.1}}, medium, 0.6});
+  Stage turned{unit_box(), medium};  // a cylinder through a turned box
+  turned.bodies.push_back(
+      {TurnedShape(Box{{-0.5, -0.6, -0.4}, {0.6, 0.5, 0.5}}, {0.3, 0.5, -0.2}), medium, 0.2});
+  turned.bodies.push_back(
+      {TurnedShape::cylinder({-0.7, -0.6, 0.1}, {0.6, 0.7, -0.2}, 0.2), medium, 0.6});
+  Stage mirrors{unit_box(), medium};  // a mirror beside a ball of glass
+  mirrors.bodies.push_back({Sphere{Vec3(-0.3, 0.1, 0.2), 0.5}, medium, 0.4});
+  mirrors.bodies.push_back({TurnedShape(Box{{0.2, -0.7, -0.6}, {0.4, 0.6, 0.5}}, {0.1, 0.4, 0.2}),
+                            {},
+                            -1,
+                            "body_",
+                            BodyFace::reflects});
   const Luneburg luneburg(LuneburgProfile{.radius = 0.6}, Vec3(0.1, 0, 0.1));
   return {{"ball in a ball", scene_in(Homogeneous{0.5}, balls, environment(), whole_face())},
           {"ball in a Luneburg ball", scene_in(luneburg, balls, environment(), whole_face())},
-          {"layers", scene_in(Homogeneous{0.4}, layers, environment(), whole_face())}};
+          {"layers", scene_in(Homogeneous{0.4}, layers, environment(), whole_face())},
+          {"turned bodies", scene_in(Homogeneous{}, turned, environment(), whole_face())},
+          {"mirror", scene_in(Homogeneous{}, mirrors, environment(), whole_face())}};
 }
 
 }  // namespace flatspeckle::grin::tests

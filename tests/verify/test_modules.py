@@ -1,6 +1,7 @@
 """Checks includes against the libraries: dependencies have no cycles, and each folder name is used once.
 
 A module is a library, declared with flatspeckle_module(name ... LINK ...) in a CMakeLists.txt; a part is a folder in it.
+With --update, writes the picture of the modules into CONTRIBUTING.md.
 """
 
 import collections
@@ -11,10 +12,12 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+GUIDE = ROOT / "CONTRIBUTING.md"
 LIBRARIES = ["core", "flatland", "wave_solver", "grin", "mc"]
 PRODUCT = LIBRARIES + ["apps"]
 CODE = PRODUCT + ["bench"]
 INCLUDE = re.compile(r'^#include "([^"]+)"', re.MULTILINE)
+PICTURE = re.compile(r"(?<=```mermaid\n).*?(?=```)", re.DOTALL)
 MODULE = re.compile(r"^flatspeckle_module\((\w+)([^)]*)\)", re.MULTILINE)
 
 
@@ -79,6 +82,19 @@ def arrows_up(root):
     return found
 
 
+def picture(root):
+    """Returns a Mermaid diagram of the modules that include each other, without arrows that others imply."""
+    graph = collections.defaultdict(set)
+    folders = modules(root)
+    for file in sources(root, PRODUCT):
+        here = module_of(file, folders) or file.parts[0]
+        graph[here] |= {module_of(target, folders) or target.parts[0] for target in includes(root, file)} - {here}
+    reach = reachable(graph)
+    arrows = [f"  {here} --> {there}\n" for here in sorted(graph) for there in sorted(graph[here])
+              if not any(there in reach[other] for other in graph[here] - {there})]
+    return "flowchart TD\n" + "".join(arrows)
+
+
 def part_graph(root, folders):
     """Returns {folder: folders that its files include}."""
     graph = collections.defaultdict(set)
@@ -102,6 +118,10 @@ class Modules(unittest.TestCase):
 
     def test_includes_go_down(self):
         self.assertEqual(arrows_up(ROOT), [])
+
+    def test_picture_in_the_guide(self):
+        """Failed? test_modules.py --update"""
+        self.assertEqual(PICTURE.findall(GUIDE.read_text()), [picture(ROOT)])
 
     def test_parts_have_no_circle(self):
         self.assertEqual(circles(part_graph(ROOT, CODE)), [])
@@ -137,6 +157,9 @@ class Planted(unittest.TestCase):
         self.write("core/run/a.cpp", '#include "mc/slab/layer.h"\n')
         self.assertEqual(arrows_up(self.root), [("core/run/a.cpp", "mc/slab/layer.h")])
 
+    def test_picture(self):
+        self.assertEqual(picture(self.root), "flowchart TD\n  mc/slab --> core\n")
+
     def test_circle_of_parts(self):
         self.write("core/run/a.cpp", '#include "core/keys/b.h"\n')
         self.assertEqual(circles(part_graph(self.root, CODE)), [("core/keys", "core/run")])
@@ -151,4 +174,7 @@ class Planted(unittest.TestCase):
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--update"]:
+        GUIDE.write_text(PICTURE.sub(picture(ROOT), GUIDE.read_text()))
+        sys.exit()
     sys.exit(unittest.main())

@@ -22,7 +22,8 @@ class Interface {
         q1_(v.dot(normal_)),
         q2_squared_(q1_ * q1_ + jump_) {}
 
-  bool is_total() const { return q2_squared_ <= 0; }
+  /// Also true if the index beyond is 0, which stands for an opaque body.
+  bool is_total() const { return q2_squared_ <= 0 || n2_ == 0; }
 
   Vec3 reflected() const { return v_ - 2 * q1_ * normal_; }
 

@@ -97,6 +97,13 @@ inline double entry_distance(const AsphericLens& lens, const Vec3& x, const Vec3
   return lens.crossing_distance(x, d, false);
 }
 
+inline double exit_distance(const TurnedShape& shape, const Vec3& x, const Vec3& d) {
+  return shape.exit_distance(x, d);
+}
+inline double entry_distance(const TurnedShape& shape, const Vec3& x, const Vec3& d) {
+  return shape.entry_distance(x, d);
+}
+
 inline double exit_distance(const Surface& surface, const Vec3& x, const Vec3& d) {
   return std::visit([&](const auto& s) { return exit_distance(s, x, d); }, surface);
 }
@@ -107,6 +114,7 @@ inline double entry_distance(const Surface& surface, const Vec3& x, const Vec3& 
 /// Whether the inside of a surface is known to be convex.
 inline bool is_convex(const Surface& surface) {
   if (const auto* lens = std::get_if<Lens>(&surface)) return lens->is_convex();
+  if (const auto* turned = std::get_if<TurnedShape>(&surface)) return turned->is_convex();
   return !std::holds_alternative<LevelSurface>(surface) &&
          !std::holds_alternative<AsphericLens>(surface);
 }

@@ -19,9 +19,9 @@ struct SurfaceRegion {
   }
   /// Whether a straight line leaves the region only once.
   bool is_convex() const {
-    return surfaces.size() == 1 && !std::holds_alternative<Lens>(surfaces[0]) &&
-           !std::holds_alternative<LevelSurface>(surfaces[0]) &&
-           !std::holds_alternative<AsphericLens>(surfaces[0]);
+    return surfaces.size() == 1 &&
+           (std::holds_alternative<Sphere>(surfaces[0]) ||
+            std::holds_alternative<Plane>(surfaces[0]) || std::holds_alternative<Box>(surfaces[0]));
   }
   /// Returns the index of the surface that determines distance(x).
   std::size_t nearest(const Vec3& x) const {

@@ -4,6 +4,7 @@
 
 #include "grin/media/scattering/start_directions.h"
 #include "grin/render/lights/light_kind.h"
+#include "grin/render/stage/regions.h"
 
 namespace flatspeckle::grin {
 
@@ -23,6 +24,7 @@ class PointLightEnd {
   PointLightEnd(const PointLight& light, const Stage& stage, const IndexAt&) : light_(light) {
     if (!(distance(stage.boundary, light.x) < 0))
       throw InputError("point_light, position", listed(light.x), "must be inside the stage");
+    require_in_stage(stage, "point_light, position", light.x);
   }
 
   double power() const { return light_.power; }

@@ -47,7 +47,7 @@ AreaDetectorEnd::AreaDetectorEnd(const AreaDetector& detector, const Stage& stag
       view_("sensor_at", -centre_on(stage.boundary, detector.centre).inward, detector.up),
       acceptance_(detector.acceptance),
       regions_(stage) {
-  require_in_stage(stage, centre_);
+  require_in_stage(stage, "sensor_at", centre_);
   const auto* sphere = std::get_if<Sphere>(&boundary_);
   for (const double right : {-1, 1})
     for (const double up : {-1, 1}) {

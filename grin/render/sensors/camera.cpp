@@ -28,7 +28,7 @@ CameraEnd::CameraEnd(const Camera& camera, const Stage& stage)
       focus_distance_(1),
       regions_(stage) {
   if (camera.lens_radius != 0) place_lens(camera, stage);
-  require_in_stage(stage, centre_);
+  require_in_stage(stage, "sensor_at", centre_);
 }
 
 void CameraEnd::place_lens(const Camera& camera, const Stage& stage) {

@@ -50,7 +50,7 @@ RadialDetectorEnd::RadialDetectorEnd(const RadialDetector& detector, const Stage
       centre_(boundary_point(stage.boundary, detector.centre)->x),
       acceptance_(detector.acceptance),
       regions_(stage) {
-  require_in_stage(stage, centre_);
+  require_in_stage(stage, "sensor_at", centre_);
 }
 
 EndPosition RadialDetectorEnd::on_ring(const BoundaryPoint& at, int ring) const {

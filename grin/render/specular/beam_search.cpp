@@ -58,7 +58,7 @@ class BeamSearch : CrossingSearch<BeamSearch, BeamConnection> {
   /// Returns the result of one random trial.
   std::optional<BeamConnection> find_one(RandomStream& random,
                                          ConnectionStatistics& statistics) const {
-    return at_random(random, statistics).found;
+    return at_random(random, statistics, nullptr).found;
   }
 
   /// Returns the connection with this start direction and these crossings; nullopt if there is no
@@ -85,8 +85,10 @@ class BeamSearch : CrossingSearch<BeamSearch, BeamConnection> {
                                               RandomStream& random,
                                               ConnectionStatistics& statistics) const {
     ++statistics.pairs;
-    const auto draw = [&] { return at_random(random, statistics); };
-    Trial first = draw();
+    const auto draw = [&](const InterfaceCrossings* wanted) {
+      return at_random(random, statistics, wanted);
+    };
+    Trial first = draw(nullptr);
     if (!first.found || is_among(known, *first.found)) return std::nullopt;
     ++statistics.found;
     first.found->multiplicity = multiplicity(*first.found, draw, random, statistics) / others_share;
@@ -138,10 +140,11 @@ class BeamSearch : CrossingSearch<BeamSearch, BeamConnection> {
           aim.crossings = met;
         });
     if (is_there) return counted(aim, random, statistics);
-    statistics.add(TrialOutcome::no_approach);
-    return {TrialOutcome::no_approach};
+    return missed(statistics);
   }
-  Trial at_random(RandomStream& random, ConnectionStatistics& statistics) const {
+  /// wanted: the only crossings of interest, or null; see multiplicity().
+  Trial at_random(RandomStream& random, ConnectionStatistics& statistics,
+                  const InterfaceCrossings* wanted) const {
     Aim aim{walk_.start_direction(-light_.direction, options_.start, random)};
     Drawn drawn{aim, 1e-4, random};
     walk_.at_random(
@@ -150,6 +153,7 @@ class BeamSearch : CrossingSearch<BeamSearch, BeamConnection> {
               !walk_.aims_at_bodies())  // connections without crossings are left to along_light()
             drawn(met, 0, squared_error(part, ray));
         });
+    if (wanted && aim.crossings != *wanted) return missed(statistics);
     return counted(aim, random, statistics);
   }
   /// Returns the squared difference between the direction in which a segment that starts with `ray`

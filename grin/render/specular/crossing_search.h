@@ -107,13 +107,20 @@ class CrossingSearch {
     return trial;
   }
 
+  /// Counts a trial that does not approach the connection.
+  Trial missed(ConnectionStatistics& statistics) const {
+    statistics.add(TrialOutcome::no_approach);
+    return {TrialOutcome::no_approach};
+  }
+
   /// Estimates K of C26, the reciprocal of the probability that a trial finds the connection `one`,
-  /// which a first trial has found. draw() runs another trial.
+  /// which a first trial has found. draw(crossings) runs another trial; because a trial keeps the
+  /// crossings from which it starts, it may end at once if they are not these.
   template <class Draw>
   double multiplicity(const Found& one, const Draw& draw, RandomStream& random,
                       ConnectionStatistics& statistics) const {
     const auto finds_again = [&] {
-      const Trial again = draw();
+      const Trial again = draw(&one.crossings);
       return again.found && self().same(one, *again.found);
     };
     return reciprocal_probability(finds_again, options_.roulette_after, random, statistics);

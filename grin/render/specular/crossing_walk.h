@@ -90,6 +90,7 @@ class Segments {
                    space_.side(at.beyond, ray.x));
   }
 
+  double reflectivity(Part part) const { return stage_.reflectivity(part); }
   double extinction(Part part) const { return stage_.medium(part).mu_t(); }
   double reference(Part part) const { return stage_.medium(part).reference(); }
   double transmitted(Part part, const RayState& start, double length, RandomStream& random) const {
@@ -250,7 +251,7 @@ class CrossingWalk {
       if (i == 0) head.first_met = head.ray.x;
       const RayJump jump = segments_.jump(head.part, *met, head.ray);
       const bool reflects = crossings.reflects(i);
-      head.probability *= jump.probability(reflects);
+      head.probability *= jump.probability(reflects) * segments_.reflectivity(met->beyond);
       head.concave_crossings += jump.has_concave_parts();
       if (!(head.probability > 0)) return std::nullopt;
       jump.pass(reflects, head.ray, tangent);

@@ -45,11 +45,11 @@ class SpecularConnectionSearch : CrossingSearch<SpecularConnectionSearch, Specul
     if (!(gap_ > rounding_)) return {};
     const Trial chord = along_chord(random, statistics);
     const double probability = chord.found ? 0.6 : 0;
-    const auto draw = [&] {
-      return random.uniform() < probability ? chord : at_random(random, statistics);
+    const auto draw = [&](const InterfaceCrossings* wanted) {
+      return random.uniform() < probability ? chord : at_random(random, statistics, wanted);
     };
     ++statistics.pairs;
-    const Trial first = draw();
+    const Trial first = draw(nullptr);
     if (!first.found) return {};
     ++statistics.found;
     return {first.found, multiplicity(*first.found, draw, random, statistics)};
@@ -103,10 +103,13 @@ class SpecularConnectionSearch : CrossingSearch<SpecularConnectionSearch, Specul
     walk_.refracted(aim.direction, random, approaches(closest));
     return counted(aim, random, statistics);
   }
-  Trial at_random(RandomStream& random, ConnectionStatistics& statistics) const {
+  /// wanted: the only crossings of interest, or null; see multiplicity().
+  Trial at_random(RandomStream& random, ConnectionStatistics& statistics,
+                  const InterfaceCrossings* wanted) const {
     Aim aim{walk_.start_direction((to_.x - from_.x) / gap_, options_.start, random)};
     Drawn drawn{aim, 1e-4 * gap_ * gap_, random};
     walk_.at_random(aim.direction, random, approaches(drawn));
+    if (wanted && aim.crossings != *wanted) return missed(statistics);
     return counted(aim, random, statistics);
   }
 

@@ -54,9 +54,12 @@ double mean_density(const Stage& stage, Part part) {
   return inside > 0 ? sum / inside : 1;
 }
 
-void require_in_stage(const Stage& stage, const Vec3& x) {
+void require_in_stage(const Stage& stage, const char* key, const Vec3& x) {
   if (!(distance(stage.boundary, x) <= 1e-9 * x.norm()))
-    throw InputError("sensor_at", listed(x), "must be inside the stage");
+    throw InputError(key, listed(x), "must be inside the stage");
+  const Part part = Regions(stage).at(x);
+  if (part != around && stage.bodies[part - 1].is_opaque())
+    throw InputError(key, listed(x), "must not be in a mirror or an absorbing body");
 }
 
 }  // namespace flatspeckle::grin

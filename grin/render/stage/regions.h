@@ -94,7 +94,8 @@ class Regions {
 /// Returns the relative density of a part's medium, averaged over points of a lattice.
 double mean_density(const Stage& stage, Part part);
 
-/// Throws InputError unless x, the position of a sensor, is inside the stage or on its boundary.
-void require_in_stage(const Stage& stage, const Vec3& x);
+/// Throws InputError, naming the key, unless x, the position of a sensor or light, is inside the
+/// stage or on its boundary, and not in an opaque body.
+void require_in_stage(const Stage& stage, const char* key, const Vec3& x);
 
 }  // namespace flatspeckle::grin

@@ -114,6 +114,11 @@ Part Stage::field_part() const {
   return around;
 }
 
+bool Stage::has_opaque_bodies() const {
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [](const Body& body) { return body.is_opaque(); });
+}
+
 bool Stage::absorbs() const {
   return medium.mu_a > 0 || std::any_of(bodies.begin(), bodies.end(),
                                         [](const Body& body) { return body.medium.mu_a > 0; });

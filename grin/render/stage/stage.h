@@ -13,7 +13,8 @@ namespace flatspeckle::grin {
 using Part = int;
 inline constexpr Part around = 0;
 
-/// Effect of the surface of a body on light. `render` has bodies that refract alone.
+/// Effect of the surface of a body on light: refraction, or reflection or absorption of all light
+/// by an opaque body.
 enum class BodyFace { refracts, reflects, absorbs };
 
 /// A body in the stage with its own index and medium. At its surface light is refracted and
@@ -25,6 +26,8 @@ struct Body {
   const char* keys = "body_";         ///< prefix of the keys that define the body, for messages
   BodyFace face = BodyFace::refracts;
   std::string note = {};  ///< note for the user on how the surface was made, if there is one
+
+  bool is_opaque() const { return face != BodyFace::refracts; }
 };
 
 /// The volume in which light propagates. Light that reaches the boundary leaves the scene without
@@ -48,6 +51,7 @@ struct Stage {
   Part field_part() const;
   /// Whether some medium absorbs.
   bool absorbs() const;
+  bool has_opaque_bodies() const;
   /// Returns index - 1 of a part that the field does not fill.
   double excess_in(Part part) const {
     return part == around ? excess_around : *bodies[part - 1].excess;

@@ -23,6 +23,8 @@ class StraightStage {
         add(medium, stage.excess_in(part));
       else
         add(medium, field_excess);
+      if (part != around && stage.bodies[part - 1].face == BodyFace::absorbs)
+        parts_.back().reflectivity = 0;
     }
   }
 
@@ -35,6 +37,8 @@ class StraightStage {
   bool are_alike(Part a, Part b) const { return parts_[a].first_alike == parts_[b].first_alike; }
   /// Whether the index of a part differs from that of every other part (are_alike).
   bool is_alone(Part part) const { return parts_[part].is_alone; }
+  /// Fraction of totally reflected light that is not absorbed by an opaque body.
+  double reflectivity(Part part) const { return parts_[part].reflectivity; }
   /// Whether the index jumps at some surface.
   bool refracts() const { return refracts_; }
 
@@ -49,8 +53,7 @@ class StraightStage {
     const double growth_rate =
         log_gradient && in.is_uniform() ? log_gradient->dot(d) / in.mu_t() : 0;
     const bool is_usual = in.is_uniform() && !(growth_rate > 0);
-    double distance =
-        is_usual ? sample_free_flight(in.mu_t(), random.uniform()) : no_crossing;
+    double distance = is_usual ? sample_free_flight(in.mu_t(), random.uniform()) : no_crossing;
     SegmentEnd end = at_collision;
     if (!(is_usual && distance < regions_.clearance(flight.point))) {
       const auto exit = regions_.exit_distance(flight.point, d);
@@ -98,6 +101,9 @@ class StraightStage {
     flight.optical_depth -= std::log(probability);
     flight.direction = ray.v.normalized();
     if (!reflected) flight.point.part = to;
+    const double absorbed = (1 - reflectivity(to)) * flight.weight;
+    flight.absorbed_in_body += absorbed;
+    flight.weight -= absorbed;
   }
   /// Takes a flight through a surface without an index jump into part `to`.
   void pass(Flight& flight, Part to) const {
@@ -185,6 +191,7 @@ class StraightStage {
     std::optional<double> excess;
     Part first_alike;
     bool is_alone;
+    double reflectivity = 1;
   };
 
   void add(const PartMedium& medium, std::optional<double> excess) {

@@ -20,22 +20,31 @@ std::optional<Part> scattering_part(const Stage& stage) {
   return found;
 }
 
-/// Whether the modes of the medium are known (CaseMode).
+/// Whether the modes of the medium are known (CaseModes).
 bool has_modes(const ScatteringMedium& medium) {
   return medium.is_uniform() && (std::holds_alternative<IsotropicPhase>(medium.phase.which) ||
                                  std::holds_alternative<HgPhase>(medium.phase.which));
 }
 
-/// Returns the axis of a box along its shortest edge, if that is unique; else `towards`.
-Vec3 axis_of(const Surface& surface, const Vec3& towards) {
+/// Returns the axis of a slab, a box with one shortest edge; nullopt for other surfaces.
+std::optional<Vec3> axis_of_slab(const Surface& surface, const Vec3& towards) {
   const auto* box = std::get_if<Box>(&surface);
-  if (!box) return towards;
+  if (!box) return std::nullopt;
   int axis;
   const Vec3 size = box->high - box->low;
   const double shortest = size.minCoeff(&axis);
   constexpr double much = 1.5;
-  if ((size.array() < much * shortest).count() > 1) return towards;
+  if ((size.array() < much * shortest).count() > 1) return std::nullopt;
   return Vec3::Unit(axis) * (towards[axis] < 0 ? -1 : 1);
+}
+
+Vec3 middle_of(const Surface& surface) {
+  const Box box = bounds(surface);
+  return (box.low + box.high) / 2;
+}
+Vec3 size_of(const Surface& surface) {
+  const Box box = bounds(surface);
+  return box.high - box.low;
 }
 
 }  // namespace
@@ -43,44 +52,35 @@ Vec3 axis_of(const Surface& surface, const Vec3& towards) {
 std::optional<ControlVariates> ControlVariates::of(const Stage& stage, const Vec3& towards,
                                                    std::span<const PathPoint> starts) {
   const auto part = scattering_part(stage);
-  if (!part || stage.parts() > 2 || !has_modes(stage.medium_in(*part))) return std::nullopt;
-  const Vec3 axis = axis_of(stage.surface(*part), towards);
+  if (!part || stage.parts() > 2 || stage.has_opaque_bodies() || !has_modes(stage.medium_in(*part)))
+    return std::nullopt;
+  const auto of_slab = axis_of_slab(stage.surface(*part), towards);
+  const Vec3 axis = of_slab.value_or(towards);
   if (!(axis.norm() > 0)) return std::nullopt;
-  ControlVariates found(stage, *part, axis);
-  // the modes are smooth up to most_kappa, and finite up to most_growth
-  constexpr double most_kappa = 0.95, most_growth = 300;
-  const double kappa = found.mode_.kappa();
-  if (kappa > most_kappa || kappa * found.depth() > most_growth) return std::nullopt;
+  // fast modes describe layers near faces normal to the axis
+  ControlVariates found(stage, *part, axis, of_slab ? CaseModes::most_pairs : 1);
+  if (found.modes_.rates()[0] > found.largest_rate()) return std::nullopt;
   found.find_growth(starts);
   return found;
 }
 
-ControlVariates::ControlVariates(const Stage& stage, Part part, const Vec3& axis)
-    : mode_(stage.medium_in(part).albedo(), stage.medium_in(part).phase.mean_cosine()),
-      part_(part),
+ControlVariates::ControlVariates(const Stage& stage, Part part, const Vec3& axis, int pairs)
+    : part_(part),
       axis_(axis),
+      centre_(middle_of(stage.surface(part))),
       mu_t_(stage.medium_in(part).mu_t()),
-      albedo_(stage.medium_in(part).albedo()) {
-  const Box box = bounds(stage.surface(part));
-  centre_ = (box.low + box.high) / 2;
-  thickness_ = axis.cwiseAbs().dot(box.high - box.low);
-  tabulate();
+      albedo_(stage.medium_in(part).albedo()),
+      thickness_(axis.cwiseAbs().dot(size_of(stage.surface(part)))),
+      modes_(albedo_, stage.medium_in(part).phase.mean_cosine(), pairs, largest_rate()) {
   if (stage.parts() == 1) return;
   inside_excess_ = stage.excess_in(part);
   outside_excess_ = stage.excess_in(1 - part);
 }
 
-/// Tabulates the cubics through four values of the mode in each interval.
-void ControlVariates::tabulate() {
-  constexpr int intervals = 512;
-  for (int i = 0; i < intervals; ++i) {
-    double f[4];
-    for (int k = 0; k < 4; ++k) f[k] = mode_.angle(2 * (i + k / 3.0) / intervals - 1).scattered[0];
-    const double first = f[1] - f[0], second = f[2] - 2 * f[1] + f[0],
-                 third = f[3] - 3 * f[2] + 3 * f[1] - f[0];
-    cubics_.push_back(
-        {f[0], 3 * (first - second / 2 + third / 3), 4.5 * (second - third), 4.5 * third});
-  }
+/// Largest rate of modes that are smooth, and whose values in the part are finite.
+double ControlVariates::largest_rate() const {
+  constexpr double smooth = 0.95, most_growth = 300;
+  return std::min(smooth, most_growth / depth());
 }
 
 /// Compares the largest value of each mode in the part with its smallest value where light starts.
@@ -92,9 +92,10 @@ void ControlVariates::find_growth(std::span<const PathPoint> starts) {
     low = std::min(low, z);
     high = std::max(high, z);
   }
-  const double rate = mode_.kappa() * mu_t_;
+  const double rate = modes_.rates()[0] * mu_t_;
   grows_little_ = rate * (thickness_ / 2 - low) <= little;
-  has_decaying_ = mode_.kappa() > 0 && rate * (high + thickness_ / 2) <= little;
+  // paths sample the fast modes at a face if they sample the slow one there
+  if (!(rate * (high + thickness_ / 2) <= little)) is_used_.tail<CaseModes::most_pairs>() = 0;
 }
 
 ControlVariates::Arrival ControlVariates::add_flight(const Flight& flight, const FlightLog& log,
@@ -110,14 +111,12 @@ ControlVariates::Arrival ControlVariates::add_flight(const Flight& flight, const
       const Modes grown = growth(is_last ? flight.point.x : log[i + 1].start.x);
       const bool collides = is_last && flight.end == Flight::End::collision;
       const Modes there =
-          collides ? arriving(grown, now.angle) : departing(part_, grown, now.angle);
+          collides ? modes_.arriving(grown, now.angle) : modes_.departing(grown, now.angle);
       if (collides) {
         end.growth = grown;
         end.arriving = there;
       }
-      const Modes change = after * segment.weight * there - weight * now.modes;
-      sums[0] += change[0];
-      sums[1] += change[1];
+      add(after * segment.weight * there - weight * now.modes, sums);
     }
     if (is_last) break;
     weight = after * log[i + 1].weight;
@@ -147,13 +146,13 @@ ControlVariates::Departure ControlVariates::cross(const FlightSegment& from,
   };
   const Modes expected = reflectance * leaving(from.start.part, face.reflected()) +
                          (1 - reflectance) * leaving(other, *face.refracted());
-  sums[0] += weight * (now.modes[0] - expected[0]);
-  sums[1] += weight * (now.modes[1] - expected[1]);
+  add(weight * (now.modes - expected), sums);
   const double more_reflected = (is_reflected ? 1 : 0) - reflectance;
+  double* const leaving_light = &sums[Modes::SizeAtCompileTime];  // ahead, behind, outside
   if (!is_inside)
-    sums[4] += weight * more_reflected;
+    leaving_light[2] += weight * more_reflected;
   else
-    sums[axis_.dot(normal) * normal.dot(v) > 0 ? 2 : 3] -= weight * more_reflected;
+    leaving_light[axis_.dot(normal) * normal.dot(v) > 0 ? 0 : 1] -= weight * more_reflected;
   return now;
 }
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "grin/media/scattering/diffusion_rate.h"
+#include "grin/media/scattering/case_modes.h"
 #include "grin/render/flights/space.h"
 #include "grin/render/transport/film.h"
 #include "grin/render/transport/path_vertex.h"
@@ -14,16 +14,16 @@
 namespace flatspeckle::grin {
 
 /// Martingale control variates of light paths in the one part of a stage that scatters, along an
-/// axis: the Case eigenmodes that grow and that decay along it; light that leaves the part ahead,
-/// and behind; and light that its surface reflects outside. Outside of the part the modes are 0. A
-/// change along a path (flight, reflection or refraction, scattering, roulette) is compared with
-/// its mean, so that the sums have mean 0 wherever paths end. The importance of a slab is nearly a
-/// linear combination of these; its coefficients follow from a regression (controlled_jackknife()).
+/// axis: the eigenmodes that grow and that decay along it (CaseModes); light that leaves the part
+/// ahead, and behind; and light that its surface reflects outside. Outside of the part the modes
+/// are 0. A change along a path (flight, reflection or refraction, scattering, roulette) is
+/// compared with its mean, so that the sums have mean 0 wherever paths end. The importance of a
+/// slab is nearly a linear combination of these; its coefficients follow from a regression
+/// (controlled_jackknife()).
 class ControlVariates {
  public:
   using Sums = std::array<double, control_variate_count>;
-  /// Values of the two modes.
-  using Modes = Eigen::Array2d;
+  using Modes = CaseModes::Values;
 
   /// Returns nullopt unless exactly one part scatters, is uniform and a box or a sphere, and has a
   /// phase function and a decay for which the modes are known. towards: direction from the lights
@@ -40,74 +40,59 @@ class ControlVariates {
   /// another mean than 0.
   bool grows_little() const { return grows_little_; }
 
-  /// Returns the growth of the modes at a position (CaseMode::growth).
+  /// Returns the growth of the modes at a position (CaseModes::growth).
   Modes growth(const Vec3& x) const {
-    const double z = mu_t_ * axis_.dot(x - centre_), grown = mode_.growth(z);
-    return {grown, has_decaying_ ? 1 / grown : 0};
+    return is_used_ * modes_.growth(mu_t_ * axis_.dot(x - centre_));
   }
-  CaseMode::Angle angle(const Vec3& direction) const {
-    const double mu = std::clamp(axis_.dot(direction), -1.0, 1.0);
-    return {mu, {scattered(mu), scattered(-mu)}};
+  CaseModes::Angle angle(const Vec3& direction) const {
+    return modes_.angle(std::clamp(axis_.dot(direction), -1.0, 1.0));
   }
   /// Returns the modes before a free flight, in a part.
-  Modes departing(Part part, const Modes& growth, const CaseMode::Angle& along) const {
-    if (part != part_) return {0, 0};
-    return {mode_.departing(growth[0], along),
-            has_decaying_ ? mode_.departing(growth[1], along.reversed()) : 0};
-  }
-  /// Returns the modes before a collision.
-  Modes arriving(const Modes& growth, const CaseMode::Angle& along) const {
-    return {mode_.arriving(growth[0], along),
-            has_decaying_ ? mode_.arriving(growth[1], along.reversed()) : 0};
+  Modes departing(Part part, const Modes& growth, const CaseModes::Angle& along) const {
+    return part == part_ ? modes_.departing(growth, along) : Modes(Modes::Zero());
   }
 
   /// State of a path at the start of a flight or, with another weight, at its end.
   struct Departure {
-    CaseMode::Angle angle{};
-    Modes modes = {0, 0};
+    CaseModes::Angle angle{};
+    Modes modes = Modes::Zero();
   };
   Departure departure(Part part, const Modes& growth, const Vec3& direction) const {
-    const CaseMode::Angle along = angle(direction);
+    const CaseModes::Angle along = angle(direction);
     return {along, departing(part, growth, along)};
   }
-  /// End of a flight: the departure of its last segment and, at a collision, growth() and
-  /// arriving() there.
+  /// End of a flight: the departure of its last segment and, at a collision, growth() and the modes
+  /// before the collision there.
   struct Arrival {
     Departure from{};
-    Modes growth = {0, 0}, arriving = {0, 0};
+    Modes growth = Modes::Zero(), arriving = Modes::Zero();
   };
+  /// Adds a change of the modes.
+  static void add(const Modes& change, Sums& sums) {
+    for (Eigen::Index i = 0; i < change.size(); ++i) sums[static_cast<std::size_t>(i)] += change[i];
+  }
   /// Adds the changes during a flight. before: weight before the flight; after: weight that a
   /// flight has if it loses nothing in parts that absorb without scattering.
   Arrival add_flight(const Flight& flight, const FlightLog& log, const Departure& from,
                      double before, double after, Sums& sums) const;
 
  private:
-  ControlVariates(const Stage& stage, Part part, const Vec3& axis);
+  ControlVariates(const Stage& stage, Part part, const Vec3& axis, int pairs);
+  double largest_rate() const;
   void find_growth(std::span<const PathPoint> starts);
-  void tabulate();
-
-  /// Returns CaseMode::Angle::scattered[0] for a cosine, by cubic interpolation with an error below
-  /// 1e-7.
-  double scattered(double mu) const {
-    const double at = (mu + 1) / 2 * static_cast<double>(cubics_.size());
-    const auto i = std::min(static_cast<std::size_t>(at), cubics_.size() - 1);
-    const double t = at - static_cast<double>(i);
-    const std::array<double, 4>& c = cubics_[i];
-    return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
-  }
 
   /// Adds the changes at the surface between two segments of a flight; returns the departure from
   /// it.
   Departure cross(const FlightSegment& from, const FlightSegment& to, double weight,
                   Sums& sums) const;
 
-  CaseMode mode_;
-  std::vector<std::array<double, 4>> cubics_;  ///< coefficients in equal intervals of the cosine
   Part part_;
   double outside_excess_ = 0, inside_excess_ = 0;  ///< index - 1 around the part, and in it
   Vec3 axis_, centre_;
   double mu_t_, albedo_, thickness_;
-  bool grows_little_ = false, has_decaying_ = false;
+  CaseModes modes_;
+  Modes is_used_ = Modes::Ones();  ///< 1 or 0 for each mode
+  bool grows_little_ = false;
 };
 
 /// Control variates along a path that is split.
@@ -115,7 +100,8 @@ class PathControls {
  public:
   /// Values at a collision; `arriving` is divided by the albedo.
   struct Place {
-    ControlVariates::Modes growth = {0, 0}, arriving = {0, 0};
+    ControlVariates::Modes growth = ControlVariates::Modes::Zero(),
+                           arriving = ControlVariates::Modes::Zero();
   };
 
   /// Holds references to the control variates and to their sums.
@@ -145,10 +131,7 @@ class PathControls {
   void go_to(const Place& place) { at_ = place; }
 
  private:
-  void add(const ControlVariates::Modes& change) {
-    sums_[0] += change[0];
-    sums_[1] += change[1];
-  }
+  void add(const ControlVariates::Modes& change) { ControlVariates::add(change, sums_); }
 
   const ControlVariates& of_;
   ControlVariates::Sums& sums_;

@@ -72,7 +72,7 @@ std::vector<PathPoint> starts_of(const StageLights& lights) {
 std::optional<DepthImportance> DepthImportance::of(const Stage& stage, const StageLights& lights,
                                                    const std::vector<Sensor>& sensors) {
   if (!is_in_closed_form(stage.boundary)) return std::nullopt;
-  if (stage.bodies.size() > 1) return std::nullopt;
+  if (stage.bodies.size() > 1 || stage.has_opaque_bodies()) return std::nullopt;
   if (stage.parts() > 1 && !is_in_closed_form(stage.surface(1))) return std::nullopt;
   DepthImportance found(stage, lights, sensors);
   if (!found.is_thick_ && !found.control_variates_) return std::nullopt;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/numbers/complex.h"
+#include "grin/media/scattering/case_modes.h"
 #include "grin/render/transport/field_decay.h"
 #include "grin/render/transport/tagging_sound.h"
 
@@ -93,8 +94,8 @@ struct PixelShare {
   double share;
 };
 
-/// Number of control variates of light paths (control_variates.h).
-inline constexpr std::size_t control_variate_count = 5;
+/// Number of control variates of light paths: modes, and light that leaves (control_variates.h).
+inline constexpr std::size_t control_variate_count = 2 * CaseModes::most_pairs + 3;
 
 /// Accumulators of a batch: for each pixel, the sums laid out by TimeBins.
 class Film {

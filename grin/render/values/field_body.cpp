@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -43,8 +44,26 @@ double volume(const Surface& surface) {
   if (const auto* level = std::get_if<LevelSurface>(&surface)) return level->volume();
   if (const auto* lens = std::get_if<Lens>(&surface)) return lens->volume();
   if (const auto* lens = std::get_if<AsphericLens>(&surface)) return lens->volume();
+  if (const auto* turned = std::get_if<TurnedShape>(&surface)) return turned->volume();
   const auto [low, high] = bounds(surface);
   return (high - low).prod();
+}
+
+/// Returns the rotation of each of `count` bodies: that of the key, or none.
+std::vector<Vec3> rotations_of(const Keys& keys, const std::vector<double>& turns,
+                               std::size_t count) {
+  std::vector<Vec3> rotations(count, Vec3::Zero());
+  const auto given = parts_of(keys.read(turns), 3);
+  if (given.empty()) return rotations;
+  if (given.size() != count)
+    throw InputError(keys.name(turns), number_text(turns),
+                     "requires three numbers for each of " + std::to_string(count) + " bodies");
+  for (std::size_t i = 0; i < count; ++i) rotations[i] = vector_of(given[i]);
+  return rotations;
+}
+Surface turned(const TurnedShape::Shape& shape, const Vec3& rotation) {
+  if (rotation.norm() > 0) return TurnedShape(shape, rotation);
+  return std::visit([](const auto& s) -> Surface { return s; }, shape);
 }
 
 IndexRange index_range(const SceneField& field, const Surface& region, const std::string& name) {
@@ -142,6 +161,7 @@ std::vector<Body> make_aspheres(const Keys& keys, const PlainBodyValues& values)
   constexpr std::size_t terms_each = 6;
   if (!terms.empty() && terms.size() != terms_each * rows.size())
     throw InputError("asphere_terms: requires six coefficients for each asphere");
+  const auto rotations = rotations_of(keys, values.asphere_turns, rows.size());
   std::vector<Body> bodies;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Numbers row = rows[i];
@@ -157,26 +177,91 @@ std::vector<Body> make_aspheres(const Keys& keys, const PlainBodyValues& values)
     if (!lens)
       throw InputError("asphere", number_text({row.begin(), row.begin() + 9}),
                        "faces must extend to the radius and must not meet within it");
-    bodies.push_back(body_of("asphere, ", *lens, row.subspan(9)));
+    bodies.push_back(body_of("asphere, ", turned(*lens, rotations[i]), row.subspan(9)));
   }
   return bodies;
 }
 
-/// Sets the index of lenses, the last bodies of the list, to that of their glass at the wavelength.
+std::vector<Body> make_blocks(const Keys& keys, const PlainBodyValues& values) {
+  const auto rows = parts_of(keys.read(values.block), 10);
+  const auto rotations = rotations_of(keys, values.block_turns, rows.size());
+  std::vector<Body> bodies;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Box box{vector_of(rows[i]), vector_of(rows[i], 3)};
+    if (!((box.high - box.low).minCoeff() > 0))
+      throw InputError("block", number_text({rows[i].begin(), rows[i].begin() + 6}),
+                       "must have its low corner first");
+    bodies.push_back(body_of("block, ", turned(box, rotations[i]), rows[i].subspan(6)));
+  }
+  return bodies;
+}
+
+std::vector<Body> make_cylinders(const Keys& keys, const PlainBodyValues& values) {
+  std::vector<Body> bodies;
+  for (const Numbers row : parts_of(keys.read(values.cylinder), 11)) {
+    const Vec3 from = vector_of(row), to = vector_of(row, 3);
+    if (!((to - from).norm() > 0))
+      throw InputError("cylinder", number_text({row.begin(), row.begin() + 6}),
+                       "must have two different ends");
+    const double radius = positive("cylinder, radius", row[6]);
+    bodies.push_back(
+        body_of("cylinder, ", TurnedShape::cylinder(from, to, radius), row.subspan(7)));
+  }
+  return bodies;
+}
+
+std::vector<Body> make_lenses(const Keys& keys, const PlainBodyValues& values) {
+  const auto rows = parts_of(keys.read(values.lens), lens_numbers + 4);
+  const auto rotations = rotations_of(keys, values.lens_turns, rows.size());
+  std::vector<Body> bodies;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    bodies.push_back(body_of("lens, ", turned(lens_of("lens", rows[i]), rotations[i]),
+                             rows[i].subspan(lens_numbers)));
+  return bodies;
+}
+
+/// Sets the index of lenses to that of their glass at the wavelength.
 void fill_with_glass(const Keys& keys, const PlainBodyValues& values,
-                     const std::optional<double>& length_unit, std::vector<Body>& bodies) {
+                     const std::optional<double>& length_unit, std::vector<Body>& lenses) {
   const auto& glasses = keys.read(values.lens_glass);
   if (glasses.empty()) return;
-  const std::size_t lenses = values.lens.size() / (lens_numbers + 4);
-  if (glasses.size() != lenses)
+  if (glasses.size() != lenses.size())
     throw InputError("lens_glass: requires a glass for each lens, or - for the index of the lens");
   if (!length_unit) throw InputError("lens_glass: requires length_unit, such as mm");
   constexpr double micrometres = 1e6;
   const double wavelength = keys.required(values.wavelength) * *length_unit * micrometres;
-  for (std::size_t i = 0; i < lenses; ++i)
+  for (std::size_t i = 0; i < lenses.size(); ++i)
     if (glasses[i] != "-")
-      bodies[bodies.size() - lenses + i].excess =
-          glass_index(keys.name(values.lens_glass), glasses[i], wavelength) - 1;
+      lenses[i].excess = glass_index(keys.name(values.lens_glass), glasses[i], wavelength) - 1;
+}
+
+/// Calls use(name of the key of a kind of body, words of their faces).
+template <class Values, class Use>
+void for_each_face(Values& values, const Use& use) {
+  use("ball", values.ball_face);
+  use("block", values.block_face);
+  use("cylinder", values.cylinder_face);
+  use("lens", values.lens_face);
+  use("asphere", values.asphere_face);
+}
+
+/// Sets what the surfaces of bodies do. Throws InputError unless there is a word for each body.
+void set_faces(const Keys& keys, const PlainBodyValues& values, std::vector<Body>& bodies) {
+  for_each_face(values, [&](const std::string& kind, const std::vector<std::string>& member) {
+    const auto& words = keys.read(member);
+    std::size_t next = 0, count = 0;
+    for (const Body& body : bodies) count += std::string(body.keys) == kind + ", ";
+    if (words.empty()) return;
+    if (words.size() != count)
+      throw InputError(kind + "_face", words.size(), "requires a word for each " + kind);
+    for (Body& body : bodies) {
+      if (std::string(body.keys) != kind + ", ") continue;
+      const std::string& word = words[next++];
+      body.face = word == "mirror"   ? BodyFace::reflects
+                  : word == "absorb" ? BodyFace::absorbs
+                                     : BodyFace::refracts;
+    }
+  });
 }
 
 }  // namespace
@@ -196,6 +281,12 @@ void add_keys(Keys& keys, PlainBodyValues& values) {
                ": a box with its own index and medium, given by two opposite corners")
       .each_of(10, block)
       .units("length length length length length length 1 1/length 1/length 1");
+  const std::string cylinder = "x y z x y z radius index mu_s mu_a g";
+  keys.add("cylinder", values.cylinder,
+           cylinder +
+               ": a cylinder with its own index and medium, given by the two ends of its axis")
+      .each_of(11, cylinder)
+      .units("length length length length length length length 1 1/length 1/length 1");
   const std::string lens = std::string(lens_words) + " index mu_s mu_a g";
   keys.add("lens", values.lens,
            lens +
@@ -218,6 +309,17 @@ void add_keys(Keys& keys, PlainBodyValues& values) {
            "rho^6 and rho^8 in z")
       .each_of(6, "a4 a6 a8 of the front, a4 a6 a8 of the back")
       .only_of("asphere");
+  const auto add_turns = [&](const std::string& body, std::vector<double>& member) {
+    keys.add(body + "_turns", member,
+             "Rotation of each " + body +
+                 " about its middle, by the length of this vector, about its direction")
+        .each_of(3, "x y z")
+        .unit("rad")
+        .only_of(body);
+  };
+  add_turns("block", values.block_turns);
+  add_turns("lens", values.lens_turns);
+  add_turns("asphere", values.asphere_turns);
   keys.add("lens_glass", values.lens_glass,
            "Glass of each lens, which replaces its index: nd/Vd (index and Abbe number, as "
            "1.5168/64.17), six coefficients of Sellmeier B1/B2/B3/C1/C2/C3 (C in square "
@@ -241,6 +343,13 @@ void add_keys(Keys& keys, PlainBodyValues& values) {
       .units("1 1/length 1/length 1")
       .only_of("mesh");
   add_mesh_keys(keys, "mesh", values.mesh_shape);
+  for_each_face(values, [&](const char* body, std::vector<std::string>& words) {
+    keys.add(std::string(body) + "_face", words,
+             std::string("What the surface of each ") + body +
+                 " does: refract (default), mirror (reflects all light) or absorb")
+        .one_of({"refract", "mirror", "absorb"})
+        .only_of(body);
+  });
 }
 
 std::vector<Body> make_plain_bodies(const Keys& keys, const PlainBodyValues& values,
@@ -249,17 +358,16 @@ std::vector<Body> make_plain_bodies(const Keys& keys, const PlainBodyValues& val
   for (const Numbers row : parts_of(keys.read(values.ball), 8))
     bodies.push_back(body_of("ball, ", Sphere{vector_of(row), positive("ball, radius", row[3])},
                              row.subspan(4)));
-  for (const Numbers row : parts_of(keys.read(values.block), 10)) {
-    const Box box{vector_of(row), vector_of(row, 3)};
-    if (!((box.high - box.low).minCoeff() > 0))
-      throw InputError("block", number_text({row.begin(), row.begin() + 6}),
-                       "must have its low corner first");
-    bodies.push_back(body_of("block, ", box, row.subspan(6)));
-  }
-  for (const Numbers row : parts_of(keys.read(values.lens), lens_numbers + 4))
-    bodies.push_back(body_of("lens, ", lens_of("lens", row), row.subspan(lens_numbers)));
-  fill_with_glass(keys, values, length_unit, bodies);
-  for (Body& body : make_aspheres(keys, values)) bodies.push_back(std::move(body));
+  std::vector<Body> lenses = make_lenses(keys, values);
+  fill_with_glass(keys, values, length_unit, lenses);
+  const auto add = [&](std::vector<Body> more) {
+    std::ranges::move(more, std::back_inserter(bodies));
+  };
+  add(make_blocks(keys, values));
+  add(std::move(lenses));
+  add(make_aspheres(keys, values));
+  add(make_cylinders(keys, values));
+  set_faces(keys, values, bodies);
   return bodies;
 }
 

@@ -23,7 +23,9 @@ struct MeshValues {
 /// Values of the keys of bodies with constant index and medium, one body per row of numbers or
 /// mesh.
 struct PlainBodyValues {
-  std::vector<double> ball{}, block{}, lens{}, asphere{}, asphere_terms{};
+  std::vector<double> ball{}, block{}, cylinder{}, lens{}, asphere{}, asphere_terms{};
+  std::vector<std::string> ball_face{}, block_face{}, cylinder_face{}, lens_face{}, asphere_face{};
+  std::vector<double> block_turns{}, lens_turns{}, asphere_turns{};
   std::vector<std::string> mesh{};
   std::vector<double> mesh_material{};
   std::vector<std::string> lens_glass{};

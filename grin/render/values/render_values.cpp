@@ -368,6 +368,7 @@ FilledStage make_stage(const Keys& keys, const StageValues& values, const IndexF
   }
   for (Body& body : make_plain_bodies(keys, values.plain_bodies, length_unit)) {
     check_within(body, *boundary, "stage");
+    if (body.is_opaque()) body.excess = -1;  // Interface
     stage.bodies.push_back(std::move(body));
   }
   sort_by_size(stage.bodies);

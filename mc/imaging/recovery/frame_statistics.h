@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/result/invariant.h"
-#include "mc/imaging/recovery/camera_noise.h"
+#include "mc/theory/detector_noise.h"
 
 namespace flatspeckle::mc {
 

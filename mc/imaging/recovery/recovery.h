@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/keys/keys.h"
-#include "mc/imaging/recovery/camera_noise.h"
+#include "mc/theory/detector_noise.h"
 #include "mc/imaging/recovery/deconvolution.h"
 #include "mc/imaging/recovery/frame_statistics.h"
 #include "mc/imaging/recovery/line_object.h"

@@ -6,7 +6,7 @@
 
 #include "core/frames/frames.h"
 #include "core/result/invariant.h"
-#include "mc/imaging/recovery/camera_noise.h"
+#include "mc/theory/detector_noise.h"
 
 namespace flatspeckle::mc {
 

@@ -10,7 +10,7 @@
 #include "core/result/dataset_row.h"
 #include "core/result/invariant.h"
 #include "core/result/result_file.h"
-#include "mc/imaging/recovery/camera_noise.h"
+#include "mc/theory/detector_noise.h"
 #include "mc/imaging/recovery/line_object.h"
 
 namespace flatspeckle::mc {

@@ -140,6 +140,28 @@ TEST_CASE("distance: layers of one medium equal the undivided medium") {
     CHECK(cut[n].real() == doctest::Approx(whole[n].real()).epsilon(1e-6));
 }
 
+TEST_CASE("distance: many delays agree with each of them alone") {
+  // Corrections by higher degrees are interpolated between some of the many delays.
+  const double tolerance = 2e-3;
+  std::vector<double> delays;
+  for (double delay = 1e-4; delay < 0.03; delay *= 1.6) delays.push_back(delay);
+  const std::vector<double> distances{5, 20, 40};
+  const Scene scene = layered_tissue(tissue);
+  const Refined many = distance_solution(scene, rings(distances, 1, delays), tolerance);
+  for (std::size_t k = 0; k < delays.size(); k += 3) {
+    const auto alone = distance_solution(scene, rings(distances, 1, {delays[k]}), tolerance / 2);
+    for (std::size_t d = 0; d < distances.size(); ++d) {
+      CAPTURE(delays[k]);
+      CAPTURE(distances[d]);
+      const std::size_t n = (k + 1) * distances.size() + d;
+      const double expected = alone.value[distances.size() + d].real(),
+                   least = 0.01 * alone.value[d].real();
+      CHECK(std::abs(many.value[n].real() - expected) <
+            tolerance / 4 * std::max(expected, least) + std::abs(many.error[n]));
+    }
+  }
+}
+
 TEST_CASE("distance: derivatives agree with differences") {
   auto layers = head;
   auto request = rings({10, 30}, 3, {0.003});
