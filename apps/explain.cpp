@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <compare>
+#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <set>
@@ -99,14 +100,35 @@ void print_run(const ResultReader& file) {
             << "\n\n";
 }
 
+/// Prints the properties of each layer of a medium of layers.
+void print_layers(const ResultReader& file) {
+  if (!file.has("layer")) return;
+  const auto values = [&](const char* name) { return file.dataset<double>(name); };
+  const auto thickness = values("layer_thickness"), depth = values("layer_optical_depth"),
+             g = values("layer_g"), albedo = values("layer_albedo"), index = values("layer_index");
+  std::printf("  %-5s %12s %13s %8s %8s %8s %12s\n", "layer", "thickness", "optical depth", "g",
+              "albedo", "index", "l*");
+  for (std::size_t i = 0; i < thickness.size(); ++i) {
+    std::printf("  %-5zu %12.6g %13.6g %8.5g %8.5g %8.5g", i, thickness[i], depth[i], g[i],
+                albedo[i], index[i]);
+    const double losses = depth[i] * (1 - g[i] * albedo[i]);
+    losses > 1e-9 ? std::printf(" %12.6g\n", thickness[i] / losses) : std::printf(" %12s\n", "-");
+  }
+}
+
 void print_medium(const ResultReader& file) {
-  const char* title = "Medium\n";
+  const char* title =
+      file.has("layer") ? "Medium: means over the depth of all layers; medium_index and wavelength "
+                          "are those of the first layer\n"
+                        : "Medium\n";
   for (const AttributeRow& row : scene_table.attributes) {
     const std::string value = row.object.empty() ? attribute_text(file, row) : "";
     if (value.empty()) continue;
     std::cout << title << "  " << row.name << " = " << value << ": " << row.meaning << '\n';
     title = "";
   }
+  std::cout << std::flush;
+  print_layers(file);
   if (*title == '\0') std::cout << '\n';
 }
 

@@ -216,15 +216,21 @@ ExportTable table_of(const ResultReader& file, const std::vector<std::string>& n
 struct ExportValues {
   std::vector<std::string> words;
   std::string to{};
+  std::vector<std::string> select{};
   std::int64_t nodes = 65;
 };
 
 void add_keys(Keys& keys, ExportValues& values) {
   keys.add("to", values.to,
            "File to write instead of CSV; its ending is the format. .npy: numbers of one dataset; "
-           ".pfm: a picture, 32-bit floats; .png: a picture for display; .tif: a picture or "
-           "several frames, 32-bit floats, which recover and other programs read; .vtk or .npy of "
+           ".pfm or .exr (OpenEXR, channel Y): a picture, 32-bit floats; .png: a picture for "
+           "display; .tif: a picture or several frames, 32-bit floats, which recover and other programs read; .vtk or .npy of "
            "ball_spline, radial_spline or excess: the index of a designed field");
+  keys.add("select", values.select,
+           "Elements of the dataset to write, such as realization=0 delay=2: an index, from 0, for "
+           "each axis that the file leaves out. Pictures of a complex dataset have its squared "
+           "magnitude")
+      .only_of("to");
   keys.add("nodes", values.nodes,
            "Number of points along each axis at which the index of a designed field is written")
       .from(2, 1025)
@@ -237,9 +243,12 @@ int export_to_file(const Subcommand& command, const ExportValues& values, const 
   const Keys& keys = command.keys();
   const std::string& to = keys.read(values.to);
   if (names.size() != 1) throw InputError("to", to, "requires the name of one dataset");
-  if (is_designed_field(names.front())) keys.read(values.nodes);
+  if (is_designed_field(names.front()))
+    keys.read(values.nodes);
+  else
+    keys.read(values.select);
   if (!command.settle()) return ExitStatus::done;
-  std::puts(export_file(result, names.front(), to, values.nodes).c_str());
+  std::puts(export_file(result, names.front(), to, values.nodes, values.select).c_str());
   return ExitStatus::done;
 }
 

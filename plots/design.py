@@ -50,7 +50,9 @@ def draw_search(axis, result):
     if result.has("rms/held_out_half_step"):
         axis.axhline(float(result.values("rms/held_out_half_step")), color="black", linewidth=0.8,
                      linestyle=":", label="rays not used")
-    axis.set(xlabel="number of traces of each ray", ylabel="RMS miss distance of rays")
+    of_pictures = result.has("picture/shown")
+    axis.set(xlabel="traces of each ray",
+             ylabel="difference of pictures (RMS)" if of_pictures else "RMS miss distance of rays")
     axis.legend(loc="upper right", handlelength=1.2, fontsize=6)
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Diffusing-wave spectroscopy: field correlation of light transmitted or reflected by slabs against delay, from any
-number of `covariance --delays` results. Delays are in seconds if all results have them in seconds, and otherwise scaled
-as in diffusion theory."""
+"""Diffusing-wave spectroscopy: correlation of light transmitted or reflected by slabs against delay, from any number of
+`covariance --delays` results: g2 - 1 over microseconds if all results have delays in seconds, and otherwise the field
+correlation over delays that are scaled as in diffusion theory."""
 
 from lib import decay, script, theory
 
@@ -24,12 +24,19 @@ def scaled_label(dimension, reflected):
     return rf"scaled delay $x = {root}" + ("$" if reflected else r"\,L/\ell^*$")
 
 
-def seconds(result):
-    return 1 if result.unit("delay") == "s" else None
+def microseconds(result):
+    return 1e6 if result.unit("delay") == "s" else None
+
+
+def beta(result):
+    return result.attribute("beta", None, "intensity_correlation") if result.has("intensity_correlation") else None
 
 
 def closed_form(curves):
-    """Returns the limit of thick slabs: x/sinh x in transmission; exp(-gamma x) if all light is reflected alike."""
+    """Returns the limit of thick slabs: x/sinh x in transmission; exp(-gamma x) if all light is reflected alike; None
+    for layers."""
+    if any(curve.result.has("layer") for curve in curves):
+        return None
     if not any(curve.reflected for curve in curves):
         return lambda x: x / np.sinh(x), r"$x/\sinh x$"
     factors = [1 + curve.result.attribute("extrapolation_length", np.nan) /
@@ -41,8 +48,8 @@ def closed_form(curves):
 
 DELAYS = decay.Decay("field_correlation", "--delays",
                      lambda reflected: "reflected_diffusion_theory" if reflected else "diffusion_theory",
-                     theory.delayed_diffusion, rate, scaled_delay, seconds, r"delay $\tau$ (s)", scaled_label,
-                     r"field correlation $g_1$")
+                     theory.delayed_diffusion, rate, scaled_delay, microseconds, r"delay $\tau$ ($\mu$s)",
+                     scaled_label, r"field correlation $g_1$", beta)
 
 
 @script.plot(several=True)

@@ -53,7 +53,7 @@ def title(result, light):
     return f"illumination at {style.angle(result.values('light_angle')[light])}"
 
 
-@script.plot(dpi=DPI)
+@script.plot(dpi=DPI, one_run=True)
 def draw(result):
     result.require("total_field", "solve with --map writes it")
     field = result.dataset("total_field")

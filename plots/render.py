@@ -53,7 +53,7 @@ def say_what_is_no_error(axis, result, error):
     if np.ma.is_masked(error):
         axis.patch.set(hatch="xxxx", facecolor="white", edgecolor="0.6")
         notes.append("hatched: no light yet")
-    axis.set_title("; ".join(notes), fontsize=7, loc="right", pad=2)
+    axis.set_title("\n".join(notes), fontsize=7, loc="right", pad=2)
 
 
 def draw_error(figure, axis, result, norm):

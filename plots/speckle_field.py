@@ -137,6 +137,8 @@ def draw_autocorrelation(axis, result):
 
 @script.plot(dpi=150)
 def draw(result):
+    if result.has("camera_x") or result.has("image_x"):
+        raise style.Unusable(f"{result.path}: has pictures of a camera; draw it with plots/camera_field.py")
     figure = plt.figure(figsize=(style.PAGE, 3.2))
     grid = figure.add_gridspec(2, 2, width_ratios=[1.9, 1])
     draw_picture(figure, figure.add_subplot(grid[:, 0]), result)

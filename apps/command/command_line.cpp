@@ -174,6 +174,11 @@ std::string line_of(const Arguments& arguments) {
   return text;
 }
 
+/// Alternatives to keys that some subcommands do not have.
+const std::map<std::string, std::string> alternatives{
+    {"medium_index",
+     "; pictures of speckle behind reflecting faces: image --dimension 3 with one point"}};
+
 std::string unknown_key(const Keys& keys, const std::string& name) {
   if (gone.contains(name)) return name + ": unknown key" + gone.at(name);
   const auto owners = key_owners();
@@ -181,7 +186,10 @@ std::string unknown_key(const Keys& keys, const std::string& name) {
   const std::string advice = owner == owners.end()
                                  ? did_you_mean(keys, name)
                                  : "; it is a key of " + join_texts(owner->second, ", ");
-  return name + ": unknown key" + advice + " (--help lists all keys)";
+  const auto alternative = alternatives.find(name);
+  return name + ": unknown key" + advice +
+         (alternative == alternatives.end() ? "" : alternative->second) +
+         " (--help lists all keys)";
 }
 
 /// Converts an error of CLI11 to a one-line message in the form of this program's messages.

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <set>
 #include <sstream>
 #include <string>
@@ -311,6 +312,35 @@ class PlanProgress {
   Progress progress_{"plan", "solutions"};
 };
 
+/// Progress of a fit: how many media the search has computed, and the least chi^2 among them.
+class FitProgress {
+ public:
+  void add(double chi_squared) {
+    least_ = std::min(least_, chi_squared);
+    figures_.samples += 1;
+    const double wall = watch_.seconds();
+    if (!progress_.due(wall)) return;
+    shown_ = true;
+    const std::string time = number_text(std::round(wall)) + " s";
+    char least[32] = "";
+    if (std::isfinite(least_)) std::snprintf(least, sizeof least, ", chi^2 %.4g so far", least_);
+    figures_.done = time + least;
+    figures_.rate = figures_.samples / wall;
+    progress_.update(wall, figures_);
+  }
+  /// Ends the line, if it was printed.
+  void end() {
+    if (shown_) progress_.finish(watch_.seconds(), figures_);
+  }
+
+ private:
+  double least_ = std::numeric_limits<double>::infinity();
+  bool shown_ = false;
+  Progress::Figures figures_;
+  Stopwatch watch_;
+  Progress progress_{"fit", "media"};
+};
+
 /// Makes and prints plans of a measurement for all combinations of the varied keys. Returns the
 /// exit status.
 int run_plans(const Session& session, const Subcommand& command, const FitKeys& values) {
@@ -416,7 +446,10 @@ int run_fit(const Session& session, const Subcommand& command, const FitKeys& va
     };
   }
   const int status = session.once(ResultFile(session.out()), [&](ResultFile& file) {
+    FitProgress progress;
+    task.tried = [&](double chi_squared) { progress.add(chi_squared); };
     const mc::MediumFit fit = mc::fit_medium(task);
+    progress.end();
     mc::write_fit(file, task, fit);
     if (task.paths)
       check_power(file, "", media_at(task, fit.coordinates).front().scene,

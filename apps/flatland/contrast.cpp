@@ -15,7 +15,8 @@ namespace {
 
 /// Values of the keys of the subcommand `contrast`.
 struct ContrastKeys {
-  std::string frames, over = "space";
+  std::vector<std::string> frames{};
+  std::string over = "space";
   FrameFormat format;
   FrameCorrections corrections;
   std::int64_t window = 7;
@@ -25,7 +26,9 @@ struct ContrastKeys {
 };
 
 void add_keys(Keys& keys, ContrastKeys& values) {
-  keys.add("frames", values.frames, "Frames of a camera: PNG, TIFF, NPY, PFM, HDF5 or CSV").file();
+  keys.add("frames", values.frames,
+           "Frames of a camera: one file or several, PNG, TIFF, NPY, PFM, HDF5 or CSV")
+      .file();
   add_frame_keys(keys, values.format);
   add_correction_keys(keys, values.corrections);
   keys.add("contrast_over", values.over,
@@ -42,8 +45,11 @@ void add_keys(Keys& keys, ContrastKeys& values) {
   keys.add("read_noise", values.read_noise, "Standard deviation of the read noise, in counts")
       .not_negative();
   keys.add("exposure", values.exposure,
-           "Exposure of each frame, in any unit of time; decay rates are then also written")
-      .positive();
+           "Exposure of each frame; decay rates per unit of it are then also written. A number "
+           "alone "
+           "may be in any unit of time; with a unit, rates are per second")
+      .positive()
+      .unit("s");
   keys.add("beta", values.beta, "Squared contrast of static scatterers (coherence factor)")
       .positive_to(1)
       .only_of("maps with exposure");
@@ -61,7 +67,7 @@ mc::ContrastTask task_of(const Keys& keys, const ContrastKeys& values, const Fra
   constexpr std::size_t windows = 4;
   if (windows * task.window > std::min(frames.rows, frames.columns))
     throw InputError("window", window,
-                     "must be at most a quarter of the frames of " + values.frames +
+                     "must be at most a quarter of the frames of " + values.frames.front() +
                          ", which have " + std::to_string(frames.columns) + " x " +
                          std::to_string(frames.rows) + " pixels");
   if (over_time && frames.count() < 2)
@@ -81,7 +87,8 @@ int map_contrast(const Subcommand& command, ContrastKeys& values) {
   if (const auto& given = keys.read(values.exposure)) exposure = {*given, keys.read(values.beta)};
   if (!command.settle()) return ExitStatus::done;
   return session.once(ResultFile(session.out()), [&](ResultFile& file) {
-    const auto map = naming_frames(values.frames, [&] { return mc::contrast_map(frames, task); });
+    const auto map =
+        naming_frames(values.frames.front(), [&] { return mc::contrast_map(frames, task); });
     mc::write_contrast(file, map, task.window, exposure);
     auto squares = map.square;
     std::ranges::sort(squares);

@@ -75,11 +75,6 @@ class CovarianceExperiment : public Experiment {
     take_q_depths(keys, q_depths_, spec_);
     choose_tilts(keys, tilt_count_, spec_, method_, run_, seed());
     scene_ = with_dimension(make_scene(keys, spec_), spec_);
-    // Delays are scaled by one wavenumber, which layers of different index do not have.
-    if (scene_->faces && !spec_.medium_index && !extras_.dynamics.delays.empty())
-      throw InputError(
-          "delays: require one refractive index; give the key medium_index instead of a column of "
-          "layers");
     if (!only_prints_) estimation_ = made_estimation(reversed);
     disregard_unused(keys, spec_, {method_});
     neglected_ = Neglected(*scene_);
@@ -117,6 +112,7 @@ class CovarianceExperiment : public Experiment {
     const FieldMoments moments = field_moments(job, sums);
     if (prints) {
       print_medium(*scene_);
+      print_faces(*scene_);
       if (request.kind != CovarianceRequest::Kind::tilt_shift)
         print_entries(request, moments.covariance);
       if (method_ != "transport") print_errors(request, moments.covariance);

@@ -131,7 +131,7 @@ void check_changes(const Scene& scene, const FieldKeys& values, const mc::FieldC
   if (changes.none()) return;
   const int lists = !values.spec.tilts.empty() + !changes.delays.empty() + !changes.shifts.empty();
   if (lists > 1) throw InputError("tilts, delays, frequency_shifts: give only one of them");
-  mc::check_delays(scene, changes.delays);
+  mc::check_delays(scene, changes.delays, changes.motion);
   for (const double shift : changes.shifts)
     if (std::abs(shift) > largest_shift)
       throw InputError("frequency_shifts", shift, "must be between -0.1 and 0.1");
@@ -212,11 +212,11 @@ void print_summary(const mc::DrawnFields& drawn, const mc::FieldSummary& summary
     std::printf(
         "grain width %.4g +- %.2g (full width at half maximum of the intensity autocorrelation)\n",
         grain->value[0].real(), grain->error[0]);
-  else if (!found.value.empty())
+  else if (on_camera || !found.value.empty())
     std::puts(
         "grain width not resolved: the autocorrelation falls to half within one step of the views, "
         "or not at all");
-  else if (!on_camera)
+  else
     std::puts("no grain width: it requires view_angles in equal steps of their sine");
   const Estimate& siegert = drawn.siegert;
   if (found.value.empty() || siegert.value.empty()) return;

@@ -113,6 +113,7 @@ class FluxExperiment : public Experiment {
   void write(ResultFile& file, const GroupedSums& sums, bool prints) const {
     const auto estimates = mc::flux_estimates(job_, sums);
     if (prints) print_suspension(*scene_);
+    if (prints) print_faces(*scene_);
     if (prints) print_table(*scene_, estimates);
     if (prints) note_bins(estimates);
     if (prints && by_mc()) note_unreached(*scene_, estimates);

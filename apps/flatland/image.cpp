@@ -242,6 +242,7 @@ class ImageExperiment : public OneShot {
   }
 
   void read(const Keys& keys) override {
+    keys.read(values_.space.length_unit);
     if (keys.read(values_.spec.dimension) == 3)
       pictures_ = picture_run(keys, values_, seed(), threads());
     else

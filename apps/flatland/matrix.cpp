@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -68,25 +69,42 @@ class MatrixExperiment : public Experiment {
             .batches = job_.batches,
             .write = [this](ResultFile& file, const GroupedSums& sums, bool prints) {
               const auto found = wave::matrix_statistics(job_, sums);
-              if (prints) print(found);
+              if (prints) print(found, scene_->placement);
               write_medium(file, *scene_);
               wave::write_statistics(file, job_, found);
             }};
   }
 
  private:
-  static void print(const wave::MatrixStatistics& found) {
+  /// Prints C_E of the first shifts, and a note if C_I has fallen below 1/2 at the first.
+  static void print_tilts(const Estimate& tilts) {
+    constexpr std::size_t most = 3;
+    const std::size_t shown = std::min(most, tilts.value.size() - 1);
+    std::printf("%-28s", "tilt correlation C_E");
+    for (std::size_t d = 1; d <= shown; ++d)
+      std::printf("%s %.4g +- %.2g at %zu", d > 1 ? "," : "", tilts.value[d].real(), tilts.error[d],
+                  d);
+    std::puts(shown > 1 ? " channels" : " channel");
+    if (tilts.value.size() > 1 && std::norm(tilts.value[1]) < 0.5)
+      std::puts("C_I is below 1/2 at the first shift: a wider period resolves the memory effect");
+  }
+
+  static void print(const wave::MatrixStatistics& found, const PlacementRule& placement) {
     const auto line = [](const char* name, const Estimate& of, const char* note = "") {
       std::printf("%-28s %.6g +- %.2g%s\n", name, of.value[0].real(), of.error[0], note);
     };
     line("conductance", found.conductance);
-    line("variance of conductance", found.conductance_variance);
+    const bool is_poisson = placement.kind == PlacementRule::Kind::poisson && !placement.count;
+    line("variance of conductance", found.conductance_variance,
+         is_poisson ? " (includes the Poisson-distributed number of scatterers; count fixes it)"
+                    : "");
     line("largest eigenvalue", found.largest);
     line("C2", found.channel_variance);
     line("C3", found.relative_variance);
     char theory[40];
     std::snprintf(theory, sizeof theory, " (Gaussian fields: %.4g)", found.focus_theory.front());
     line("enhancement of focusing", found.focus, theory);
+    print_tilts(found.tilt_correlation);
     std::printf("largest errors: power %.1e, reciprocity %.1e\n", found.power.off,
                 found.reciprocity.off);
   }

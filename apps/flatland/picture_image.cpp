@@ -139,7 +139,6 @@ mc::FieldChanges exposure_of(const Keys& keys, const ImageKeys& values) {
   if (!values.object_depth.empty() || values.method == "wave")
     throw InputError("exposure", exposure.front(),
                      "requires an object at infinity (no object_depth) and method = paths");
-  keys.read(values.space.length_unit);
   const auto dynamics =
       mc::make_dynamics(keys, values.space.moving, values.spec, length_unit(keys));
   const auto steps = static_cast<std::size_t>(keys.read(values.space.exposure_steps));
@@ -301,7 +300,7 @@ PictureRun picture_run(const Keys& keys, const ImageKeys& values, std::uint64_t 
   run.task.exposure = exposure_of(keys, values);
   Scene medium = with_dimension(make_scene(keys, values.spec), values.spec);
   if (medium.domain.kind == Domain::Kind::slab) throw InputError("domain", "slab", "must be box");
-  mc::check_delays(medium, run.task.exposure.delays);
+  mc::check_delays(medium, run.task.exposure.delays, run.task.exposure.motion);
   if (medium.faces && (!run.task.exposure.delays.empty() || run.method == "wave"))
     throw InputError("medium_index", medium.faces->inside,
                      "requires a medium at rest (no exposure) and method = paths");

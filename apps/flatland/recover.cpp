@@ -24,7 +24,8 @@ namespace {
 
 /// Values of the keys of the subcommand `recover`.
 struct RecoverKeys {
-  std::string frames, reference;
+  std::vector<std::string> frames{};
+  std::string reference;
   FrameFormat format;
   FrameCorrections corrections;
   std::optional<std::int64_t> points;
@@ -39,10 +40,10 @@ struct RecoverKeys {
 };
 
 void add_keys(Keys& keys, RecoverKeys& values) {
-  keys.add("frames", values.frames,
-           "Frames of a camera: PNG, TIFF, NPY, PFM, HDF5 or CSV. A table with column names has frames "
-           "of "
-           "one line, one in each column")
+  keys.add(
+          "frames", values.frames,
+          "Frames of a camera: one file or several, PNG, TIFF, NPY, PFM, HDF5 or CSV. A table with "
+          "column names has frames of one line, one in each column")
       .file();
   add_frame_keys(keys, values.format);
   add_correction_keys(keys, values.corrections);
@@ -324,7 +325,7 @@ int recover_points(const Subcommand& command, RecoverKeys& values) {
   const Session session(command.text(), keys, values.run, command.only_prints());
   const Frames frames =
       corrected_frames(keys, values.corrections, values.format, keys.required(values.frames));
-  return naming_frames(values.frames, [&]() -> int {
+  return naming_frames(values.frames.front(), [&]() -> int {
     const Make make = make_of(keys, values, frames);
     if (!command.settle()) return ExitStatus::done;
     return session.once(ResultFile(session.out()), make);

@@ -62,13 +62,15 @@ void print_rows(const char* name, const std::vector<double>& rows, std::span<con
   }
 }
 
-/// Prints the best detector and exposure of an instrument.
+/// Prints the best detector and exposure of an instrument. counts_photons: whether it has photon
+/// counters at fibres instead of a camera.
 void print_flow(const mc::FlowPlan& plan, const mc::DistanceRequest& request,
-                const mc::Instrument& instrument) {
+                const mc::Instrument& instrument, bool counts_photons) {
   const auto& times = request.dynamics.exposure.times;
   print_rows("photons per s", {instrument.averaging_time}, plan.rate, request);
   print_rows("K^2: flow/error", times, plan.contrast_ratio, request);
-  print_rows("g2: flow/error", {instrument.averaging_time}, plan.correlation_ratio, request);
+  if (counts_photons)
+    print_rows("g2: flow/error", {instrument.averaging_time}, plan.correlation_ratio, request);
   const auto print_best = [&](const std::string& name, const std::vector<double>& ratios,
                               const std::vector<double>& crosstalk) {
     const auto best = static_cast<std::size_t>(std::ranges::max_element(ratios) - ratios.begin());
@@ -91,6 +93,7 @@ void print_flow(const mc::FlowPlan& plan, const mc::DistanceRequest& request,
                   100 / *best,
                   times[static_cast<std::size_t>(best - plan.contrast_separated.begin())]);
   }
+  if (!counts_photons) return;
   print_best("g2", plan.correlation_ratio, plan.correlation_crosstalk);
   if (plan.correlation_separated > 0)
     std::printf("g2: all distances and no other knowledge: %.3g %%\n",
@@ -115,7 +118,8 @@ class ReflectanceExperiment : public Experiment {
     add_faces_keys(keys, spec_);
     keys.group("Detectors");
     keys.add("distances", distances_,
-             "Distances of the detectors from the axis of the beam, which enters along the normal")
+             "Distances of the detectors from the axis of the beam, which enters along the normal; "
+             "10:40:7 means 7 distances, first:last:count")
         .positive()
         .unit("length")
         .swept();
@@ -167,8 +171,18 @@ class ReflectanceExperiment : public Experiment {
       request_.gradient = true;
       if (request_.dynamics.exposure.beta == 1) request_.dynamics.exposure.beta = instrument_->beta;
     }
-    mc::check_delays(*scene_, request_.dynamics.delays);
+    mc::check_delays(*scene_, request_.dynamics.delays, motion);
     inputs_ = inputs_text(*scene_) + inputs_text(keys);
+  }
+
+  void note() const override {
+    constexpr double small = 0.5, enough = 0.03;
+    if (request_.numerical_aperture < small && methods_.tolerance < enough)
+      std::fprintf(
+          stderr,
+          "note: numerical_aperture = %g converges slowly; it usually requires tolerance = "
+          "%g\n",
+          request_.numerical_aperture, enough);
   }
 
   PlannedExperiment plan() const override {
@@ -215,7 +229,8 @@ class ReflectanceExperiment : public Experiment {
     mc::write_distance(file, asked, found);
     if (instrument_) {
       const auto plan = mc::flow_plan(*instrument_, request_, found);
-      if (prints) print_flow(plan, request_, *instrument_);
+      if (prints)
+        print_flow(plan, request_, *instrument_, instrument_values_.fibre_modes.has_value());
       mc::write_flow(file, *instrument_, request_, plan);
     }
     ResultGroup(file, mc::distance_table)

@@ -311,8 +311,24 @@ class SolveExperiment : public OneShot {
     if (wavelengths_->index) require_index_from_table(spec, placement_);
   }
 
+  /// Throws InputError for keys that have no effect with a period.
+  void refuse_keys_of_one_light(const Keys& keys) const {
+    const SceneSpec& spec = values_.spec;
+    const auto refuse = [&](const auto& member, const char* why) {
+      if (keys.given(member)) throw InputError(keys.name(member) + ": not with period" + why);
+    };
+    const char* const channels = ", whose light and views are the channels: leave it out";
+    refuse(spec.light_angles, channels);
+    refuse(spec.view_angles, channels);
+    refuse(spec.near_sensors, channels);
+    refuse(spec.near_sources, channels);
+    refuse(spec.beam_waist, channels);
+    refuse(values_.spectrum.wavelengths, "; use sweep --of solve --vary wavelength=...");
+  }
+
   void read_periodic(const Keys& keys) {
     const SceneSpec& spec = values_.spec;
+    refuse_keys_of_one_light(keys);
     keys.read(values_.period_phase);
     grid_ = map_grid(keys, values_.map, keys.read(spec.wavelength));
     if (has_own_places(spec)) {
@@ -320,6 +336,8 @@ class SolveExperiment : public OneShot {
       return;
     }
     scene_ = make_scene(keys, spec);
+    keys.disregard(spec.light_angles);
+    keys.disregard(spec.view_angles);
     if (scene_->domain.kind != Domain::Kind::box || scene_->domain.width != *values_.period)
       throw InputError("period", *values_.period,
                        "must be the width of the box in which the placement is drawn");

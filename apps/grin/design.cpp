@@ -84,10 +84,15 @@ DesignState search(Designer& designer, const Kept& kept) {
   return state;
 }
 
-void print_summary(const DesignState& state, const DesignCheck& check) {
-  const auto print = [](const char* what, const std::optional<double>& rms,
-                        const std::optional<double>& half) {
-    if (rms && half)
+void print_summary(const DesignScene& scene, const DesignState& state, const DesignCheck& check) {
+  const bool of_pictures = scene.goal == grin::design::ScreenValues::word;
+  const auto print = [&](const char* what, const std::optional<double>& rms,
+                         const std::optional<double>& half) {
+    if (rms && half && of_pictures)
+      std::printf("%s: pictures differ by %.3g %% of their largest value (RMS), with half the ray "
+                  "step by %.3g %%\n",
+                  what, 100 * *rms, 100 * *half);
+    else if (rms && half)
       std::printf("%s miss their targets by %.3g (RMS), with half the ray step by %.3g\n", what,
                   *rms, *half);
     else
@@ -98,9 +103,14 @@ void print_summary(const DesignState& state, const DesignCheck& check) {
               state.history.traces.back());
   print("rays of the search", check.seen, check.seen_half_step);
   print("held-out rays", check.held_out, check.held_out_half_step);
-  if (check.held_out_half_step)
+  if (!check.held_out_half_step) return;
+  const double times = check.start_held_out / *check.held_out_half_step;
+  if (of_pictures)
+    std::printf("at the start, pictures of held-out rays differed by %.3g %%: %.3g times as much\n",
+                100 * check.start_held_out, times);
+  else
     std::printf("at the start, held-out rays missed by %.3g: %.3g times as much\n",
-                check.start_held_out, check.start_held_out / *check.held_out_half_step);
+                check.start_held_out, times);
 }
 
 /// Prints what the objective is usually judged by: dB of pictures, the exponent of a guide.
@@ -168,7 +178,7 @@ Made make(const DesignScene& scene, const Kept& kept, ResultFile& file) {
   const DesignCheck check = designer.check(state);
   write_design(file, scene, designer, state, check);
   print_end(scene, state);
-  print_summary(state, check);
+  print_summary(scene, state, check);
   print_figures(scene, designer, state, check);
   print_throughput(scene, check);
   note_bounds(designer.at_bounds(state), scene);

@@ -178,6 +178,10 @@ void print_render(const grin::RenderScene& scene, const grin::RenderJob& job,
       dark.push_back(name.empty() ? "the sensor" : "sensor " + name);
   }
   if (scene.map && !print_map(*scene.map, job, sums)) dark.emplace_back("the map");
+  if (const auto powers = absorbed_by_label(scene, job, sums))
+    for (std::size_t label = 0; label < powers->value.size(); ++label)
+      if (powers->value[label].real() > 0)
+        print_row(("absorbed in " + std::to_string(label)).c_str(), *powers, label, "");
   note_darkness(dark);
   note_checks(scene, checks);
   const grin::TransportCounts counts = transport_counts(job, sums);

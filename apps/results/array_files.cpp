@@ -49,7 +49,8 @@ double white_of(std::vector<double> values) {
 
 void write_npy(const std::filesystem::path& path, const NumberArray& array) {
   std::ostringstream text;
-  text << "{'descr': '<f8', 'fortran_order': False, 'shape': (";
+  text << "{'descr': '" << (array.is_complex ? "<c16" : "<f8")
+       << "', 'fortran_order': False, 'shape': (";
   for (const std::size_t extent : array.shape) text << extent << ", ";
   text << "), }";
   std::string header = text.str();

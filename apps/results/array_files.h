@@ -7,10 +7,11 @@
 
 namespace flatspeckle::apps {
 
-/// Real numbers in row-major order, to be written in formats that other programs read.
+/// Numbers in row-major order, to be written in formats that other programs read.
 struct NumberArray {
   std::vector<std::size_t> shape;
   std::vector<double> values;
+  bool is_complex = false;  ///< whether each number has two values, its real and imaginary part
 };
 
 /// A picture, rows from the top.
@@ -21,10 +22,12 @@ struct GreyPicture {
 
 // The following functions write files. They throw IoError.
 
-/// NumPy format, version 1, float64.
+/// NumPy format, version 1, float64 or complex128.
 void write_npy(const std::filesystem::path& path, const NumberArray& array);
 /// Portable float map of one channel, 32 bits.
 void write_pfm(const std::filesystem::path& path, const GreyPicture& picture);
+/// OpenEXR of one channel Y, 32-bit floats without compression.
+void write_exr(const std::filesystem::path& path, const GreyPicture& picture);
 /// PNG of 8 bits for display. Values are divided by the one that 99.5 % of the pixels do not
 /// exceed, cut off at 1, and raised to the power 1/2.2.
 void write_png(const std::filesystem::path& path, const GreyPicture& picture);

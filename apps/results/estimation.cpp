@@ -177,6 +177,14 @@ Scene rounded_scene(const Scene& scene, const SceneSpec& spec) {
   return make_scene(rounded);
 }
 
+void print_faces(const Scene& scene) {
+  if (!scene.faces || scene.medium.dimension != 3) return;
+  std::puts(scene.faces->polarisation == Polarisation::unpolarised
+                ? "faces: reflect the mean of both polarisations (polarisation = unpolarised)"
+                : "faces: reflect as for scalar waves (polarisation = tm); flux and reflectance "
+                  "accept unpolarised");
+}
+
 void print_suspension(const Scene& scene) {
   const BulkMedium& medium = scene.medium;
   if (scene.profile || !(medium.packing_fraction > 0)) return;

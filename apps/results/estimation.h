@@ -102,6 +102,12 @@ void note_plane();
 /// that Monte Carlo and exact solutions use the same number.
 Scene rounded_scene(const Scene& scene, const SceneSpec& spec);
 
+/// Prints by which law the faces of a medium in space reflect. Prints nothing without faces.
+void print_faces(const Scene& scene);
+
+/// Prints by which law the faces of a medium in space reflect. Prints nothing without faces.
+void print_faces(const Scene& scene);
+
 /// Prints diameter, packing fraction, reduced scattering and transport mean free path, in the unit
 /// of length of the scene. Prints nothing if the scatterers have no size or vary.
 void print_suspension(const Scene& scene);

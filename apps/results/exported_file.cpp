@@ -1,7 +1,8 @@
 #include "apps/results/exported_file.h"
 
 #include <algorithm>
-#include <sstream>
+#include <complex>
+#include <utility>
 
 #include "apps/results/array_files.h"
 #include "core/error.h"
@@ -53,20 +54,86 @@ SampledIndex sampled(const std::string& path, const std::string& dataset, std::i
   return found;
 }
 
-NumberArray array_of(const ResultReader& file, const std::string& dataset) {
-  if (file.stored_values(dataset) != StoredValues::real)
-    throw InputError("export", dataset, "must have real numbers, to be written to such a file");
-  return {file.shape(dataset), file.dataset<double>(dataset)};
+/// A dataset, or the part of it at chosen indices of some axes: its numbers, and the names of the
+/// scales of its axes.
+struct ChosenPart {
+  NumberArray array;
+  std::vector<std::string> axes;
+};
+
+/// Reduces an axis to the element `index`.
+void choose(ChosenPart& part, std::size_t axis, std::size_t index) {
+  auto& [shape, values, is_complex] = part.array;
+  std::size_t after = is_complex ? 2 : 1;
+  for (std::size_t i = axis + 1; i < shape.size(); ++i) after *= shape[i];
+  const std::size_t extent = shape[axis], before = values.size() / (extent * after);
+  for (std::size_t i = 0; i < before; ++i)
+    std::copy_n(values.begin() + static_cast<long>((i * extent + index) * after), after,
+                values.begin() + static_cast<long>(i * after));
+  values.resize(before * after);
+  shape.erase(shape.begin() + static_cast<long>(axis));
+  part.axes.erase(part.axes.begin() + static_cast<long>(axis));
+}
+
+/// Reduces the axis that `text` names, as in realization=0, to the element it gives.
+void choose(ChosenPart& part, const std::string& text) {
+  const std::size_t equals = std::min(text.find('='), text.size());
+  const auto axis = std::ranges::find(part.axes, text.substr(0, equals));
+  if (axis == part.axes.end())
+    throw InputError("select", text,
+                     "must be AXIS=INDEX with an axis among " + join_texts(part.axes, " "));
+  const auto number = static_cast<std::size_t>(axis - part.axes.begin());
+  const std::size_t extent = part.array.shape[number];
+  const auto index = read_whole_number(text.substr(std::min(equals + 1, text.size())));
+  if (!index || *index < 0 || static_cast<std::size_t>(*index) >= extent)
+    throw InputError("select", text, "must have an index from 0 to " + std::to_string(extent - 1));
+  choose(part, number, static_cast<std::size_t>(*index));
+}
+
+ChosenPart part_of(const ResultReader& file, const std::string& dataset,
+                   const std::vector<std::string>& select) {
+  ChosenPart part{{file.shape(dataset), {}}, file.axes(dataset)};
+  if (file.stored_values(dataset) == StoredValues::text)
+    throw InputError("export", dataset, "must have numbers, to be written to such a file");
+  if (file.stored_values(dataset) == StoredValues::complex) {
+    part.array.is_complex = true;
+    for (const Complex value : file.dataset<Complex>(dataset)) {
+      part.array.values.push_back(value.real());
+      part.array.values.push_back(value.imag());
+    }
+  } else {
+    part.array.values = file.dataset<double>(dataset);
+  }
+  for (const std::string& text : select) choose(part, text);
+  return part;
+}
+
+/// Replaces complex numbers by their squared magnitudes.
+void take_intensities(NumberArray& array) {
+  if (!array.is_complex) return;
+  for (std::size_t i = 0; 2 * i < array.values.size(); ++i)
+    array.values[i] = std::norm(Complex(array.values[2 * i], array.values[2 * i + 1]));
+  array.values.resize(array.values.size() / 2);
+  array.is_complex = false;
+}
+
+/// Throws InputError if the number of axes is not accepted.
+void require_axes(const std::string& dataset, const ChosenPart& part, bool accepted,
+                  const std::string& what) {
+  if (accepted && !part.array.values.empty()) return;
+  throw InputError("export", dataset,
+                   "must have " + what + "; it has " + join_texts(part.axes, " ") +
+                       ": choose an element of an axis with --select AXIS=INDEX");
 }
 
 /// Returns a dataset of two axes as a picture. Rows whose scale increases are in the order from the
 /// bottom.
-GreyPicture picture_of(const ResultReader& file, const std::string& dataset) {
-  const NumberArray array = array_of(file, dataset);
-  if (array.shape.size() != 2)
-    throw InputError("export", dataset, "must have two axes, to be written as a picture");
+GreyPicture picture_of(const ResultReader& file, const std::string& dataset, ChosenPart part) {
+  NumberArray& array = part.array;
+  require_axes(dataset, part, array.shape.size() == 2, "two axes, to be written as a picture");
+  take_intensities(array);
   GreyPicture picture{array.shape[0], array.shape[1], array.values};
-  const std::string scale = file.axes(dataset)[0];
+  const std::string scale = part.axes[0];
   const auto heights = scale.empty() ? std::vector<double>() : file.dataset<double>(scale);
   if (heights.size() < 2 || heights.front() > heights.back()) return picture;
   for (std::size_t row = 0; row < picture.rows; ++row)
@@ -76,11 +143,11 @@ GreyPicture picture_of(const ResultReader& file, const std::string& dataset) {
 }
 
 /// Returns a dataset of two axes, or of three for several frames.
-NumberArray frames_of(const ResultReader& file, const std::string& dataset) {
-  NumberArray array = array_of(file, dataset);
-  if ((array.shape.size() != 2 && array.shape.size() != 3) || array.values.empty())
-    throw InputError("export", dataset, "must have two or three axes, to be written as frames");
-  return array;
+NumberArray frames_of(const std::string& dataset, ChosenPart part) {
+  const std::size_t axes = part.array.shape.size();
+  require_axes(dataset, part, axes == 2 || axes == 3, "two or three axes, to be written as frames");
+  take_intensities(part.array);
+  return std::move(part.array);
 }
 
 std::string text_of(const grin::Vec3& x) {
@@ -108,25 +175,29 @@ bool is_designed_field(const std::string& dataset) {
 }
 
 std::string export_file(const std::filesystem::path& result, const std::string& dataset,
-                        const std::filesystem::path& to, std::int64_t nodes) {
+                        const std::filesystem::path& to, std::int64_t nodes,
+                        const std::vector<std::string>& select) {
   const std::string ending = to.extension().string();
   const bool is_array = ending == ".npy" || ending == ".vtk";
   if (is_array && is_designed_field(dataset)) return export_field(result, dataset, to, nodes);
-  const ResultReader file(result);
-  if (ending == ".npy") {
-    write_npy(to, array_of(file, dataset));
-  } else if (ending == ".pfm") {
-    write_pfm(to, picture_of(file, dataset));
-  } else if (ending == ".png") {
-    write_png(to, picture_of(file, dataset));
-  } else if (ending == ".tif" || ending == ".tiff") {
-    write_tiff(to, frames_of(file, dataset));
-  } else if (ending == ".vtk") {
+  if (ending == ".vtk")
     throw InputError("to", to.string(),
                      "is for fields of design: ball_spline, radial_spline, excess");
-  } else {
-    throw InputError("to", to.string(), "must end with .npy, .pfm, .png, .tif, .tiff or .vtk");
-  }
+  const ResultReader file(result);
+  const auto part = [&] { return part_of(file, dataset, select); };
+  if (ending == ".npy")
+    write_npy(to, part().array);
+  else if (ending == ".pfm")
+    write_pfm(to, picture_of(file, dataset, part()));
+  else if (ending == ".exr")
+    write_exr(to, picture_of(file, dataset, part()));
+  else if (ending == ".png")
+    write_png(to, picture_of(file, dataset, part()));
+  else if (ending == ".tif" || ending == ".tiff")
+    write_tiff(to, frames_of(dataset, part()));
+  else
+    throw InputError("to", to.string(),
+                     "must end with .npy, .pfm, .exr, .png, .tif, .tiff or .vtk");
   return to.string() + ": " + dataset;
 }
 

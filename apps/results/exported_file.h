@@ -3,15 +3,19 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace flatspeckle::apps {
 
-/// Writes a dataset of a result in the format that the ending of `to` names: .npy, .pfm, .png,
-/// .tif (or .tiff) or .vtk. The datasets ball_spline, radial_spline and excess of `design` are written as the index at
-/// `nodes` points along each axis. Returns a line that describes the file. Throws InputError for a
-/// dataset that the format cannot contain, and IoError.
+/// Writes a dataset of a result in the format that the ending of `to` names: .npy, .pfm, .exr,
+/// .png, .tif (or .tiff) or .vtk. Pictures and frames of complex numbers contain their squared magnitude.
+/// The datasets ball_spline, radial_spline and excess of `design` are written as the index at
+/// `nodes` points along each axis. select: texts AXIS=INDEX, each of which reduces an axis to one
+/// element. Returns a line that describes the file. Throws InputError for a dataset that the format
+/// cannot contain, and IoError.
 std::string export_file(const std::filesystem::path& result, const std::string& dataset,
-                        const std::filesystem::path& to, std::int64_t nodes);
+                        const std::filesystem::path& to, std::int64_t nodes,
+                        const std::vector<std::string>& select);
 
 /// Whether a dataset is a field of `design`, which export_file() samples.
 bool is_designed_field(const std::string& dataset);

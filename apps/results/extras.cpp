@@ -79,8 +79,9 @@ void print_delays(const Scene& scene, const mc::Dynamics& dynamics,
   print_changes(scene.request, in_seconds ? "delay (s)" : "delay", dynamics.delays,
                 found.changes.correlation);
   if (in_seconds)
-    std::printf("diffusion constant %.4g m^2/s, k^2 D = %.4g/s\n", *dynamics.diffusion,
-                dynamics.motion.diffusion);
+    std::printf("diffusion constant %.4g m^2/s, k^2 D = %.4g/s%s\n", *dynamics.diffusion,
+                dynamics.motion.diffusion,
+                scene.faces && scene.profile ? " (k in vacuum)" : "");
   if (!scene.request.has_reference())
     print_crossings(scene.request, found.decay, 1, "decay time (|g1| = 1/e)",
                     in_seconds ? " s" : "");
@@ -121,7 +122,7 @@ mc::PathJob change_job(const Scene& scene, mc::ReversedPaths reversed,
 
 Estimation transport_delays(const Scene& scene, mc::ReversedPaths reversed,
                             const mc::Dynamics& dynamics, double tolerance) {
-  mc::check_delays(scene, dynamics.delays);
+  mc::check_delays(scene, dynamics.delays, dynamics.motion);
   require_changing("delays", scene.request);
   const mc::Motion& motion = dynamics.motion;
   if (motion.velocity != Vec{} || motion.shear != 0)

@@ -48,11 +48,13 @@ const DatasetTable sweep_table{
              {"single_scattering_range", Data::real, "", "1",
               "q L at C_I = 1/2 by single scattering"},
              {"field_correlation", Data::estimate, "GRID tilt", "1",
-              "field correlation C_E, summed over views"},
+              "field correlation C_E, averaged over views"},
              {"memory_effect_range", Data::estimate, "GRID", "1",
               "q L at C_I = 1/2 with matched views; L is the depth"},
              {"memory_effect_angle", Data::estimate, "GRID", "rad",
               "rotation of the light at C_I = 1/2"},
+             {"beam_angle", Data::estimate, "GRID", "rad",
+              "angle between the beams at C_I = 1/2, if it is not that of the rotation"},
              {"range_censored", Data::count, "GRID", "1",
               "0: range found; 1: C_I stays above 1/2, lower bound; 2: C_I is below 1/2 at the "
               "first step, upper bound"},
@@ -250,7 +252,7 @@ class SweepWriter {
     const ResultGroup root(file_, sweep_table);
     const auto& request = scenes_.front().request;
     const double depth = scenes_.front().domain.depth;
-    if (!request.transmission_only()) return;
+    if (!request.transmission_only() || scenes_.front().profile) return;
     write_single_scattering(root, request, depth);
     std::vector<double> curves;
     for (const Scene& scene : scenes_)
@@ -312,21 +314,23 @@ class SweepWriter {
   }
 
   /// Writes the memory-effect ranges as angles by which the light is rotated, in the direction of
-  /// the tilts.
+  /// the tilts, and as angles between the beams if they differ.
   void write_angles(const ResultGroup& out, const Points& points) const {
     const Scene& scene = scenes_.front();
-    const auto& q = scene.request.tilt_q;
-    const bool positive = std::any_of(q.begin(), q.end(), [](double each) { return each > 0; });
-    const double light = scene.request.lights.front().angle;
-    const double per_range = 1 / (scene.domain.depth * scene.k);
-    std::vector<double> angles, errors;
+    const double depth = scene.domain.depth;
+    Estimate rotation, between;
     for (const PointResult& point : points) {
-      const double sine = std::sin(light) + (positive ? 1 : -1) * point.range * per_range;
-      const double turned = std::asin(std::clamp(sine, -1.0, 1.0));
-      angles.push_back(std::abs(turned - light));
-      errors.push_back(point.range_error * per_range / std::cos(turned));
+      const auto tilt = mc::tilt_of_range(scene.request, scene.outside_k(), point.range / depth);
+      const auto add = [&](Estimate& to, double value, double per_q) {
+        to.value.emplace_back(value);
+        to.error.push_back(per_q * point.range_error / depth);
+        to.rare.push_back(point.range_rare);
+      };
+      add(rotation, tilt.rotation, tilt.rotation_per_q);
+      add(between, tilt.between, tilt.between_per_q);
     }
-    out.put("memory_effect_angle", angles, errors, column(points, &PointResult::range_rare));
+    out.put("memory_effect_angle", rotation);
+    if (mc::is_tilted_aside(scene.request)) out.put("beam_angle", between);
   }
 
   void write_traces(const ResultGroup& out, const Points& points, const std::string& group) const {

@@ -19,7 +19,7 @@ std::string header() {
   return "flatspeckle " + version() + ", sweep, format 2\n";
 }
 
-/// Whether some views are in transmission and others in reflection; a correlation summed over both
+/// Whether some views are in transmission and others in reflection; a correlation averaged over both
 /// is meaningless.
 bool mixes_sides(const CovarianceRequest& request) {
   return std::any_of(request.views.begin(), request.views.end(), [&](const View& view) {
@@ -33,7 +33,7 @@ void check_scene(const Scene& scene) {
                      "must be in (0, 1]: a medium that does not scatter has no correlation");
   if (mixes_sides(scene.request))
     throw InputError(
-        "view_angles: C_E is summed over all views; give only views in transmission or only views "
+        "view_angles: C_E is averaged over all views; give only views in transmission or only views "
         "in reflection");
 }
 

@@ -44,7 +44,7 @@ const DatasetTable cost_table{
 const DatasetTable stability_table{
     "stability",
     {{"case", Data::numbers, "", "1", "number of the case"},
-     {"room", Data::text, "case", "", "part of the program"},
+     {"module", Data::text, "case", "", "part of the program"},
      {"name", Data::text, "case", "", "extreme condition"},
      {"invariant", Data::text, "case", "", "invariant that was checked"},
      {"must_say", Data::text, "case", "",
@@ -59,7 +59,7 @@ const DatasetTable stability_table{
 const DatasetTable plan_table{
     "plan",
     {{"comparison", Data::numbers, "", "1", "number of the comparison"},
-     {"room", Data::text, "comparison", "", "part of the program"},
+     {"module", Data::text, "comparison", "", "part of the program"},
      {"left_out", Data::text, "comparison", "", "feature that the specialised kernel omits"},
      {"scene", Data::text, "comparison", "", "scene that does not need the feature"},
      {"per", Data::text, "comparison", "", "unit of work that the times refer to"},
@@ -145,7 +145,7 @@ void write_cases(ResultFile& file, const std::vector<ExaminedCase>& cases) {
   const auto extremes = column(cases, &ExaminedCase::extreme);
   const auto findings = column(cases, &ExaminedCase::finding);
   root.number("case", cases.size());
-  root.put("room", column(extremes, &bench::ExtremeCase::module_name));
+  root.put("module", column(extremes, &bench::ExtremeCase::module_name));
   root.put("name", column(extremes, &bench::ExtremeCase::name));
   root.put("invariant", column(extremes, &bench::ExtremeCase::invariant));
   root.put("must_say", column(extremes, &bench::ExtremeCase::must_say));
@@ -161,7 +161,7 @@ void write_plan_rows(ResultFile& file, const std::vector<bench::PlanRow>& rows) 
   using bench::PlanRow;
   const ResultGroup root(file, plan_table);
   root.number("comparison", rows.size());
-  root.put("room", column(rows, &PlanRow::module_name));
+  root.put("module", column(rows, &PlanRow::module_name));
   root.put("left_out", column(rows, &PlanRow::left_out));
   root.put("scene", column(rows, &PlanRow::scene));
   root.put("per", column(rows, &PlanRow::per));

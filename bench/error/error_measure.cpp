@@ -240,8 +240,9 @@ OneRun timed_run(double samples, const std::function<double()>& work) {
 
 std::vector<ErrorRun> error_runs() {
   std::vector<ErrorRun> runs = box_error_runs();
-  for (const auto& more : {slab_error_runs(), fit_error_runs(), imaging_error_runs(),
-                           render_error_runs(), design_error_runs(), lens_error_runs()})
+  for (const auto& more :
+       {slab_error_runs(), power_error_runs(), fit_error_runs(), search_error_runs(),
+        imaging_error_runs(), render_error_runs(), design_error_runs(), lens_error_runs()})
     runs.insert(runs.end(), more.begin(), more.end());
   return runs;
 }

@@ -31,10 +31,20 @@ std::vector<LongRun> box_long_runs();
 /// correlation of scatterers that flow and diffuse.
 std::vector<ErrorRun> slab_error_runs();
 
+/// Error curves of powers: reflectance and transmittance of a slab by Monte Carlo (`flux`), power at
+/// distances from a beam by deterministic transport (`reflectance`), and conductance and tilt
+/// correlations of transmission matrices (`matrix`).
+std::vector<ErrorRun> power_error_runs();
+std::vector<LongRun> power_long_runs();
+
 /// Error of the anisotropy g that a fit recovers from exact curves of a slab. The curves have
 /// assumed errors, which are reduced from point to point. The fit uses deterministic transport with
 /// more and more ordinates, or Monte Carlo with more and more paths.
 std::vector<ErrorRun> fit_error_runs();
+
+/// Error of the largest value that a search (`optimise`) finds, relative to the largest value in
+/// closed form, against the target error of the search.
+std::vector<ErrorRun> search_error_runs();
 
 /// Errors of imaging through a medium: of C_I for pairs of object points, from which pictures are
 /// predicted, against a run with many more paths; and of separated source patterns against the

@@ -7,6 +7,7 @@
 #include "bench/scenes/imaged_points.h"
 #include "bench/scenes/speckle_frames.h"
 #include "core/numbers/blas.h"
+#include "mc/imaging/retrieval/contrast_map.h"
 
 namespace flatspeckle::bench {
 
@@ -46,6 +47,35 @@ TwoAlternatives products_of_frames(bool) {
           [=] { return complex(mc::source_count(light, {}).singular_values); }};
 }
 
+/// Compares maps of speckle contrast whose windows are summed one by one with those from sums along
+/// rows and columns.
+TwoAlternatives windows_one_by_one(bool) {
+  constexpr std::size_t window = 15;
+  const Frames frames = mixed_speckle(1, 192, 2, 1);
+  const auto map_of = [=] { return mc::contrast_map(frames, {.window = window}); };
+  const auto one_by_one = [=, correlation = map_of().correlation] {
+    std::vector<Complex> squares;
+    for (std::size_t y = 0; y + window <= frames.rows; ++y)
+      for (std::size_t x = 0; x + window <= frames.columns; ++x) {
+        double sum = 0, square = 0;
+        for (std::size_t i = 0; i < window * window; ++i) {
+          const double value = frames.values[(y + i / window) * frames.columns + x + i % window];
+          sum += value;
+          square += value * value;
+        }
+        constexpr double pixels = window * window;
+        const double mean = sum / pixels,
+                     variance = (square / pixels - mean * mean) / (1 - correlation);
+        squares.emplace_back(variance / (mean * mean - correlation * variance));
+      }
+    return squares;
+  };
+  return {one_by_one, [=] {
+            const auto map = map_of();
+            return std::vector<Complex>(map.square.begin(), map.square.end());
+          }};
+}
+
 /// Compares the fields of seven points on a camera, path by path and as products of matrices. Both
 /// are intensities, averaged over pixels and fields, because the paths differ.
 TwoAlternatives products_of_paths(bool) {
@@ -77,6 +107,8 @@ std::vector<PlanCase> imaging_plan_cases() {
       case_of_values(
           {"imaging", "pixels in singular values", "40 frames of 2000 pixels", "decomposition"},
           root_of_rounding, products_of_frames),
+      case_of_values({"imaging", "windows one by one", "contrast of 192 x 192 pixels", "map"}, 1e-9,
+                     windows_one_by_one),
       case_of_values({"imaging", "sums path by path", "7 points, 64 x 64 pixels", "four fields"},
                      0.2, products_of_paths)};
 }

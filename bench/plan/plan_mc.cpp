@@ -188,7 +188,8 @@ Scene points_in_space() {
   spec.count = 1257;
   Scene scene = mc::in_space(make_scene(spec), spec);
   std::vector<View> views;
-  for (int v = 0; v < 64; ++v) views.push_back(far_view(std::acos(1 - 1.5 * (v + 0.5) / 64), 2.4 * v));
+  for (int v = 0; v < 64; ++v)
+    views.push_back(far_view(std::acos(1 - 1.5 * (v + 0.5) / 64), 2.4 * v));
   scene.request = intensity_request({0}, views);
   return scene;
 }
@@ -231,11 +232,11 @@ std::vector<PlanCase> mc_plan_cases() {
       flag("updates entry by entry", full, same, sample, [](Plan& plan) { plan.rank_k = false; }),
       flag("paths of one scatterer", points, other, error,
            [](Plan& plan) { plan.sampled_single = true; }),
-      flag("scores that promise little", forward, other, error,
+      flag("negligible contributions", forward, other, error,
            [](Plan& plan) { plan.score_level = 0; }),
       case_of("a table of the phase function", forward, other, bulk_table),
-      case_of("what varies with depth", points, other, equal_layers),
-      case_of("what varies with depth", forward, other, equal_layers),
+      case_of("variation with depth", points, other, equal_layers),
+      case_of("variation with depth", forward, other, equal_layers),
       case_of("a density map", points, other, even_map),
       case_of("curved rays", near, other, curved_rays),
       case_of("refraction of the mean field", slab, other, refraction),

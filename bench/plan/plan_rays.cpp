@@ -198,16 +198,16 @@ std::vector<PlanCase> ray_plan_cases() {
                       double limit, TwoAlternatives (*make)(bool), int count = rays) {
     return case_of_values({"grin rays", left_out, scene, per}, limit, make, count);
   };
-  return {
-      row("curvature", "constant index, rays out of a ball", "ray", 1e-11, curved_rays),
-      case_of_samples({"grin rays", "search for curves", "constant index, joins in a ball", "join"},
-                      Draws::other, Measure::sample, search_for_curves),
-      row("|J| of flights", "fisheye", "flight", 1e-11, spreading),
-      row("steps", "Luneburg ball, rays in closed form", "ray", 1e-6, closed_forms),
-      row("two forces of three a step", "weak sound, by leapfrog", "ray", 2e-4, leapfrogs),
-      row("waiting for a ray's last step", "sound, rays side by side", "ray", 1e-12,
-          one_ray_at_a_time, lanes),
-      row("kind of field at every step", "Luneburg ball", "ray", 1e-14, kind_of_field)};
+  return {row("curvature", "constant index, rays out of a ball", "ray", 1e-11, curved_rays),
+          case_of_samples({"grin rays", "search for curves",
+                           "constant index, connections in a ball", "connection"},
+                          Draws::other, Measure::sample, search_for_curves),
+          row("|J| of flights", "fisheye", "flight", 1e-11, spreading),
+          row("steps", "Luneburg ball, rays in closed form", "ray", 1e-6, closed_forms),
+          row("two forces of three a step", "weak sound, by leapfrog", "ray", 2e-4, leapfrogs),
+          row("waiting for a ray's last step", "sound, rays side by side", "ray", 1e-12,
+              one_ray_at_a_time, lanes),
+          row("kind of field at every step", "Luneburg ball", "ray", 1e-14, kind_of_field)};
 }
 
 }  // namespace flatspeckle::bench

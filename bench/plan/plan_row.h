@@ -23,8 +23,8 @@ struct PlanRow {
 
 using PlanCase = std::function<PlanRow(double cpu_seconds)>;
 
-/// Returns the comparisons of all modules: mc, transport, fields, fit, imaging, wave solver, rays,
-/// render and design.
+/// Returns the comparisons of all modules: mc, transport, fields, fit, search, imaging, wave solver,
+/// rays, render and design.
 std::vector<PlanCase> plan_cases();
 
 /// Whether the results of both kernels agree within the limit.

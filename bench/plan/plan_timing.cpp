@@ -175,8 +175,8 @@ PlanCase case_of_samples(const PlanName& name, Draws numbers, Measure measure,
 std::vector<PlanCase> plan_cases() {
   std::vector<PlanCase> cases;
   for (const auto& cases_of :
-       {mc_plan_cases, transport_plan_cases, field_plan_cases, fit_plan_cases, imaging_plan_cases,
-        wave_plan_cases, ray_plan_cases, render_plan_cases, design_plan_cases})
+       {mc_plan_cases, transport_plan_cases, field_plan_cases, fit_plan_cases, search_plan_cases,
+        imaging_plan_cases, wave_plan_cases, ray_plan_cases, render_plan_cases, design_plan_cases})
     for (PlanCase& plan_case : cases_of()) cases.push_back(std::move(plan_case));
   return cases;
 }

@@ -17,6 +17,7 @@ std::vector<PlanCase> mc_plan_cases();
 std::vector<PlanCase> transport_plan_cases();
 std::vector<PlanCase> field_plan_cases();
 std::vector<PlanCase> fit_plan_cases();
+std::vector<PlanCase> search_plan_cases();
 std::vector<PlanCase> imaging_plan_cases();
 std::vector<PlanCase> wave_plan_cases();
 std::vector<PlanCase> ray_plan_cases();

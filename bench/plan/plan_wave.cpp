@@ -230,15 +230,15 @@ std::vector<PlanCase> wave_plan_cases() {
           row("multipoles", "400 points", "matrix", 1e-12, multipoles),
           row("orders beyond 1e-4", "box_cylinders", "placement", 1e-4, orders),
           row("all lights but one view", "200 points, 256 lights", "placement", 1e-10, reciprocity),
-          row("lights that others make up", "200 points, 1024 x 1024", "placement", 1e-9,
+          row("lights interpolated from others", "200 points, 1024 x 1024", "placement", 1e-9,
               lights_that_others_make),
           row("diagnosis", "box_cylinders", "placement", 1e-12, diagnosis),
-          row("the matrix", "4000 points (500 in a quick look)", "placement", 1e-4, whole_matrix),
-          row("unknowns inside a slab", "3000 points (600 in a quick look)", "scattering matrix",
+          row("the matrix", "4000 points (500 in a quick run)", "placement", 1e-4, whole_matrix),
+          row("unknowns inside a slab", "3000 points (600 in a quick run)", "scattering matrix",
               1e-4, inside_of_slab),
           row("sums pixel by pixel", "100 cylinders, 26400 pixels", "map", 1e-8, pixels_one_by_one),
-          row("pairs beyond a wavelength", "20000 points in space (8000 in a quick look)",
-              "product", 1e-5, pairs_in_space),
+          row("pairs beyond a wavelength", "20000 points in space (8000 in a quick run)", "product",
+              1e-5, pairs_in_space),
           row("disks of copies", "12 copies of 16 cylinders", "placement", 1e-7, disks_of_copies)};
 }
 

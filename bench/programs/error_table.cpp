@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
   omp_set_num_threads(1);  // the batches themselves run in parallel
   const double cpu_seconds = argc > 1 ? std::atof(argv[1]) : 600;
   std::printf("# by bench_error_table %g: references of error curves\n", cpu_seconds);
-  for (const auto& runs : {box_long_runs(), render_long_runs()})
+  for (const auto& runs : {box_long_runs(), power_long_runs(), render_long_runs()})
     for (const LongRun& run : runs)
       if (is_wanted(run.name, argc, argv)) print(run, cpu_seconds);
 }

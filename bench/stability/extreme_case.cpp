@@ -16,6 +16,7 @@ std::vector<ExtremeCase> extreme_cases() {
     void (*add)(ExtremeRows& rows);
   };
   constexpr Part parts[] = {{"functions", function_extremes},
+                            {"search", search_extremes},
                             {"flatland", flatland_extremes},
                             {"wave_solver", wave_extremes},
                             {"wave_solver", wave_point_extremes},

@@ -72,6 +72,7 @@ class ExtremeRows {
 
 // Each of these functions adds the rows of one part of the program.
 void function_extremes(ExtremeRows& rows);
+void search_extremes(ExtremeRows& rows);
 void flatland_extremes(ExtremeRows& rows);
 void wave_extremes(ExtremeRows& rows);
 void wave_point_extremes(ExtremeRows& rows);

@@ -256,7 +256,7 @@ void add_flux(ExtremeRows& rows) {
   rows.add("flux, OD 100, g 0.999", energy, lossless_flux, Bulk{100, 0.999}, 1000);
   rows.add_slow("flux, OD 1e4", energy, lossless_flux, Bulk{1e4}, 400);
   const std::string ordinates = "discrete ordinates, in errors";
-  rows.add("flux, OD 30, albedo 0.7: 1e-9 comes through", ordinates, one_peak, Bulk{30, 0, 0.7},
+  rows.add("flux, OD 30, albedo 0.7: 1e-9 transmitted", ordinates, one_peak, Bulk{30, 0, 0.7},
            100000);
   rows.add("flux, OD 1e-3, g 0.5, albedo 0.7", ordinates, one_peak, Bulk{1e-3, 0.5, 0.7}, 50000);
   rows.add("flux, OD 5, peaks of g 0.95 forwards and backwards", ordinates, two_peaks, 0.95,

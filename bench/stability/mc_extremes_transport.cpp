@@ -255,7 +255,7 @@ void add_fits(ExtremeRows& rows) {
   add("OD 15, g 0.95", {0.95, 0.99, 15}, {"g=0.3:0.99", albedo, "optical_depth=1:60"});
   add("OD 10, g 0", {0, 0.9, 10}, {"g=-0.5:0.9", albedo, "optical_depth=1:60"});
   const auto add_paths = [&](const std::string& name, const Truth& truth) {
-    rows.add_slow("fit by paths, " + name, "g of exact curves, in standard errors of chance",
+    rows.add_slow("fit by paths, " + name, "g of exact curves, in statistical standard errors",
                   found_by_paths, truth);
   };
   add_paths("OD 0.05, g 0.9", {0.9, 0.95, 0.05});

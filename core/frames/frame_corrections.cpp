@@ -14,6 +14,28 @@ std::string size_of(const Frames& frames) {
   return std::to_string(frames.columns) + " x " + std::to_string(frames.rows) + " pixels";
 }
 
+/// Reads the frames of all files, in their order.
+Frames stack_of(const Keys& keys, const FrameFormat& format,
+                const std::vector<std::string>& paths) {
+  Frames all;
+  for (const std::string& path : paths) {
+    read_frame_keys(keys, format, path);
+    Frames more = read_frames("frames", path, format);
+    if (all.values.empty()) {
+      all = std::move(more);
+      continue;
+    }
+    if (more.rows != all.rows || more.columns != all.columns)
+      throw InputError("frames", path,
+                       "has " + size_of(more) + ", " + paths.front() + " has " + size_of(all));
+    if (all.names.size() == all.count())
+      all.names.insert(all.names.end(), more.names.begin(), more.names.end());
+    all.values.insert(all.values.end(), more.values.begin(), more.values.end());
+    all.full_scale = std::max(all.full_scale, more.full_scale);
+  }
+  return all;
+}
+
 /// Reads a file of frames of the same size as others, and returns their mean.
 std::vector<double> mean_frame(const std::string& key, const std::string& path,
                                const FrameFormat& format, const Frames& like) {
@@ -85,9 +107,8 @@ void add_correction_keys(Keys& keys, FrameCorrections& corrections) {
 }
 
 Frames corrected_frames(const Keys& keys, const FrameCorrections& corrections,
-                        const FrameFormat& format, const std::string& path) {
-  read_frame_keys(keys, format, path);
-  Frames frames = read_frames("frames", path, format);
+                        const FrameFormat& format, const std::vector<std::string>& paths) {
+  Frames frames = stack_of(keys, format, paths);
   note_saturation(frames);
   std::vector<double> dark;
   if (const std::string& dark_path = keys.read(corrections.dark); !dark_path.empty()) {
@@ -106,7 +127,7 @@ Frames corrected_frames(const Keys& keys, const FrameCorrections& corrections,
     throw InputError("region = " + std::to_string(part[0]) + " " + std::to_string(part[1]) + " " +
                      std::to_string(part[2]) + " " + std::to_string(part[3]) +
                      ", binning = " + std::to_string(binning) + ": must lie in the frames of " +
-                     path + ", which have " + size_of(frames));
+                     paths.front() + ", which have " + size_of(frames));
   const bool line = frames.rows == 1;
   if (binning == 1 && part[2] == frames.columns && part[3] == frames.rows) return frames;
   if (line && binning > 1) throw InputError("binning", binning, "must be 1 for frames of one line");

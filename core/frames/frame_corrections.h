@@ -19,10 +19,10 @@ struct FrameCorrections {
 /// Adds the keys dark, flat, region and binning.
 void add_correction_keys(Keys& keys, FrameCorrections& corrections);
 
-/// Reads the keys and the file of the key `frames`, and corrects the frames. A dark or flat file
-/// holds one frame, or several, which are averaged. Prints a note if pixels are saturated. Throws
-/// InputError.
+/// Reads the keys and the files of the key `frames`, which must have frames of one size, and
+/// corrects the frames. A dark or flat file holds one frame, or several, which are averaged. Prints
+/// a note if pixels are saturated. Throws InputError.
 Frames corrected_frames(const Keys& keys, const FrameCorrections& corrections,
-                        const FrameFormat& format, const std::string& path);
+                        const FrameFormat& format, const std::vector<std::string>& paths);
 
 }  // namespace flatspeckle

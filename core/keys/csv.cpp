@@ -105,6 +105,10 @@ class CsvReader {
     std::set<std::string> known;
     for (const std::string& name : names_) {
       if (name.empty()) text_.fail(line, "a column has no name");
+      const std::string stem = name.substr(0, name.find_first_of(" ([/"));
+      if (stem != name && is_angle_(stem))
+        text_.fail(line, "column \"" + name + "\": name it " + stem + " (radians) or " + stem +
+                             std::string(degrees) + " (degrees)");
       if (!known.insert(base(name)).second)
         text_.fail(line, "column \"" + base(name) + "\" appears twice");
     }
@@ -121,11 +125,17 @@ class CsvReader {
     if (fields.size() != names_.size())
       text_.fail(line, "expected " + std::to_string(names_.size()) + " fields, found " +
                            std::to_string(fields.size()) +
-                           (fields.size() >= 2 * names_.size() && text_.separator() == ','
-                                ? " (with decimal commas, fields must be separated by ;)"
-                                : ""));
+                           hint(fields.size()));
     for (std::size_t i = 0; i < fields.size(); ++i)
       columns_[i].push_back(numbers_.read(line, names_[i], fields[i], is_angle_(names_[i])));
+  }
+
+  /// Returns the likely reason why a line has this number of fields, if there is one.
+  std::string hint(std::size_t fields) const {
+    if (text_.separator() != ',') return "";
+    if (fields == 1) return " (fields must be separated by commas, as the names are)";
+    return fields >= 2 * names_.size() ? " (with decimal commas, fields must be separated by ;)"
+                                       : "";
   }
 
   bool is_in_degrees(const std::string& name) const {

@@ -13,8 +13,9 @@ namespace flatspeckle {
 
 class ResultFile;
 
-/// Motion of the scatterers of one material, for fields at two times: factors on the diffusion
-/// coefficient and the flow velocity of the scene.
+/// Motion of the scatterers of one material, for fields at two times: factors on k^2 D and v of
+/// the scene. If layers differ in index, k is that in vacuum, and the squared index is a part of the
+/// factor.
 struct MaterialMotion {
   double diffusion = 1, velocity = 1;
 };

@@ -137,7 +137,7 @@ class Across {
     else if (tilt != 0)
       point(light, rotated(light.direction(), tilt));
     if (light.direction().z * before <= 0)
-      throw InputError("tilts", tilt, "takes the light past the horizon");
+      throw InputError("tilts", tilt, "takes the light past the horizon (tilts are in radians)");
     return light;
   }
 

@@ -156,10 +156,13 @@ class LayerTable {
     const auto share = [&](const char* name) {
       return table_.has(name) ? table_.column(name)[layer] : 1.0;
     };
-    const MaterialMotion motion{share("diffusion"), share("flow")};
-    if (motion.diffusion < 0)
-      throw InputError("diffusion", motion.diffusion, "must not be negative");
-    return {scene.scatterer, scene.medium, motion, own.medium_index.value_or(1)};
+    if (share("diffusion") < 0)
+      throw InputError("diffusion", share("diffusion"), "must not be negative");
+    // If layers differ in index, k^2 D is that in vacuum.
+    const double index = own.medium_index.value_or(1),
+                 relative = table_.has("medium_index") ? index : 1;
+    const MaterialMotion motion{share("diffusion") * relative * relative, share("flow")};
+    return {scene.scatterer, scene.medium, motion, index};
   }
 
   /// Returns mu_s or mu_a of a layer; 0 without a column.

@@ -80,7 +80,9 @@ using Eigen::VectorXd;
 BoundedLeastSquares problem_of(const FitTask& task, const SlabModel& model, const FitData& data) {
   BoundedLeastSquares problem = bounds_of(task.free);
   problem.residuals = [&](const VectorXd& at) -> VectorXd {
-    return data.residuals(model.values(media_at(task, at)));
+    const VectorXd found = data.residuals(model.values(media_at(task, at)));
+    task.report(found.squaredNorm());
+    return found;
   };
   problem.jacobian = [values = problem](const VectorXd& at, const VectorXd& here) {
     return jacobian(values, at, here);
@@ -114,14 +116,15 @@ LeastSquaresFit refined_fit(const FitTask& task, const BoundedLeastSquares& prob
                             SlabModel& model, const FitData& data, MediumFit& fit) {
   constexpr double share = 0.05, tolerance = 1e-3, rough = 1e-3;
   const VectorXd at_first = data.errors().cwiseMax(rough * data.values().cwiseAbs());
-  model.refine(media_at(task, middle(task)), at_first, share);
+  const auto report = [&] { task.report(); };
+  model.refine(media_at(task, middle(task)), at_first, share, report);
   auto starts = best_starts(problem, grid_of_starts(task), 3);
   LeastSquaresFit best =
       levenberg_marquardt(problem, starts.front(), task.most_iterations, tolerance);
   if (!(best.converged && is_likely(best.chi_squared(), degrees_of_freedom(best, data))))
     best = best_fit(problem, starts, task.most_iterations, tolerance);
   const Resolution before = model.resolution();
-  fit.numerical = model.refine(media_at(task, best.parameters), data.errors(), share);
+  fit.numerical = model.refine(media_at(task, best.parameters), data.errors(), share, report);
   if (model.resolution() == before) return best;
   auto trace = std::move(best.trace);
   best = levenberg_marquardt(problem, best.parameters, task.most_iterations, tolerance);

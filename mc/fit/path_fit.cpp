@@ -207,7 +207,9 @@ class PathSearch {
     MatrixXd neglected = MatrixXd::Zero(model.values.size(), model.values.size());
     if (!task_.paths->trusted)
       neglected = neglected_covariance(task_, media_at(task_, at), model.values);
-    return {at, std::move(model), std::move(neglected), data_};
+    Round found(at, std::move(model), std::move(neglected), data_);
+    task_.report(found.at.chi_squared());
+    return found;
   }
 
   /// Returns the largest fraction that sampling noise of the model adds to the variance of a

@@ -10,13 +10,19 @@
 
 namespace flatspeckle::mc {
 
-void check_delays(const Scene& scene, const std::vector<double>& delays) {
+void check_delays(const Scene& scene, const std::vector<double>& delays, const Motion& motion) {
   if (!scene.medium.structure.independent())
     throw InputError(
         "delays: requires independent positions of the scatterers, without a structure factor");
   for (const double delay : delays)
     if (!(delay >= 0 && delay <= 1e100))
       throw InputError("delays", delay, "must not be negative, and at most 1e100");
+  if (!scene.profile || motion.velocity != Vec{} || motion.shear != 0) return;
+  for (const Material& material : scene.profile->materials())
+    if (material.motion.velocity != 1)
+      throw InputError(
+          "layers: column flow requires velocity; the factor on the diffusion constant is column "
+          "diffusion");
 }
 
 DelayEstimates delay_estimates(const CovarianceRequest& request, const PathJob& job,
@@ -116,7 +122,8 @@ void write_delays(ResultFile& file, const Scene& scene, const Dynamics& dynamics
   }
   root.put("covariance", found.changes.covariance);
   root.put("field_correlation", found.changes.correlation);
-  if (scene.domain.kind == Domain::Kind::slab && !has_near_endpoints(scene.request))
+  if (scene.domain.kind == Domain::Kind::slab && !scene.profile &&
+      !has_near_endpoints(scene.request))
     write_theory(root, scene, dynamics);
 }
 

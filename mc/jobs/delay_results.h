@@ -11,8 +11,9 @@
 
 namespace flatspeckle::mc {
 
-/// Throws InputError for scatterers with a structure factor, and for negative delays.
-void check_delays(const Scene& scene, const std::vector<double>& delays);
+/// Throws InputError for scatterers with a structure factor, for negative delays, and for materials
+/// with their own factors on the velocity if nothing flows.
+void check_delays(const Scene& scene, const std::vector<double>& delays, const Motion& motion);
 
 /// Estimates from a job of two fields with delays between them.
 struct DelayEstimates {

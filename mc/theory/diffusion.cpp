@@ -62,7 +62,7 @@ const DatasetTable diffusion_table{
                     "its faces"}}};
 
 void write_extrapolation_length(ResultFile& file, const Scene& scene) {
-  if (scene.domain.kind == Domain::Kind::slab && scene.medium.mu_t > 0)
+  if (scene.domain.kind == Domain::Kind::slab && scene.medium.mu_t > 0 && !scene.profile)
     ResultGroup(file, diffusion_table)
         .attribute("extrapolation_length", extrapolation_length(scene));
 }
@@ -133,12 +133,12 @@ double single_scattering_correlation(const Light& light, const std::vector<View>
   const auto per_depth = [&](const auto& ray) {
     return std::tan(ray.angle) * std::cos(ray.azimuth - tilt_azimuth);
   };
-  Complex sum = 0;
+  double sum = 0;
   for (const View& view : views) {
     const double phase = q * thickness * (per_depth(view) - per_depth(light)) / 2;
-    sum += std::polar(1.0, phase) * (phase == 0 ? 1 : std::sin(phase) / phase);
+    sum += phase == 0 ? 1 : std::pow(std::sin(phase) / phase, 2);
   }
-  return std::abs(sum) / static_cast<double>(views.size());
+  return std::sqrt(sum / static_cast<double>(views.size()));
 }
 
 }  // namespace flatspeckle::mc

@@ -21,7 +21,7 @@ double extrapolation_length(const BulkMedium& medium);
 double extrapolation_length(const Scene& scene);
 
 extern const DatasetTable diffusion_table;
-/// Writes the extrapolation length of a slab that scatters or absorbs.
+/// Writes the extrapolation length of a homogeneous slab that scatters or absorbs.
 void write_extrapolation_length(ResultFile& file, const Scene& scene);
 
 /// Slab in which light diffuses.
@@ -68,8 +68,7 @@ double scatterings_of_slowest_mode(const BulkMedium& medium, const Domain& domai
 
 /// Returns the field correlation C_E of light scattered once in a slab without attenuation (C21),
 /// to first order in the tilt wavenumber q, for matched views. All views are assumed equally
-/// bright; their contributions are summed before the modulus is taken (C19). tilt_azimuth:
-/// direction of q in space (C55).
+/// bright; their C_E^2 is averaged (C19). tilt_azimuth: direction of q in space (C55).
 double single_scattering_correlation(const Light& light, const std::vector<View>& views,
                                      double thickness, double q, double tilt_azimuth = 0);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numbers>
 
 namespace flatspeckle::mc {
 
@@ -48,28 +50,41 @@ std::size_t place_of_zero(const std::vector<double>& steps) {
   return static_cast<std::size_t>(std::find(steps.begin(), steps.end(), 0.0) - steps.begin());
 }
 
-double correlation_of_sums(const CovarianceRequest& request, std::span<const Complex> entries,
-                           const std::vector<std::size_t>& views, std::size_t move) {
-  Complex cross = 0;
-  double reference = 0, moved = 0;
-  for (const std::size_t v : views) {
-    cross += entries[request.tilted_entry(move, v)];
-    reference += entries[request.reference_intensity(v)].real();
-    moved += entries[request.tilted_intensity(move, v)].real();
-  }
-  const double product = reference * moved;
-  return product > 0 ? std::abs(cross) / std::sqrt(product) : 0;
+/// Returns the sum over views of the products of reference and moved intensity.
+double intensity_products(const CovarianceRequest& request, std::span<const Complex> entries,
+                          const std::vector<std::size_t>& views, std::size_t move) {
+  double sum = 0;
+  for (const std::size_t v : views)
+    sum += entries[request.reference_intensity(v)].real() *
+           entries[request.tilted_intensity(move, v)].real();
+  return sum;
 }
 
-double correlation_of_powers(const CovarianceRequest& request, std::span<const Complex> entries,
-                             const std::vector<std::size_t>& views, std::size_t move) {
-  double cross = 0, product = 0;
-  for (const std::size_t v : views) {
-    cross += std::norm(entries[request.tilted_entry(move, v)]);
-    product += entries[request.reference_intensity(v)].real() *
-               entries[request.tilted_intensity(move, v)].real();
+/// Returns by how much noise raises each C_E on average. The mean of an estimate of C_E^2 exceeds
+/// C_E^2 by the variance of C; the excess is estimated by the jackknife.
+std::vector<double> excess_by_noise(
+    const GroupedSums& sums,
+    const std::function<std::vector<Complex>(double, std::span<const Complex>)>& correlation) {
+  const std::size_t groups = sums.groups();
+  const double samples = sums.total_samples();
+  const std::vector<Complex> total = sums.total();
+  const auto all = correlation(samples, total);
+  std::vector<double> squares(all.size());  // mean excess of C_E^2
+  std::vector<Complex> without(total.size());
+  for (std::size_t group = 0; groups > 1 && group < groups; ++group) {
+    const auto left_out = sums.group_sums(group);
+    for (std::size_t i = 0; i < total.size(); ++i) without[i] = total[i] - left_out[i];
+    const double rest = samples - sums.group_samples(group);
+    const auto values = correlation(rest, without);
+    for (std::size_t move = 0; move < all.size(); ++move)
+      squares[move] += rest / samples * (std::norm(values[move]) - std::norm(all[move]));
   }
-  return product > 0 ? std::sqrt(cross / product) : 0;
+  for (std::size_t move = 0; move < all.size(); ++move) {
+    const double raised = all[move].real();
+    squares[move] =
+        raised - std::sqrt(std::clamp(raised * raised - squares[move], 0.0, raised * raised));
+  }
+  return squares;
 }
 
 /// Returns the ranges that Correlations describes. moves: C_E of every move.
@@ -110,11 +125,13 @@ std::vector<std::vector<std::size_t>> view_groups(const CovarianceRequest& reque
 std::vector<Complex> field_correlation(const CovarianceRequest& request,
                                        std::span<const Complex> entries,
                                        const std::vector<std::size_t>& views) {
-  const bool near = request.views.front().near;
   std::vector<Complex> correlation;
-  for (std::size_t move = 0; move < request.moves; ++move)
-    correlation.emplace_back(near ? correlation_of_powers(request, entries, views, move)
-                                  : correlation_of_sums(request, entries, views, move));
+  for (std::size_t move = 0; move < request.moves; ++move) {
+    double square = 0;
+    for (const std::size_t v : views) square += std::norm(entries[request.tilted_entry(move, v)]);
+    const double product = intensity_products(request, entries, views, move);
+    correlation.emplace_back(product > 0 ? std::sqrt(square / product) : 0);
+  }
   return correlation;
 }
 
@@ -138,6 +155,30 @@ Range memory_effect_range(const std::vector<double>& tilt_q, std::span<const Com
   return {curve.back().q, Range::Censoring::above_value};
 }
 
+RangeTilt tilt_of_range(const CovarianceRequest& request, double k, double range) {
+  constexpr double most = 1 - 1e-12;  // just above the horizon
+  const Light& light = request.lights.front();
+  const Vec w = light.direction();
+  const double along = std::sin(light.angle) * std::cos(light.azimuth - request.tilt_azimuth),
+               turning = std::hypot(along, w.z), from = std::atan2(along, w.z);
+  const bool forward = w.z >= 0, positive = std::ranges::any_of(request.tilt_q, [](double q) {
+    return q > 0;
+  });
+  const double sine = (along + (positive ? range : -range) / k) / turning,
+               nearest = std::asin(std::clamp(sine, -most, most)),
+               to = forward ? nearest : std::numbers::pi - nearest,
+               rotation = std::abs(std::remainder(to - from, 2 * std::numbers::pi)),
+               per_q = 1 / (k * turning * std::cos(nearest)),
+               between = 2 * std::asin(turning * std::sin(rotation / 2));
+  return {rotation, per_q, between,
+          per_q * turning * std::cos(rotation / 2) / std::cos(between / 2)};
+}
+
+bool is_tilted_aside(const CovarianceRequest& request) {
+  const Light& light = request.lights.front();
+  return std::abs(std::sin(light.angle) * std::sin(light.azimuth - request.tilt_azimuth)) > 1e-9;
+}
+
 std::size_t steps_below(const std::vector<double>& steps, const Range& range) {
   return static_cast<std::size_t>(std::count_if(steps.begin(), steps.end(), [&](double step) {
     return std::abs(step) > 0 && std::abs(step) < range.value;
@@ -156,10 +197,16 @@ std::vector<Complex> correlation_and_ranges(const CovarianceRequest& request,
 
 Correlations correlations(const CovarianceRequest& request, const GroupedSums& sums,
                           const Estimator& covariance, const std::vector<std::size_t>& views) {
+  const auto curve = [&](double samples, std::span<const Complex> total) {
+    return field_correlation(request, covariance(samples, total), views);
+  };
   const auto all = jackknife(sums, [&](double samples, std::span<const Complex> total) {
-    return with_ranges(request, field_correlation(request, covariance(samples, total), views));
+    return with_ranges(request, curve(samples, total));
   });
   Correlations found{part(all, 0, request.moves), {}};
+  const auto excess = excess_by_noise(sums, curve);
+  for (std::size_t move = 0; move < request.moves; ++move)
+    found.moves.error[move] = std::hypot(found.moves.error[move], excess[move]);
   for (const Range& range : ranges(request, found.moves.value)) {
     const std::size_t entry = request.moves + found.ranges.size();
     found.ranges.push_back({range, all.error[entry], all.rare[entry]});

@@ -9,17 +9,16 @@
 
 namespace flatspeckle::mc {
 
-/// Groups the reference views. A field correlation sums over the views of one group. Far views form
+/// Groups the reference views. A field correlation averages over the views of one group. Far views form
 /// a group for each side of the medium, transmission before reflection; near sensors form a single
 /// group. There are one or two groups.
 std::vector<std::vector<std::size_t>> view_groups(const CovarianceRequest& request);
 
 /// Returns the field correlation C_E of every move (tilt, shift or translation; C19) of a request,
 /// from its covariance entries, which any solver may have computed. In each view, C is the
-/// covariance of the reference and the moved field, and I and I' are their intensities. For far
-/// views C_E is |sum C| / sqrt(sum I sum I'). For near sensors, whose C differ in phase, it is
-/// sqrt(sum |C|^2 / sum I I'). C_E is 0 if the denominator is 0. views: the views of the sum, one
-/// of the view_groups().
+/// covariance of the reference and the moved field, and I and I' are their intensities. C_E is
+/// sqrt(sum |C|^2 / sum I I'), because the phase of C differs between views. C_E is 0 if the
+/// denominator is 0. views: the views of the sum, one of the view_groups().
 std::vector<Complex> field_correlation(const CovarianceRequest& request,
                                        std::span<const Complex> entries,
                                        const std::vector<std::size_t>& views);
@@ -44,6 +43,19 @@ struct Range {
 /// is accurate to 1e-5 if neighbouring tilts differ by a sixth of it.
 Range memory_effect_range(const std::vector<double>& tilt_q, std::span<const Complex> correlation);
 
+/// Tilt of the light at a range |q|: its rotation about an axis in the faces (C55), and the angle
+/// between the beams before and after it, each with its derivative by q.
+struct RangeTilt {
+  double rotation = 0, rotation_per_q = 0, between = 0, between_per_q = 0;
+};
+
+/// Returns the tilt at which the transverse wavenumber of the light, with the wavenumber k outside,
+/// has changed by a range in the direction of the tilts.
+RangeTilt tilt_of_range(const CovarianceRequest& request, double k, double range);
+/// Whether the angle between the beams differs from the rotation: oblique light that is not tilted
+/// in its plane of incidence.
+bool is_tilted_aside(const CovarianceRequest& request);
+
 /// Returns the number of steps (tilts or shifts, without 0) whose magnitude is below the
 /// half-width.
 std::size_t steps_below(const std::vector<double>& steps, const Range& range);
@@ -60,7 +72,8 @@ struct RangeEstimate {
 };
 
 /// Field correlations C_E of every move (tilt, shift or translation) and the half-widths (ranges)
-/// of their curves, with jackknife errors. Requests of kind memory_effect and translation have one
+/// of their curves, with jackknife errors. The errors of C_E include the mean excess of C_E that
+/// noise causes. Requests of kind memory_effect and translation have one
 /// range. Requests of kind tilt_shift have a range along tilts at shift 0, one along shifts at tilt
 /// 0, and, for far views, one along tilts with matched views. Ranges along tilts are values of
 /// CovarianceRequest::tilt_q.

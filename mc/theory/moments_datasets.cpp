@@ -42,12 +42,15 @@ const DatasetTable moves_table{
              {"moved_intensity", Data::estimate, "MOVES VIEW", "COVARIANCE",
               "variance of the moved field"},
              {"field_correlation", Data::estimate, "MOVES", "1",
-              "field correlation C_E, summed over the views on one side: transmitted, if there are "
+              "field correlation C_E, averaged over the views on one side: transmitted, if there are "
               "any"},
              {"memory_effect_range", Data::estimate, "", "1",
               "q L at C_I = 1/2 with matched views, L the depth"},
              {"memory_effect_angle", Data::estimate, "", "rad",
               "rotation of the light at C_I = 1/2 with matched views"},
+             {"beam_angle", Data::estimate, "", "rad",
+              "angle between the beams at C_I = 1/2 with matched views, if it is not that of the "
+              "rotation"},
              {"tilt_range", Data::estimate, "", "1",
               "q L at C_I = 1/2 with fixed views, L the depth"},
              {"shift_range", Data::estimate, "", "SHIFT_RANGE",
@@ -58,13 +61,15 @@ const DatasetTable moves_table{
              {"matched_moved_intensity", Data::estimate, "tilt view_angle", "COVARIANCE",
               "variance of the moved field"},
              {"matched_correlation", Data::estimate, "tilt", "1",
-              "field correlation C_E with matched views, summed as in field_correlation"},
+              "field correlation C_E with matched views, averaged as in field_correlation"},
              {"reflected_field_correlation", Data::estimate, "MOVES", "1",
               "C_E of the reflected views, if there are transmitted views too"},
              {"reflected_memory_effect_range", Data::estimate, "", "1",
               "q L of the reflected views at C_I = 1/2 with matched views, L the depth"},
              {"reflected_memory_effect_angle", Data::estimate, "", "rad",
               "rotation of the light at C_I = 1/2 of the reflected views with matched views"},
+             {"reflected_beam_angle", Data::estimate, "", "rad",
+              "angle between the beams at C_I = 1/2 of the reflected views with matched views"},
              {"reflected_tilt_range", Data::estimate, "", "1",
               "q L of the reflected views at C_I = 1/2 with fixed views, L the depth"},
              {"reflected_shift_range", Data::estimate, "", "SHIFT_RANGE",
@@ -90,6 +95,8 @@ const DatasetTable moves_table{
     .attributes = {{"memory_effect_range", "censored", "uint64", censored_meaning},
                    {"memory_effect_angle", "censored", "uint64", censored_meaning},
                    {"reflected_memory_effect_angle", "censored", "uint64", censored_meaning},
+                   {"beam_angle", "censored", "uint64", censored_meaning},
+                   {"reflected_beam_angle", "censored", "uint64", censored_meaning},
                    {"tilt_range", "censored", "uint64", censored_meaning},
                    {"shift_range", "censored", "uint64", censored_meaning},
                    {"translation_range", "censored", "uint64", censored_meaning},
@@ -141,17 +148,17 @@ class MovesWriter {
   }
 
   /// Writes theoretical C_E for plane waves transmitted into matched views, if the request contains
-  /// them: single scattering and, for a homogeneous medium, diffusion theory.
+  /// them and the medium is homogeneous: single scattering and diffusion theory.
   void theory(const std::vector<std::size_t>& group) const {
-    if (request_.kind != Kind::tilt_shift || !far() || !request_.lights.all(Light::Kind::plane))
+    if (request_.kind != Kind::tilt_shift || !far() || !request_.lights.all(Light::Kind::plane) ||
+        scene_.profile)
       return;
     std::vector<View> views;
     for (const std::size_t v : group) views.push_back(request_.views[v]);
     if (std::cos(views.front().angle) <= 0) return;
-    if (!scene_.profile)
-      out_.put("diffusion_theory", column(request_.tilt_q, [&](double q) {
-                 return diffusion_field_correlation(scene_, q);
-               }));
+    out_.put("diffusion_theory", column(request_.tilt_q, [&](double q) {
+               return diffusion_field_correlation(scene_, q);
+             }));
     out_.put("single_scattering", column(request_.tilt_q, [&](double q) {
                return single_scattering_correlation(request_.lights.front(), views,
                                                     scene_.domain.depth, q, request_.tilt_azimuth);
@@ -173,16 +180,18 @@ class MovesWriter {
     if (tilts) angle(only);
   }
 
-  /// Writes the angle by which the light turns when the transverse wavenumber outside changes by
-  /// the range, unless this takes it past the horizon.
-  void angle(RangeEstimate estimate) {
-    const double light = request_.lights.front().angle, k = scene_.outside_k(),
-                 sine = std::sin(light) + estimate.range.value / k;
-    if (!(std::abs(sine) < 1)) return;
-    estimate.range.value = std::asin(sine) - light;
-    estimate.error /= k * std::sqrt(1 - sine * sine);
-    range("memory_effect_angle", estimate, 1);
-    ranges_.back().is_angle = true;
+  /// Writes the rotation of the light at the range and, if it differs, the angle between the beams.
+  void angle(const RangeEstimate& range_in_q) {
+    const RangeTilt tilt = tilt_of_range(request_, scene_.outside_k(), range_in_q.range.value);
+    const auto write_angle = [&](const std::string& name, double value, double per_q) {
+      RangeEstimate estimate = range_in_q;
+      estimate.range.value = value;
+      estimate.error *= per_q;
+      range(name, estimate, 1);
+      ranges_.back().is_angle = true;
+    };
+    write_angle("memory_effect_angle", tilt.rotation, tilt.rotation_per_q);
+    if (is_tilted_aside(request_)) write_angle("beam_angle", tilt.between, tilt.between_per_q);
   }
 
   void map(const Correlations& found) {

@@ -27,15 +27,15 @@ TITLES = {"box_points": "31 points in a box, OD 1", "box_cylinders": "67 cylinde
           "ring_even": "ring of triangles, isotropic light", "absorbing_ball": "absorbing ball of triangles",
           "slab_hg, flow": "slab, OD 5, flow"}
 BOXES = ("box_points", "box_cylinders")
-ROOM_NAMES = {"mc": "Monte Carlo", "wave": "wave solver", "wave_solver": "wave solver"}
+MODULE_NAMES = {"mc": "Monte Carlo", "wave": "wave solver", "wave_solver": "wave solver"}
 
 
 def title(scene):
     return TITLES.get(scene, scene.replace("_", " "))
 
 
-def room_name(room):
-    return ROOM_NAMES.get(room, room)
+def module_name(module):
+    return MODULE_NAMES.get(module, module)
 
 
 def base_method(method):
@@ -185,9 +185,9 @@ def draw_costs(bench, across=5):
 
 def draw_margins(axis, stability):
     """Draws deviation / limit of every case, module by module, and at the right the number of rejected cases."""
-    rooms = stability.rooms()
-    for place, room in enumerate(rooms):
-        rows, look = stability.of_room(room), {**style.look(place), "linestyle": "none"}
+    modules = stability.modules()
+    for place, module in enumerate(modules):
+        rows, look = stability.of_module(module), {**style.look(place), "linestyle": "none"}
         solved = [row for row in rows if not row["refusal"]]
         margin = np.array([row["figure"] / (row["limit"] if row["limit"] > 0 else 1) for row in solved])
         order = np.argsort(np.argsort(margin))
@@ -202,9 +202,9 @@ def draw_margins(axis, stability):
     axis.set(xscale="log", xlim=(LEAST_MARGIN, 5), xlabel="deviation from the invariant / limit")
     axis.xaxis.set_major_locator(LogLocator(numticks=6))
     axis.xaxis.set_minor_locator(NullLocator())
-    name_rows(axis, [f"{room_name(room)}\n{len(stability.of_room(room))} cases" for room in rooms],
+    name_rows(axis, [f"{module_name(module)}\n{len(stability.of_module(module))} cases" for module in modules],
               (-0.5, -0.5))
-    for place in range(1, len(rooms)):
+    for place in range(1, len(modules)):
         axis.axhline(place - 0.5, color="0.9", linewidth=0.5, zorder=0)
     axis.text(1.02, 1.0, "rejected", transform=axis.transAxes, va="bottom", fontsize=7)
     axis.set_title(f"(a) {len(stability.rows)} extreme cases", loc="left")
@@ -213,11 +213,11 @@ def draw_margins(axis, stability):
 def draw_ratios(axis, plan):
     """Draws the ratio of times of every comparison; the rows of a module are below its name."""
     place, ticks, names = 0, [], []
-    for number, room in enumerate(plan.rooms()):
+    for number, module in enumerate(plan.modules()):
         ticks.append(place)
-        names.append(room_name(room))
+        names.append(module_name(module))
         look = {**style.look(number), "linestyle": "none"}
-        for row in plan.of_room(room):
+        for row in plan.of_module(module):
             place += 1
             axis.errorbar(row["ratio"], place, xerr=row["ratio_spread"], elinewidth=0.7, **look)
             ticks.append(place)
@@ -229,9 +229,9 @@ def draw_ratios(axis, plan):
     axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5), numticks=12))
     axis.xaxis.set_minor_locator(NullLocator())
     axis.set_yticks(ticks, names, fontsize=6)
-    rooms = {room_name(room) for room in plan.rooms()}
+    modules = {module_name(module) for module in plan.modules()}
     for label in axis.get_yticklabels():
-        if label.get_text() in rooms:
+        if label.get_text() in modules:
             label.set(weight="bold", fontsize=6.5)
     axis.set_ylim(place - 0.6, -1)
     axis.tick_params(axis="y", length=0)
@@ -240,7 +240,7 @@ def draw_ratios(axis, plan):
 
 
 def draw_limits(bench):
-    height = max(3.2, 0.9 + 0.125 * (len(bench.plan.rows) + 2.3 * len(bench.plan.rooms())))
+    height = max(3.2, 0.9 + 0.125 * (len(bench.plan.rows) + 2.3 * len(bench.plan.modules())))
     figure, (left, right) = plt.subplots(1, 2, figsize=(style.PAGE, height),
                                          gridspec_kw={"width_ratios": [1, 1.05]})
     draw_margins(left, bench.stability)

@@ -62,13 +62,13 @@ class RowFile:
 
     def __init__(self, result, *columns):
         self.made = Made(result)
-        self.rows = rows_of(result, "room", *columns, "passed")
+        self.rows = rows_of(result, "module", *columns, "passed")
 
-    def rooms(self):
-        return list(dict.fromkeys(row["room"] for row in self.rows))
+    def modules(self):
+        return list(dict.fromkeys(row["module"] for row in self.rows))
 
-    def of_room(self, room):
-        return [row for row in self.rows if row["room"] == room]
+    def of_module(self, module):
+        return [row for row in self.rows if row["module"] == module]
 
     def failed(self):
         return [row for row in self.rows if not row["passed"]]

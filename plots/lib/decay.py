@@ -11,6 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 STEPS = 300  # points of a line
+SQUARED = r"correlation of intensities $g_2 - 1$"
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,8 @@ class Decay:
     physical_label: str
     x_label: Callable  # (dimension or None for different ones, whether any light is reflected) -> label
     y_label: str
+    # result -> beta if beta times the square of the correlation is drawn in the physical unit; else None
+    beta: Callable = lambda result: None
 
 
 @dataclass(frozen=True)
@@ -85,36 +88,43 @@ def draw(results, decay, closed_form=lambda curves: None):
     or None."""
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.8))
     curves = [curve for result in results for curve in curves_of(result, decay)]
-    factors = [decay.physical(result) for result in results]
-    physical = None not in factors
+    physical = None not in [decay.physical(result) for result in results]
+    squared = physical and None not in [decay.beta(result) for result in results]
+
+    def shown_value(curve, value):
+        return decay.beta(curve.result) * value**2 if squared else value
 
     def place(curve, change):
         if physical:
             return np.abs(change) * decay.physical(curve.result)
         return decay.scaled(curve.result, change, any(curve.reflected for curve in curves))
 
+    lowest = 1
     for number, curve in enumerate(curves):
         shown = slice(int(physical and curve.change[0] == 0), None)  # 0 has no place on a logarithmic axis
         x = place(curve, curve.change)
-        axis.errorbar(x[shown], curve.value[shown], curve.error[shown], **style.symbols(number), markersize=3,
-                      label=label(curve))
+        value = shown_value(curve, curve.value)
+        error = curve.error * (2 * decay.beta(curve.result) * curve.value if squared else 1)
+        lowest = min(lowest, value.min())
+        axis.errorbar(x[shown], value[shown], error[shown], **style.symbols(number), markersize=3, label=label(curve))
         if curve.theory is not None:
             fine, line = curve.line(decay)
-            axis.plot(place(curve, fine), line, **style.line(number), linewidth=0.7, zorder=1)
+            axis.plot(place(curve, fine), shown_value(curve, line), **style.line(number), linewidth=0.7, zorder=1)
     grey = None if physical else closed_form(curves)
     if grey:
         x = np.linspace(1e-3, max(place(curve, curve.change)[-1] for curve in curves), STEPS)
         axis.plot(x, grey[0](x), color=style.GREY, linewidth=0.7, zorder=0, label=grey[1])
     spaces = {theory.dimension(result) for result in results}
-    axis.set(yscale="log", ylabel=decay.y_label)
+    axis.set(yscale="log", ylabel=SQUARED if squared else decay.y_label)
     if physical:
         places = np.concatenate([place(curve, curve.change) for curve in curves])
         axis.set(xscale="log", xlim=(places[places > 0].min() / 1.3, places.max() * 1.3), xlabel=decay.physical_label)
+        style.label_log_axis(axis.xaxis)
     else:
         axis.set(xlim=(0, None), xlabel=decay.x_label(spaces.pop() if len(spaces) == 1 else None,
                                                       any(curve.reflected for curve in curves)))
-    lowest = min(curve.value.min() for curve in curves)
     axis.set_ylim(max(lowest / 2, 1e-6), 1.3)
+    style.label_log_axis(axis.yaxis)
     with_theory = any(curve.theory is not None for curve in curves)
     axis.legend(title="lines: diffusion theory" if with_theory else None, title_fontsize=7)
     return figure

@@ -82,7 +82,7 @@ def quantity(result):
 def axis_names(result):
     units = result.dataset("row").attrs["units"]
     if units == "length":
-        return [f"${axis}$ ({length_name(result)})" for axis in "xy"]
+        return [f"{side} ({length_name(result)})" for side in ("to the right", "along sensor_up")]
     if result.dataset("image").attrs["units"] == "1/sr":
         return "direction component, sideways", "direction component, upwards"
     return "tangent of the angle, sideways", "tangent of the angle, upwards"

@@ -45,7 +45,8 @@ class Plot:
         for file in files:
             if self.one_run and file.swept():
                 raise Unusable(f"{file.path}: is a sweep over {', '.join(file.swept())}, not a single run; "
-                               "plots/experiment_map.py --value NAME draws one of its numbers")
+                               "choose a point and run it alone, or draw one of the numbers of all points with "
+                               "plots/experiment_map.py --value NAME")
             for name, hint in self.needs.items():
                 file.require(name, hint)
         drawn = files if self.several else files[0]

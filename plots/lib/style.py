@@ -127,6 +127,13 @@ def few_decades(side, steps=(1, 2, 5)):
     side.set_minor_formatter(NullFormatter())
 
 
+def label_log_axis(side):
+    """Labels several steps of every decade if a logarithmic axis spans so few decades that it would have one label."""
+    low, high = side.get_view_interval()
+    if high < 100 * low:
+        few_decades(side)
+
+
 def caption(figure, sentences):
     """Adds sentences to a figure's caption, which is printed and written into the metadata of both files."""
     figure.caption = "; ".join([*filter(None, [getattr(figure, "caption", "")]), *sentences])

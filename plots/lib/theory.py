@@ -135,8 +135,9 @@ def of_point(sweep, row, stored, tilt):
 
 
 def transmitted(result):
-    """Returns (tilts, C_E) of light transmitted through a slab in diffusion theory; None for other scenes."""
-    if result.scene.get("domain") != "slab" or not result.has("tilt_q"):
+    """Returns (tilts, C_E) of light transmitted through a homogeneous slab in diffusion theory; None for other
+    scenes."""
+    if result.scene.get("domain") != "slab" or result.has("layer") or not result.has("tilt_q"):
         return None
     (known, q, _), tilt = known_tilts(result), fine_tilts(result)
     return tilt, slab_diffusion(np.interp(tilt, known, q), **medium(result))

@@ -126,12 +126,18 @@ def flat(name, values):
     return list(array if array.dtype.kind in "iufc" else values)
 
 
+def are_paths(values):
+    return isinstance(values, (list, tuple)) and all(isinstance(one, (str, os.PathLike)) for one in values)
+
+
 def texts(key, name, value):
     """Returns a value in the program's notation: a text, or a list of texts."""
     if name in OF_KEYS and isinstance(value, Mapping) and value:
         return [f"{one}={values_of(key, name, several)}" for one, several in value.items()]
     if not is_many(value):
         return text_of(name, value)
+    if key is not None and key.name in inputs.FRAMES and not are_paths(value):
+        return inputs.file_of(key, value)
     if key is None or key.type is not str:
         found = [text_of(name, one) for one in flat(name, value)]
     elif key.is_list and (isinstance(value, (list, tuple)) or getattr(value, "ndim", 2) != 2):

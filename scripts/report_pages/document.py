@@ -93,9 +93,9 @@ def plan_row(row):
             text if row["passed"] else f"**{text}**"]
 
 
-def by_room(file, header, row_of, align):
-    return [table(header, list(map(row_of, file.of_room(room))), align, bench_figures.room_name(room))
-            for room in file.rooms()]
+def by_module(file, header, row_of, align):
+    return [table(header, list(map(row_of, file.of_module(module))), align, bench_figures.module_name(module))
+            for module in file.modules()]
 
 
 def parts_of(bench, numbers, coverage_rows):
@@ -108,9 +108,9 @@ def parts_of(bench, numbers, coverage_rows):
         "coverage": [coverage(coverage_rows)] if coverage_rows else [],
         "costs": [table(["task", "size", "from", "to", "exponent", "expected"],
                         list(map(cost_row, bench.error.costs)), "llrrrr")] if bench.error.costs else [],
-        "stability": by_room(bench.stability, ["case", "invariant", "figure", "limit", ""], case_row,
+        "stability": by_module(bench.stability, ["case", "invariant", "figure", "limit", ""], case_row,
                              "llrrl"),
-        "plan": by_room(bench.plan, ["left out", "scene", "general", "specialised", "per", "ratio",
+        "plan": by_module(bench.plan, ["left out", "scene", "general", "specialised", "per", "ratio",
                                      "difference"], plan_row, "llrrlrr")}
     return {**{key: number["text"] for key, number in numbers.items()},
             **{key: "\n\n".join(blocks) for key, blocks in tables.items()},

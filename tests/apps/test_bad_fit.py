@@ -52,6 +52,7 @@ class BadFit(RefusingTest):
         self.refused(["tilt"], "field_correlation,error\n0.5,0.1\n")
         self.refused(["column width"], "width,transmittance,error\n5,0.5,0.1\n")
         self.refused(["depth = 2000", "leave the key out"], "depth,transmittance,error\n5,0.5,0.1\n")
+        self.refused(["column \"tilt (deg)\"", "tilt_deg"], "tilt (deg),field_correlation,error\n0.1,0.5,0.1\n")
         self.refused(["column tilt"], "tilt,transmittance,error\n5,0.5,0.1\n")
         self.refused(["at least one row"], "transmittance,error\n")
         self.refused(["given twice"], "tilt,field_correlation,error\n0.1,0.5,1\n0.1,0.5,1\n")

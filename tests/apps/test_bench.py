@@ -49,7 +49,7 @@ class Bench(ProgramTest):
         path, printed = self.bench("stability")
         with h5py.File(path) as file:
             names, refusals = texts(file, "name"), texts(file, "refusal")
-            cases = set(zip(texts(file, "room"), names, texts(file, "invariant")))
+            cases = set(zip(texts(file, "module"), names, texts(file, "invariant")))
             self.assertEqual(len(cases), len(names))
             self.assertTrue(np.all(file["passed"][...] == 1))
             self.assertTrue(file.attrs["converged"])
@@ -63,7 +63,7 @@ class Bench(ProgramTest):
     def test_plan(self):
         path, printed = self.bench("plan")
         with h5py.File(path) as file:
-            self.assertEqual(set(texts(file, "room")),
+            self.assertEqual(set(texts(file, "module")),
                              {"mc", "transport", "fields", "fit", "imaging", "wave solver", "grin rays", "render", "design"})
             ratio = file["general_s"][...] / file["special_s"][...]
             np.testing.assert_allclose(ratio, file["ratio"][...], rtol=3)  # medians of few

@@ -59,6 +59,15 @@ class Contrast(ProgramTest):
         noisy = self.map(made, window=9)
         self.assertGreater(np.median(noisy["contrast_map"][:, -100:]) * PATTERNS[1], 1.3)
 
+    def test_several_files_are_one_stack(self):
+        made = frames(3, 64, np.random.default_rng(6))
+        whole = self.map(made, exposure="5ms")
+        for number, frame in enumerate(made):
+            np.save(self.folder / f"f{number}.npy", frame)
+        self.call("contrast", frames=["f0.npy", "f1.npy", "f2.npy"], exposure=0.005, out="c.h5")
+        for name, values in datasets(self.folder / "c.h5").items():
+            np.testing.assert_array_equal(values, whole[name], name)
+
     def test_contrast_over_time(self):
         pixels, random = 96, np.random.default_rng(3)
         self.check(self.map(frames(60, pixels, random), window=3, contrast_over="time"), pixels, 3, 0.05)
@@ -119,6 +128,9 @@ class Refused(RefusingTest):
                             (["exposure"], {"exposure": 0}), (["window"], {"frames": "lines.csv"})):
             with self.subTest(**keys):
                 self.assert_refused(words, "contrast", **{"frames": "one.tif", **keys})
+        np.save(self.folder / "other.npy", np.ones((64, 60)))
+        self.assert_refused(["frames = other.npy", "60 x 64 pixels", "one.tif has 64 x 64"], "contrast",
+                            frames=["one.tif", "other.npy"])
 
 
 if __name__ == "__main__":

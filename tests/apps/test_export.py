@@ -2,6 +2,7 @@
 
 import csv
 import io
+import struct
 import unittest
 
 import h5py
@@ -14,8 +15,33 @@ CURVE = {**SLAB, "covariance": "memory_effect", "method": "transport", "toleranc
          "view_angles": [0.1, 0.3]}
 
 
+def read_exr(data):
+    """Returns the channel Y of an OpenEXR file of uncompressed scan lines."""
+    assert struct.unpack_from("<ii", data) == (20000630, 2)
+    at, header = 8, {}
+    while data[at]:
+        name, kind, rest = data[at:].split(b"\0", 2)
+        at += len(name) + len(kind) + 2
+        size = struct.unpack_from("<i", data, at)[0]
+        header[name.decode()] = kind.decode(), data[at + 4:at + 4 + size]
+        at += 4 + size
+    assert {name: kind for name, (kind, _) in header.items()} == {
+        "channels": "chlist", "compression": "compression", "dataWindow": "box2i", "displayWindow": "box2i",
+        "lineOrder": "lineOrder", "pixelAspectRatio": "float", "screenWindowCenter": "v2f", "screenWindowWidth": "float"}
+    assert header["channels"][1] == struct.pack("<2si4B2iB", b"Y", 2, 0, 0, 0, 0, 1, 1, 0)
+    assert header["compression"][1] == header["lineOrder"][1] == b"\0"
+    left, top, right, bottom = struct.unpack("<4i", header["dataWindow"][1])
+    assert (left, top, header["displayWindow"][1]) == (0, 0, header["dataWindow"][1])
+    rows = []
+    for row, line in enumerate(np.frombuffer(data, "<u8", bottom + 1, at + 1)):
+        assert struct.unpack_from("<2i", data, line) == (row, 4 * (right + 1))
+        rows.append(np.frombuffer(data, "<f4", right + 1, int(line) + 8))
+    assert len(data) == line + 8 + 4 * (right + 1)
+    return np.array(rows)
+
+
 class Files(ProgramTest):
-    """Pictures of render as PFM, PNG and NPY."""
+    """Pictures of render as PFM, OpenEXR, PNG and NPY."""
 
     def test_pictures(self):
         self.call("render", stage_box=[-1, -1, 0, 1, 1, 2], mu_s=1, point_light=[0.3, 0.4, 1, 1], sensor="area", sensor_at=[0, 0, 2],
@@ -27,11 +53,13 @@ class Files(ProgramTest):
         kind, size, scale, data = (self.folder / "r.pfm").read_bytes().split(b"\n", 3)
         self.assertEqual((kind, size, scale), (b"Pf", b"%d %d" % image.shape[::-1], b"-1.0"))
         np.testing.assert_array_equal(np.frombuffer(data, "<f4").reshape(image.shape), top_down[::-1].astype("f4"))
+        self.call("export", "r.h5", "image", to="r.exr")
+        np.testing.assert_array_equal(read_exr((self.folder / "r.exr").read_bytes()), top_down.astype("f4"))
         self.call("export", "r.h5", "image", to="r.npy")
         np.testing.assert_array_equal(np.load(self.folder / "r.npy"), image)
         self.call("export", "r.h5", "image", to="r.png")
         self.assertTrue((self.folder / "r.png").read_bytes().startswith(b"\x89PNG"))
-        for words, flags in (("must end with", {"to": "r.exr"}), ("two axes", {"dataset": "mean", "to": "r.png"})):
+        for words, flags in (("must end with", {"to": "r.gif"}), ("two axes", {"dataset": "mean", "to": "r.png"})):
             done = self.call("export", "r.h5", flags.pop("dataset", "image"), **flags, status=2)
             self.assertIn(words, done.stderr)
 

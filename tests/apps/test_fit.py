@@ -1,5 +1,7 @@
 """A slab's parameters from measured tables and from results of the program itself."""
 
+import os
+import pty
 import subprocess
 import time
 import unittest
@@ -38,6 +40,17 @@ class Fit(ProgramTest):
         _, stated = self.fit(*ALL, **FAR_START)
         off = np.abs(found["estimate"] - stated["estimate"]) / found["estimate_error"]
         self.assertLess(off.max(), 0.1)
+
+    def test_progress_on_a_terminal(self):
+        """The line is updated five times per second, and ends before the table."""
+        terminal, line = pty.openpty()
+        command = [PROGRAM, "fit", "--free", *FREE, "--measurement", *map(str, ALL), "--out", "fit.h5", "--depth", "2000"]
+        subprocess.run(command, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=line, check=True, timeout=60)
+        os.close(line)
+        printed = os.read(terminal, 1 << 16).decode()
+        os.close(terminal)
+        self.assertRegex(printed, r"fit: \d+ s, chi\^2 [0-9.e+]+ so far, \d+ media, [0-9.]+/s")
+        self.assertRegex(printed, r"chi\^2 3\.45\d so far, \d+ media in .* s\r?\n\Z")
 
     def test_a_result_of_many_close_tilts(self):
         """Errors are so correlated that they cancel to rounding in some sums."""

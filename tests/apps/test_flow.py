@@ -85,6 +85,12 @@ class Flow(ProgramTest):
 
 
 class Refused(RefusingTest):
+    def test_flow_of_layers_without_velocity(self):
+        self.write("layers.csv", "thickness,optical_depth,flow\n5,1,0\n5,1,1\n")
+        keys = {**THICK, "depth": None, "optical_depth": None, "layers": "layers.csv", "delays": [0, 0.1]}
+        for method in ({}, {"method": "transport", "samples": None}):
+            self.assert_refused(["column flow requires velocity", "column diffusion"], "covariance", **{**keys, **method})
+
     def test_what_cannot_be(self):
         for changes, words in (
                 ({"velocity": [1, 0]}, ["velocity"]),

@@ -1,5 +1,6 @@
 """Media of layers, from a CSV file."""
 
+import re
 import unittest
 
 import h5py
@@ -50,6 +51,22 @@ class Layers(ProgramTest):
         with h5py.File(self.folder / "sweep.h5") as file:
             self.assertEqual(file["field_correlation"].size, 6)
 
+    def test_clear_layers_of_air_or_water_do_not_change_the_decay_of_water_in_air(self):
+        water = {"dimension": 3, "domain": "slab", "length_unit": "um", "wavelength": "633nm", "scatterer": "hg",
+                 "g": 0.5, "view_angles": [0, 3.14159], "delays": [0, 1e-4, 1e-3], "diffusion": "1e-12 m^2/s",
+                 "method": "transport", "tolerance": 1e-3}
+        self.call("covariance", **water, depth=1000, optical_depth=4, medium_index=1.33, out="water.h5")
+        for clear in 1, 1.33:
+            self.write("layers.csv",
+                       f"thickness,optical_depth,medium_index\n30,0,{clear}\n1000,4,1.33\n70,0,{clear}\n")
+            self.call("covariance", **water, layers="layers.csv", out="layers.h5")
+            with h5py.File(self.folder / "layers.h5") as layers, h5py.File(self.folder / "water.h5") as alone:
+                # k^2 D is that in vacuum
+                self.assertAlmostEqual(layers["delay"].attrs["k2_diffusion"] * 1.33**2,
+                                       alone["delay"].attrs["k2_diffusion"], delta=1e-9)
+                np.testing.assert_allclose(layers["field_correlation"], alone["field_correlation"], rtol=1e-3)
+                self.assertLess(np.min(alone["field_correlation"]), 0.8)
+
     def test_transport_knows_flux_and_delays(self):
         self.write("layers.csv", TISSUE)
         self.call("flux", domain="slab", layers="layers.csv", scatterer="hg", method="transport", tolerance=1e-5,
@@ -65,6 +82,24 @@ class Layers(ProgramTest):
                 found.append((file["field_correlation"][()], file["field_correlation_error"][()]))
         (exact, _), (mc, error) = found
         self.assertTrue(np.all(np.abs(mc - exact) <= 4 * error + 1e-4), (mc, exact, error))
+
+    def test_results_have_no_theory_of_uniform_slabs(self):
+        self.write("walls.csv", "thickness,optical_depth,medium_index\n100,0,1.5\n20,2,1.33\n100,0,1.5\n")
+        slab = {"domain": "slab", "layers": "walls.csv", "scatterer": "hg", "g": 0.5, "light_angles": 0, "view_angles": 0.1,
+                "method": "transport", "tolerance": 1e-2}
+        self.call("covariance", **slab, covariance="memory_effect", tilts=[0, 0.001], out="result.h5")
+        self.write("layers.csv", "thickness,optical_depth\n20,2\n10,0.5\n")
+        layers = {**slab, "layers": "layers.csv"}
+        self.call("covariance", **layers, delays=[0, 0.1], out="delays.h5")
+        self.call("covariance", **{**layers, **BOX, "method": "mc", "tolerance": None}, samples=100, covariance="tilt_shift",
+                  tilts=[0, 0.002], shifts=[0, 0.01], out="map.h5")
+        self.call("sweep", layers="layers.csv", method="transport", g=[0, 0.5], tilts=[0, 0.002], tolerance=1e-2, out="sweep.h5")
+        for name in ("result", "delays", "map", "sweep"):
+            with h5py.File(self.folder / f"{name}.h5") as file:
+                self.assertFalse([one for one in (*file, *file.attrs) if re.search("theory|single_scatt|diffusion_r|extrapol", one)])
+        told = self.call("explain", "result.h5").stdout
+        self.assertIn("means over the depth of all layers", told)
+        self.assertRegex(told, r"layer +thickness +optical depth +g +albedo +index +l\*\n(.*\n)  1 +20 +2 +0.5 +1 +1.33 +20\n")
 
     def test_clear_layers_change_nothing(self):
         """Clear layers change nothing for light without phases."""
@@ -125,8 +160,6 @@ class Refused(RefusingTest):
         self.check(["no such file"], layers="none.csv")
 
     def test_what_layers_have_not(self):
-        self.check(["delays", "one refractive index"], "thickness,optical_depth,medium_index\n1,1,1.5\n9,3,1.33\n",
-                   method="transport", samples=None, delays=[0, 0.1], g=0, albedo=1)
         self.check(["layers", "gradient", "use method = mc"], method="transport", samples=None, gradient=True)
         points = "thickness,density\n3,0.05\n3,0.25\n"
         disks = {**BOX, "scatterer": "tm", "radius": 0.2}

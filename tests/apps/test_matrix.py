@@ -24,6 +24,9 @@ class OnePlacement(ProgramTest):
         t = found["scattering_matrix"][0, :, 1, :]
         np.testing.assert_allclose(np.sort(found["transmission_eigenvalue"]), np.sort(np.linalg.svd(t)[1] ** 2), atol=1e-9)
         self.assertEqual(attributes(self.folder / "cell.h5")["converged"], 1)
+        self.write("again.toml", attributes(self.folder / "cell.h5")["config"])
+        self.call("solve", config="again.toml", out="again.h5")
+        self.assert_same_data("cell.h5", "again.h5")
 
     def test_positions_of_a_file_repeat(self):
         found = self.solve()
@@ -53,16 +56,23 @@ class OnePlacement(ProgramTest):
         two = {"placement": "two.csv", "scatterer": "soft", "radius": 0.2}
         for keys, message in (({**CELL, "period": 9}, "period = 9: must be the width"),
                               ({**two, "period": 9.3}, "overlap with those of the next period"),
-                              ({**two, "period": 20, "view_angles": 1}, "view_angles"),
+                              *(({**CELL, "period": 9.3, name: value}, f"{name}: not with period")
+                                for name, value in (("view_angles", 1), ("light_angles", 0.2), ("near_sensors", "two.csv"), ("beam_waist", 2))),
+                              ({**CELL, "period": 9.3, "wavelengths": [1, 1.1]}, "sweep --of solve --vary wavelength="),
                               ({**CELL, "period_phase": 1}, "period_phase")):
             self.assertIn(message, self.call("solve", **keys, out="no.h5", status=2).stderr)
 
 
 class Ensemble(ProgramTest):
     def test_sums_agree(self):
-        self.call("matrix", **CELL, samples=6, shifts=3, numerical_aperture=0.5, segments=[1, 5], conjugated_fraction=[0.3, 1],
+        done = self.call("matrix", **CELL, samples=6, shifts=3, numerical_aperture=0.5, segments=[1, 5], conjugated_fraction=[0.3, 1],
                   out="matrix.h5")
         found = datasets(self.folder / "matrix.h5")
+        self.assertRegex(done.stdout, r"tilt correlation C_E +" + f"{found['tilt_correlation'][1]:.4g}".replace(".", r"\."))
+        self.assertEqual("wider period" in done.stdout, bool(found["tilt_correlation"][1]**2 < 0.5))
+        self.assertNotIn("Poisson", done.stdout)
+        points = {"width": 9.3, "depth": 4, "scatterer": "point", "mean_free_path": 3, "samples": 2, "out": "points.h5"}
+        self.assertIn("Poisson", self.call("matrix", **points).stdout)
         np.testing.assert_allclose(found["transmittance"].sum(), found["conductance"])
         np.testing.assert_allclose(found["transmittance"] + found["reflectance"], 1, atol=1e-6)
         np.testing.assert_allclose(found["eigenvalue_count"].sum(), len(found["light_sine"]))

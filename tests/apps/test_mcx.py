@@ -50,6 +50,20 @@ class Mcx(RefusingTest):
             with self.subTest(low=low, value=value, error=error):
                 self.assertTrue(low - 3 * spread < value < high + 3 * spread)
 
+    def test_absorbed_in_each_label(self):
+        """Powers of labels are the sums of the map over their voxels, and together the absorbed power."""
+        ball = {"Sphere": {"Tag": 2, "O": [30, 30, 30], "R": 10}}
+        scene = cube({**TISSUE, "mua": 0.002}, {"mua": 0.05, "mus": 5, "g": 0.9, "n": 1.37}, shapes=[ball])
+        said = self.call("render", config=self.write_scene(scene), samples=2000, out="x.h5").stdout
+        middles = np.arange(60) + 0.5 - 30
+        inside = sum(np.meshgrid(*3 * [middles**2], indexing="ij")) <= 100
+        with h5py.File(self.folder / "x.h5") as file:
+            cells, powers = file["map/absorbed"][()], file["map/label_absorbed"][()]
+            np.testing.assert_allclose(powers, [0, cells[~inside].sum(), cells[inside].sum()], rtol=1e-6)
+            self.assertLess(abs(powers.sum() - file["energy/absorbed_stage"][()]), 4 * file["energy/absorbed_stage_error"][()])
+        for label in (1, 2):
+            self.assertRegex(said, rf"absorbed in {label} +{powers[label]:.6g} ")
+
     def test_layers_against_reflectance(self):
         """Power on two disks beside a beam in layers under air, from voxels and without random numbers."""
         (self.folder / "layers.csv").write_text("thickness,mu_s,mu_a,g\n3,9,0.018,0.8\n1000,6,0.036,0.8\n")
@@ -93,6 +107,8 @@ class Mcx(RefusingTest):
              ["Domain.Media[2].n = 1", "same in all voxels: 1.37"]),
             (lambda s: s["Shapes"].append({"Subgrid": {}}), ["Shapes[1].Subgrid: has no counterpart"]),
             (lambda s: s.update(Shapes={"_ArraySize_": [1]}), ["Shapes", "HDF5 or NIfTI-1"])]
+        changes.append((lambda s: (s.pop("Shapes"), s["Domain"].update(VolumeFile="x.bin")),
+                        ["Domain.VolumeFile", "labels = FILE", "label_media"]))
         for change, words in changes:
             scene = cube()
             change(scene)

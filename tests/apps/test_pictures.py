@@ -58,6 +58,14 @@ class Images(ProgramTest):
                   for sign in (1, -1) for i in range(4) for j in range(4))
         self.assertLess(off, 0.0025)
 
+    def test_lengths_with_units(self):
+        """Frames of a scene in micrometres with a wavelength of 1 um are those without units."""
+        keys = {"object_x": [0, 0.02], "object_y": [0, 0.01], "repeats": 1, "paths_per_field": 100, "prediction_paths": 2000, "starts": 1,
+                "phase_iterations": 5, "prediction_draws": 0}
+        plain = self.image(**keys)
+        units = self.image("units.h5", **keys, length_unit="um", wavelength="1um", depth="4um")
+        np.testing.assert_array_equal(units["frames"], plain["frames"])
+
     def test_depths_and_threads(self):
         """Points nearer to the box are farther apart in the picture; threads do not matter."""
         keys = {"object_x": [-4, 0, 3], "object_y": [0, 4, 0], "object_depth": [-300, -300, -200], "repeats": 1,

@@ -156,6 +156,10 @@ class Refused(RefusingTest):
         (self.folder / "bad.csv").write_text("thickness,optical_depth,mu_a\n2,9,0.1\n")
         self.assert_refused(["mu_a"], "reflectance", layers="bad.csv", distances=5, ring_width=1)
         self.assert_refused(["velocity"], "reflectance", **TISSUE, delays=[0, 1], velocity=[1, 0])
+        (self.folder / "bad.csv").write_text("thickness,mu_s,mu_a,g,flow\n2,9,0.1,0.9,0\n9,5,0.1,0.8,1\n")
+        for delays in ({}, {"delays": [0, 1]}):
+            self.assert_refused(["column flow requires velocity", "column diffusion"], "reflectance", layers="bad.csv",
+                                distances=5, ring_width=1, **delays)
 
     def test_instruments(self):
         flow = {**TISSUE, "delays": ["1us:1ms:8:log"], "diffusion": "1e-12 m^2/s", "wavelength": 850e-6, "length_unit": "mm",

@@ -222,6 +222,22 @@ class ClosedForms(RenderTest):
         expected = (1 - reflectance) / (1 - reflectance**2) / 1.5**2
         np.testing.assert_allclose(seen(1.5) / seen(1), expected, rtol=1e-6)
 
+    def test_beam_through_a_clear_graded_ball(self):
+        """Behind the focus of a Luneburg ball. Rays at the distance b from the axis leave it at the angle asin(b). Nothing
+        scatters and all light hits the sensor, so that rays are counted, without searches for connections."""
+        keys = {"field": "luneburg", "radius": 1, "body_sphere": [0, 0, 0, 1], "stage_box": [-2, -2, -2, 2, 2, 2],
+                "beam_light": [0, 0, -1.9, 0, 0, 1, 0.5, 1], **AREA, "sensor_at": [0, 0, 2], "sensor_size": [2, 2],
+                "pixels": [20, 20], "samples": 60_000}
+        found = self.render(**keys, method=None)
+        self.assertIn("render: forward", self.output)
+        self.assertNotIn("connections:", self.output)
+        self.assertAlmostEqual(found["total"], 1, delta=1e-9)
+        square = found["row"][:, None]**2 + found["column"]**2
+        lit = square < 0.45**2
+        expected = 4 / np.pi / (1 + square[lit])**2
+        self.assertLess(np.std(found["image"][lit] / expected), 0.05)
+        self.assertAlmostEqual(found["image"][lit].mean() / expected.mean(), 1, delta=0.01)
+
     def test_absorption(self):
         """A beam through an absorbing medium is attenuated exponentially."""
         found = self.render(**BOX, **{**AREA, "sensor_size": [2, 2]}, **BEAM, mu_a=0.3)

@@ -9,7 +9,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from program import ProgramTest
+from program import ProgramTest, datasets
 
 DEPTH = 2000
 SPACE = {"domain": "slab", "depth": DEPTH, "optical_depth": 10, "method": "transport",
@@ -76,6 +76,46 @@ class Space(ProgramTest):
         self.assertIn("(0.3, -1)", said)
         with h5py.File(self.folder / "x.h5") as file:
             self.assertAlmostEqual(file["tilt_q"].attrs["azimuth"], 1.5)
+
+    def test_the_angle_between_the_beams_is_that_of_their_directions(self):
+        slab = {"dimension": 3, "domain": "slab", "depth": 20, "scatterer": "hg", "optical_depth": 2, "light_angles": 1, "method": "transport",
+                "view_angles": 0.2, "tilts": "0:0.04:9", "tolerance": 0.1}
+        for azimuth, names in ((0, []), (np.pi / 2, ["beam_angle"]), (2, ["beam_angle"])):
+            self.call("covariance", **slab, covariance="memory_effect", tilt_azimuth=azimuth, out="x.h5")
+            self.call("sweep", **slab, tilt_azimuth=azimuth, out="sweep.h5")
+            with h5py.File(self.folder / "x.h5") as file, h5py.File(self.folder / "sweep.h5") as sweep:
+                self.assertEqual([name for name in file if name == "beam_angle"], names)
+                turn, q = file["memory_effect_angle"][()], file["memory_effect_range"][()] / 20 / (2 * np.pi)
+                along = np.array([np.cos(azimuth), np.sin(azimuth), 0])
+                light = np.array([np.sin(1), 0, np.cos(1)])
+                across = np.cross([0, 0, 1], along)  # axis of the rotation
+                turned = light * np.cos(turn) + np.cross(across, light) * np.sin(turn) + across * (across @ light) * (1 - np.cos(turn))
+                self.assertAlmostEqual(along @ (turned - light), q, delta=1e-9)
+                between = np.arccos(light @ turned)
+                for one in (file, sweep):
+                    self.assertAlmostEqual(one["beam_angle" if names else "memory_effect_angle"][()].item(), between, delta=1e-7)
+
+    def test_the_grain_of_a_camera_is_that_of_a_line_of_views(self):
+        """A box of 30 wavelengths has grains of about 0.886 / 30 along x and y; a lens has those of its pupil."""
+        box = {"dimension": 3, "width": 30, "height": 30, "depth": 5, "scatterer": "hg", "g": 0.5, "optical_depth": 3, "fields": 6,
+               "view_angles": 0, "paths_per_field": 3000}
+        self.call("field", **box, camera_pixels=64, camera_aperture=0.3, out="camera.h5")
+        self.call("field", **{**box, "view_angles": list(np.arcsin(np.linspace(-0.3, 0.3, 65)))}, out="line.h5")
+        self.call("field", **box, camera_pixels=64, camera_aperture=0.3, camera_focus=5, out="lens.h5")
+        camera, line, lens = (datasets(self.folder / f"{name}.h5") for name in ("camera", "line", "lens"))
+        error = np.hypot(camera["grain_width_error"], line["grain_width_error"])
+        self.assertLess(abs(camera["grain_width"] - line["grain_width"]), 4 * error)
+        self.assertLess(error, 0.2 * line["grain_width"])
+        self.assertLess(abs(lens["grain_width"] / (0.514 / 0.3) - 1), 0.1)
+        self.call("export", "camera.h5", "field", select=["realization=2", "light_angle=0"], to="u.npy")
+        u = np.load(self.folder / "u.npy")
+        np.testing.assert_array_equal(u, camera["field"][2, 0])
+        self.call("export", "camera.h5", "field", select=["realization=2", "light_angle=0"], to="u.pfm")
+        pixels = np.frombuffer((self.folder / "u.pfm").read_bytes().split(b"\n", 3)[3], "<f4").reshape(64, 64)
+        np.testing.assert_allclose(pixels, np.abs(u)**2, rtol=1e-6)
+        for select, words in ((["realization=6"], "from 0 to 5"), (["view=0"], "realization light_angle camera_y camera_x"),
+                              (["realization=0"], "two axes")):
+            self.assertIn(words, self.call("export", "camera.h5", "field", select=select, to="u.png", status=2).stderr)
 
     def test_the_contrast_of_few_images_is_not_biased(self):
         self.call("field", dimension=3, domain="box", width=40, height=40, depth=10, scatterer="hg", optical_depth=2, view_angles=0,

@@ -104,7 +104,9 @@ TEST_CASE("csv: unknown columns and numbers out of bounds are rejected") {
 TEST_CASE("csv: error messages contain file and line") {
   CHECK(complaint("") == ": is empty; expected a line of column names");
   CHECK(complaint("# only\n\n") == ": is empty; expected a line of column names");
-  CHECK(complaint("x,z\n1,2\n\n3\n") == ", line 4: expected 2 fields, found 1");
+  CHECK(complaint("x,z\n1,2\n\n3\n") ==
+        ", line 4: expected 2 fields, found 1 (fields must be separated by commas, as the names "
+        "are)");
   CHECK(complaint("x,z\n1,2,3\n") == ", line 2: expected 2 fields, found 3");
   CHECK(complaint("x,z\n1,2,\n") == ", line 2: expected 2 fields, found 3");
   CHECK(complaint("x,z,x\n") == ", line 1: column \"x\" appears twice");

@@ -6,6 +6,7 @@
 #include <doctest/doctest.h>
 
 #include "bench/scenes/render_scenes.h"
+#include "grin/media/scattering/labelled_media.h"
 #include "grin/render/methods/forward_light.h"
 #include "grin/render/methods/guided_walk.h"
 #include "grin/render/methods/tracer.h"
@@ -204,6 +205,11 @@ TEST_CASE("path guide: wide or near sensors and other lights are left to unguide
   RenderScene tilted = layers;
   tilted.lights = {BeamLight{{0.5, 0, -0.2}, Vec3(0.6, 0, 0.8), 0.1}};
   CHECK(!PathGuide::of(tilted, 1));
+  RenderScene voxels = layers;
+  voxels.stage.medium = labelled_medium(
+      {Vec3::Constant(-3), Vec3::Constant(3), {2, 2, 2}, {0, 0, 0, 0, 0, 0, 0, 1}},
+      {1, 0, 0.5, 3, 1, 0}, "label_media");
+  CHECK(!PathGuide::of(voxels, 1));
 }
 
 }  // namespace flatspeckle::grin::tests::test_guided_paths

@@ -11,7 +11,7 @@ namespace flatspeckle::grin::tests::test_picture_errors {
 namespace {
 
 constexpr PixelGrid grid{12, 10};
-constexpr int batches = 256;
+constexpr int usual_batches = 256;
 constexpr double strong = 3000;
 
 /// Expected numbers of contributions to a pixel: weak ones of size 1, and strong ones.
@@ -20,7 +20,7 @@ struct Expected {
 };
 
 template <typename Mean>
-Estimate picture(const Mean& mean, std::mt19937_64& random) {
+Estimate picture(const Mean& mean, int batches, std::mt19937_64& random) {
   const auto pixels = static_cast<std::size_t>(grid.count());
   GroupedSums sums(pixels);
   std::vector<Complex> batch(pixels);
@@ -48,12 +48,12 @@ struct Coverage {
 };
 
 template <typename Mean>
-Coverage coverage(const Mean& mean, int pictures) {
+Coverage coverage(const Mean& mean, int pictures, int batches = usual_batches) {
   std::mt19937_64 random(1);
   Coverage found;
   double undersampled = 0;
   for (int k = 0; k < pictures; ++k) {
-    const Estimate estimate = picture(mean, random);
+    const Estimate estimate = picture(mean, batches, random);
     for (std::size_t i = 0; i < estimate.value.size(); ++i) {
       const bool within = std::abs(estimate.value[i] - truth(mean(i))) <= 2 * estimate.error[i];
       (estimate.rare[i] ? undersampled : found.resolved_pixels) += 1;
@@ -67,6 +67,16 @@ Coverage coverage(const Mean& mean, int pictures) {
 }
 
 }  // namespace
+
+TEST_CASE("pixels of few batches: undersampled where errors exceed 40 %") {
+  constexpr int few = 13;
+  const Coverage rough = coverage([](std::size_t) { return Expected{4, 0}; }, 10, few);
+  CHECK(rough.resolved_pixels < 0.05 * rough.all_pixels);
+  CHECK(rough.undersampled > 0.95);
+  const Coverage fine = coverage([](std::size_t) { return Expected{60, 0}; }, 10, few);
+  CHECK(fine.resolved_pixels == fine.all_pixels);
+  CHECK(fine.resolved > 0.9);
+}
 
 TEST_CASE("pixels of few paths: undersampled, with errors that are upper bounds") {
   const auto uneven = [](std::size_t i) { return Expected{0.5 + static_cast<double>(i % 7), 0}; };

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "core/numbers/random.h"
+#include "mc/slab/slab_covariance.h"
 #include "mc/theory/diffusion.h"
 #include "mc/theory/memory_effect.h"
 #include "tests/mc/estimates.h"
@@ -95,7 +97,7 @@ TEST_CASE("memory-effect range: censored at the first tilt if the curve is below
   CHECK(range.value == 1.5);
 }
 
-TEST_CASE("field correlation: entries are summed over views before the ratio") {
+TEST_CASE("field correlation: powers are summed over views before the ratio") {
   const auto request = memory_effect_request(k, 0, {0.1, 0.4}, {0.0, 0.02});
   std::vector<Complex> entries(request.entries.size());
   entries[request.tilted_entry(0, 0)] = 4;
@@ -111,7 +113,7 @@ TEST_CASE("field correlation: entries are summed over views before the ratio") {
   const auto correlation = field_correlation(request, entries);
   REQUIRE(correlation.size() == 2);
   CHECK(correlation[0].real() == doctest::Approx(1).epsilon(1e-14));
-  CHECK(correlation[1].real() == doctest::Approx(5 / std::sqrt(9.0 * 16)).epsilon(1e-14));
+  CHECK(correlation[1].real() == doctest::Approx(std::sqrt(13.0 / 70)).epsilon(1e-14));
 }
 
 TEST_CASE("field correlation: separate for transmitted and reflected views") {
@@ -124,7 +126,8 @@ TEST_CASE("field correlation: separate for transmitted and reflected views") {
   entries[both.tilted_entry(1, 0)] = 0.5;
   entries[both.tilted_entry(1, 1)] = 0.1;
   entries[both.tilted_entry(1, 2)] = 0.7;
-  CHECK(field_correlation(both, entries)[1].real() == doctest::Approx(0.6).epsilon(1e-14));
+  CHECK(field_correlation(both, entries)[1].real() ==
+        doctest::Approx(std::sqrt(0.37)).epsilon(1e-14));
   CHECK(field_correlation(both, entries, groups[1])[1].real() ==
         doctest::Approx(0.1).epsilon(1e-14));
 }
@@ -138,6 +141,45 @@ TEST_CASE("field correlation of near sensors: averages power, as covariances dif
   entries[request.tilted_entry(1, 1)] = {-0.8, 0};
   CHECK(field_correlation(request, entries)[1].real() ==
         doctest::Approx(std::sqrt(0.5)).epsilon(1e-14));
+}
+
+TEST_CASE("field correlation: of many views between those of single views, transport") {
+  const std::vector<double> views{-0.8, -0.3, 0, 0.4, 0.9}, tilts{0.0, 0.012};
+  const auto at = [&](const std::vector<double>& chosen) {
+    const auto slab = tests::hg_slab(20, {2}, memory_effect_request(k, 0, chosen, tilts));
+    return field_correlation(slab.request, slab_covariance(slab, false, {1e-6}).value)[1].real();
+  };
+  double least = 1, most = 0;
+  for (const double view : views) {
+    least = std::min(least, at({view}));
+    most = std::max(most, at({view}));
+  }
+  const double all = at(views);
+  CHECK(all > least);
+  CHECK(all < most);
+  CHECK(least > 0.3);
+  CHECK(most < 0.9);
+}
+
+TEST_CASE("correlations: errors of many dim views include the excess of noise") {
+  // 64 views whose covariances are noise alone: C_E is the noise, not 0
+  const std::vector<double> tilts{0.0, 0.02};
+  std::vector<double> views;
+  for (int v = 0; v < 64; ++v) views.push_back(-0.3 + 0.01 * v);
+  const auto request = memory_effect_request(k, 0, views, tilts);
+  GroupedSums sums(request.entries.size());
+  RandomStream random(1, 0, 0);
+  for (int batch = 0; batch < 256; ++batch) {
+    std::vector<Complex> entries(request.entries.size(), 1);
+    for (std::size_t v = 0; v < views.size(); ++v)
+      entries[request.tilted_entry(1, v)] =
+          std::polar(1.0, 6.283185307179586 * random.uniform());
+    sums.add(1, entries);
+  }
+  const auto found = correlations(request, sums, sample_mean, view_groups(request).front());
+  CHECK(found.moves.value[1].real() == doctest::Approx(1.0 / 16).epsilon(0.2));
+  CHECK(found.moves.error[1] > 0.8 * found.moves.value[1].real());
+  CHECK(found.moves.error[0] < 1e-12);
 }
 
 TEST_CASE("field correlation: 0 without light") {

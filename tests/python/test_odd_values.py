@@ -113,6 +113,14 @@ class Meant(PackageTest):
         path = functions.all_values("recover", fs.Scene(frames=pictures, dark=pictures[0]))["dark"]
         np.testing.assert_array_equal(np.load(path), pictures[0])
 
+    def test_files_of_frames_stay_files(self):
+        files = [self.folder / "a.png", self.folder / "b.png"]
+        for file in files:
+            file.touch()
+        for given in (files[0], files):
+            found = functions.all_values("recover", fs.Scene(frames=given))["frames"]
+            self.assertEqual(found, [str(one) for one in given] if given is files else str(given))
+
     def test_the_same_call_at_once(self):
         """All threads get the result of the one that makes it."""
         found = []

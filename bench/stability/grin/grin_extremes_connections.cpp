@@ -215,7 +215,7 @@ Finding no_index() {
 void connection_extremes(ExtremeRows& rows) {
   rows.add("four curves between two points of Luneburg's ball", "paths, |J|, caustics", all_four);
   rows.add("four curves, one drawn at a time", "sum of 1/|J|, in errors", sum_of_four);
-  rows.add("points of Luneburg's ball that no curve joins", "nothing found", none);
+  rows.add("points of Luneburg's ball without connecting curve", "nothing found", none);
   rows.add("a point of the fisheye and its image: a continuum", "degenerate, none counts",
            continuum);
   rows.add("two points of the fisheye", "a great circle's two arcs", great_circle);

@@ -146,7 +146,7 @@ Finding snell() {
 }
 
 void add_fields(ExtremeRows& rows) {
-  rows.add("Luneburg rim from within and from without", "n - 1 and grad n", luneburg_rim);
+  rows.add("Luneburg rim from inside and outside", "n - 1 and grad n", luneburg_rim);
   rows.add_each("fisheye ", {1e3, 1e6}, " radii out, n to 1e-12", "n and grad n", fisheye_far_out);
   rows.add("guide of n - 1 = 1e-6", "n - 1 and grad n in 50 digits", faint_guide);
   rows.add("sech guide, alpha rho to 700, n to 1e-304", "0 <= n, bounds", sech_far_out);

@@ -192,7 +192,7 @@ void add_slabs(ExtremeRows& rows) {
     };
     return worse(row(true, exact.reflected), row(false, exact.transmitted));
   });
-  rows.add("slab of OD 30 that absorbs all: 1e-13 comes through", "exp(-30), in errors", share_row,
+  rows.add("slab of OD 30 that absorbs all: 1e-13 transmitted", "exp(-30), in errors", share_row,
            ScatteringMedium{0, 30}, false, light, 1000, std::exp(-30.0), 1e-9, 1e-12);
 }
 
@@ -332,8 +332,8 @@ void add_deep_slabs(ExtremeRows& rows) {
   };
   const std::string decay = "transport's decay with depth, in errors";
   const Chosen light = RenderMethod::light;
-  rows.add("slab of OD 50, albedo 0.9: 4e-12 comes through", decay, deep, 50, light, 20'000);
-  rows.add("slab of OD 200, albedo 0.9: 3e-46 comes through", decay, deep, 200, light, 20'000);
+  rows.add("slab of OD 50, albedo 0.9: 4e-12 transmitted", decay, deep, 50, light, 20'000);
+  rows.add("slab of OD 200, albedo 0.9: 3e-46 transmitted", decay, deep, 200, light, 20'000);
 }
 
 /// Adds scenes in which the pilot run finds no light or only a single path, or cannot sample enough
@@ -347,15 +347,15 @@ void add_choices(ExtremeRows& rows) {
     const Rendering dark = rendered(scene, chosen, 1000);
     return Finding{std::abs(dark.pixels.value[0]) + dark.pixels.error[0], 0};
   });
-  rows.add("chosen method, clear slab", "all comes through, in errors", share_row,
-           ScatteringMedium{}, false, chosen, 1000, 1, 1e-9, 1e-12);
+  rows.add("chosen method, clear slab", "all transmitted, in errors", share_row, ScatteringMedium{},
+           false, chosen, 1000, 1, 1e-9, 1e-12);
   rows.add("chosen method, slab of OD 30 that absorbs all", "exp(-30), in errors", share_row,
            ScatteringMedium{0, 30}, false, chosen, 1000, std::exp(-30.0), 1e-9, 1e-12);
   rows.add("chosen method, slab of OD 0.01, reflected", "Peierls' equation, in errors", [] {
     return share_row({0.01, 0}, true, chosen, 100'000, isotropic_slab(0.01, 1).reflected, 0.1);
   });
   rows.add_slow(
-      "chosen method, slab of OD 200, albedo 0.9: 3e-46 comes through",
+      "chosen method, slab of OD 200, albedo 0.9: 3e-46 transmitted",
       "transport's decay with depth, in errors", [] {
         return share_row({180, 20}, false, chosen, 10'000, transmitted_deep(200), 0.05, 1e-4);
       });

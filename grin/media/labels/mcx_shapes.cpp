@@ -100,6 +100,10 @@ LabelVolume read_mcx_shapes(const std::filesystem::path& path) {
   const McxObject domain = root.object("Domain");
   if (root.has("Shapes") && !root.json()["Shapes"].is_array())
     root.refuse("Shapes", "must be a list of shapes; write a volume to an HDF5 or NIfTI-1 file");
+  if (!root.has("Shapes") && domain.has("VolumeFile"))
+    domain.refuse("VolumeFile",
+                  "requires keys of render instead of this scene: labels = FILE in HDF5 or NIfTI-1, "
+                  "with label_media");
   const std::vector<McxObject> shapes = root.objects("Shapes");
   if (shapes.empty()) throw InputError("Shapes: is missing: labels are made of these shapes alone");
   LabelVolume volume;

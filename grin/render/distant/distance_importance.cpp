@@ -100,7 +100,8 @@ DistanceImportance::DistanceImportance(const LevelLayers& layers,
     for (const auto& field : solve(layers, targets, absorptions)) {
       const double share = field[static_cast<std::size_t>(row) * grid_.columns];
       if (delay == 0) least_share_ = std::min(least_share_, share);
-      const double scale = 1 / (std::max(share, 1e-300) * targets.size() * delays_.size());
+      const double scale =
+          1 / (std::max(share, 1e-300) * static_cast<double>(targets.size() * delays_.size()));
       for (std::size_t i = 0; i < field.size(); ++i)
         nodes_[i * delays_.size() + delay] += scale * std::max(field[i], 0.0);
     }

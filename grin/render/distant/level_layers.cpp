@@ -35,7 +35,7 @@ std::optional<LevelLayers> LevelLayers::of(const Stage& stage, int axis, double 
   const auto* box = std::get_if<Box>(&stage.boundary);
   if (!box) return std::nullopt;
   for (Part part = around; part < stage.parts(); ++part)
-    if (stage.medium_in(part).density) return std::nullopt;
+    if (!stage.medium_in(part).is_uniform()) return std::nullopt;
   const auto bodies = boxes_across(stage, axis, *box);
   if (!bodies) return std::nullopt;
   std::vector<double> planes{box->low[axis], box->high[axis]};

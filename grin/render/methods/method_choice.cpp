@@ -415,7 +415,8 @@ class Trials {
 /// Repeats trials of increasing length until the best method is settled: an estimate of the work is
 /// too low if the trial lacks the paths of highest weight.
 Tracer best_tracer(const Tracers& tracers) {
-  if (!tracers.walks()) return tracers.make(RenderMethod::light);
+  if (!tracers.walks())
+    return tracers.make(tracers.counts_rays() ? RenderMethod::forward : RenderMethod::light);
   // other methods starve at sensors that few paths reach, so that trials could not compare them
   if (tracers.are_guided()) return tracers.make(RenderMethod::forward);
   Trials trials(tracers);

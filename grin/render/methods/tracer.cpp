@@ -7,6 +7,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "grin/media/scattering/labelled_media.h"
 #include "grin/render/methods/forward_light.h"
 #include "grin/render/methods/path_kernels.h"
 #include "grin/render/transport/subpath.h"
@@ -21,7 +22,12 @@ class MapTally : public LightTally {
  public:
   MapTally(const Cells& cells, const Transport& transport, std::span<Complex> sums,
            EnergyBalance& energy, TransportCounts& counts)
-      : LightTally(energy), cells_(cells), transport_(transport), sums_(sums), counts_(counts) {}
+      : LightTally(energy),
+        cells_(cells),
+        transport_(transport),
+        sums_(sums),
+        of_labels_(sums.last(label_count(transport.stage))),
+        counts_(counts) {}
 
   Flight fly(const Space& space, const PathVertex& from, const Vec3& direction,
              RandomStream& random, const Vec3* log_gradient, FlightLog*) {
@@ -48,13 +54,16 @@ class MapTally : public LightTally {
       return;
     }
     Complex* const sums = &sums_[sums_per_cell * static_cast<std::size_t>(cell)];
+    const double absorbed = power_length * medium.absorption(x);
     sums[0] += power_length;
-    sums[1] += power_length * medium.absorption(x);
+    sums[1] += absorbed;
+    if (medium.labels)
+      of_labels_[static_cast<std::size_t>(medium.labels->volume().at(x))] += absorbed;
   }
 
   const Cells& cells_;
   const Transport& transport_;
-  std::span<Complex> sums_;
+  std::span<Complex> sums_, of_labels_;
   TransportCounts& counts_;
   FlightLog log_;
 };
@@ -265,7 +274,26 @@ double bending_of(const RenderScene& scene) {
   return scene.index ? std::sqrt(2 * (scene.index->highest / scene.index->lowest - 1)) : 0;
 }
 
+/// Calls use(LabelVolume) for each medium of labelled voxels.
+template <class Use>
+void each_volume(const Stage& stage, const Use& use) {
+  for (Part part = around; part < stage.parts(); ++part)
+    if (const auto& labels = stage.medium_in(part).labels) use(labels->volume());
+}
+
 }  // namespace
+
+std::size_t label_count(const Stage& stage) {
+  std::size_t count = 0;
+  each_volume(stage, [&](const LabelVolume& volume) {
+    count = std::max(count, std::ranges::max(volume.labels) + std::size_t{1});
+  });
+  return count;
+}
+
+std::size_t map_sums(const LightMap& map, const Stage& stage) {
+  return sums_per_cell * static_cast<std::size_t>(cells(map)) + label_count(stage);
+}
 
 MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> transport,
                      std::shared_ptr<const Space> space, bool random_phase) {
@@ -273,7 +301,8 @@ MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> trans
              TransportCounts& counts) {
     std::visit(
         [&](const auto& cells) {
-          MapTally tally(cells, *transport, sums, energy, counts);
+          MapTally tally(cells, *transport, sums.first(map_sums(map, transport->stage)), energy,
+                         counts);
           for (int path = 0; path < paths; ++path) {
             if (random_phase) {
               const auto met = space->frozen(2 * std::numbers::pi * random.uniform());
@@ -368,9 +397,13 @@ void Tracers::find_beams() {
   const auto transport = transport_of(scene_, request_, RenderMethod::bidirectional);
   if (scene_.bins.sound || !(transport->lights.beam_power() > 0)) return;
   walks_ = plan_.scatters || !transport->lights.are_beams() || !are_followed(*transport);
-  const BeamsRequest asked{scene_.random_phase, !walks_, moving_};
   const std::shared_ptr<const Space> space =
       make_space(scene_.field, without_scattering(scene_.stage), options(Spreading::none));
+  constexpr double most = 0.5;
+  const bool is_forward = request_.method.value_or(RenderMethod::forward) == RenderMethod::forward;
+  counts_rays_ = !walks_ && is_forward && (plan_.curved || request_.method) &&
+                 can_be_forward(scene_) && fraction_that_hits(*transport, *space) > most;
+  const BeamsRequest asked{scene_.random_phase, !walks_, !counts_rays_, moving_};
   unscattered_beams_ = beams_kernel(asked, transport, space);
   if (walks_ && plan_.curved) few_rays_per_path_ = rays_beside_path(transport->lights, *space);
 }

@@ -22,6 +22,16 @@ namespace flatspeckle::grin {
 using MapKernel = std::function<void(int paths, RandomStream& random, std::span<Complex> sums,
                                      EnergyBalance& energy, TransportCounts& counts)>;
 inline constexpr std::size_t sums_per_cell = 2;
+/// Number of labels of the voxels in a stage, 0 included; 0 without voxels. The sums of the cells
+/// are followed by the power absorbed within the map in voxels of each label.
+std::size_t label_count(const Stage& stage);
+/// Number of sums of a map.
+std::size_t map_sums(const LightMap& map, const Stage& stage);
+/// Number of labels of the voxels in a stage, 0 included; 0 without voxels. The sums of the cells
+/// are followed by the power absorbed within the map in voxels of each label.
+std::size_t label_count(const Stage& stage);
+/// Number of sums of a map.
+std::size_t map_sums(const LightMap& map, const Stage& stage);
 
 /// Makes the kernel of a map. random_phase: each light path has a random phase of the sound.
 MapKernel map_kernel(const LightMap& map, std::shared_ptr<const Transport> transport,
@@ -81,6 +91,11 @@ class Tracers {
   /// Whether paths are traced; if not, all lights are beams and nothing scatters.
   bool walks() const { return walks_; }
 
+  /// Whether the rays of beams are counted where they hit the sensors, without connections. They
+  /// are if nothing scatters, most of the light hits each sensor, and forward tracing is requested
+  /// or the index varies: connections along curved rays are expensive.
+  bool counts_rays() const { return counts_rays_; }
+
   /// Whether forward tracing guides its paths, since few would reach some sensor.
   bool are_guided() const { return guide_ != nullptr; }
 
@@ -102,7 +117,7 @@ class Tracers {
   const RenderScene& scene_;
   const RenderRequest& request_;
   RenderPlan plan_;
-  bool walks_ = true;
+  bool walks_ = true, counts_rays_ = false;
   std::shared_ptr<const PathGuide> guide_;  ///< for counted paths; set if few reach some sensor
   std::optional<Aim> aim_;                        ///< for counted paths; set if it saves much work
   std::shared_ptr<const DepthImportance> depth_;  ///< set if the plan is deep

@@ -11,8 +11,8 @@
 #include "grin/render/methods/beam_edges.h"
 #include "grin/render/transport/beam_connection.h"
 #include "grin/render/transport/light_tally.h"
-#include "grin/render/transport/scrambled_sobol.h"
 #include "grin/render/transport/path_score.h"
+#include "grin/render/transport/scrambled_sobol.h"
 
 namespace flatspeckle::grin {
 
@@ -395,11 +395,30 @@ bool are_followed(const Transport& transport) {
 
 BeamsKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Transport> transport,
                          std::shared_ptr<const Space> space) {
-  const BeamSeeds seeds = all_seeds(*transport, *space, space->has_curves() ? 512 : 32768);
+  BeamSeeds seeds;
+  if (request.connects)
+    seeds = all_seeds(*transport, *space, space->has_curves() ? 512 : 32768);
+  else
+    seeds.of_pair.resize(transport->sensors.size() * transport->lights.beams());
   const BeamsSetup setup{seeds, fraction_of_connections_found(seeds.is_any_seen),
                          request.tallies_power, request.moving};
   return kernel(transport, setup, space, request.random_phase,
                 !request.random_phase && space->has_lanes());
+}
+
+double fraction_that_hits(const Transport& transport, const Space& space) {
+  constexpr int some = 64;
+  RandomStream random(0, static_cast<std::uint64_t>(Stream::render), 0);
+  const EvenRays from(transport.lights, some, random);
+  std::vector<double> hits(transport.sensors.size());
+  for (int ray = 0; ray < some; ++ray) {
+    const EndPosition start = from.start(ray);
+    const Flight flight = space.fly(start.point, start.inward, random);
+    for (std::size_t i = 0; i < hits.size(); ++i)
+      transport.sensors[i].hit(space, flight.point.x, flight.direction,
+                               [&](const EndHit&) { hits[i] += 1.0 / some; });
+  }
+  return std::ranges::min(hits);
 }
 
 double rays_beside_path(const StageLights& lights, const Space& space) {

@@ -21,6 +21,7 @@ namespace flatspeckle::grin {
 struct BeamsRequest {
   bool random_phase = false;   ///< each ray has a random phase of the sound
   bool tallies_power = false;  ///< whether rays tally the power of beams, since no paths do
+  bool connects = true;        ///< whether sensors are also connected to the beams
   /// Set if derivatives by parameters of the field are requested (gradient_by).
   std::shared_ptr<const MovingField> moving = nullptr;
 };
@@ -36,6 +37,9 @@ BeamsKernel beams_kernel(const BeamsRequest& request, std::shared_ptr<const Tran
 /// unscattered fraction of the light. At most one ray per path is needed: rays are stratified, so
 /// that their error decreases faster with their number than that of paths.
 double rays_beside_path(const StageLights& lights, const Space& space);
+
+/// Returns the fraction of the beams' light that hits the sensor that gets the least of it.
+double fraction_that_hits(const Transport& transport, const Space& space);
 
 /// Whether there are beams, and a sensor that their rays can hit.
 bool are_followed(const Transport& transport);

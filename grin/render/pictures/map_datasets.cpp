@@ -17,7 +17,10 @@ namespace {
 std::vector<DatasetRow> rows_of_values(const std::string& axes) {
   return {{"map/fluence", Data::estimate, axes, "1/length^2",
            "fluence rate: radiance integrated over all directions, for the powers of the lights"},
-          {"map/absorbed", Data::estimate, axes, "1/length^3", "absorbed power density"}};
+          {"map/absorbed", Data::estimate, axes, "1/length^3", "absorbed power density"},
+          {"map/label", Data::numbers, "", "1", "label of voxels"},
+          {"map/label_absorbed", Data::estimate, "map/label", "1",
+           "power absorbed within the map in voxels of each label"}};
 }
 
 std::vector<DatasetRow> operator+(std::vector<DatasetRow> rows,
@@ -75,6 +78,14 @@ Estimate absorbed(const GroupedSums& sums, std::size_t first, const LightMap& ma
   return every_second(sums, first + 1, map);
 }
 
+std::optional<Estimate> absorbed_by_label(const RenderScene& scene, const RenderJob& job,
+                                          const GroupedSums& sums) {
+  const std::size_t labels = label_count(scene.stage);
+  if (!scene.map || labels == 0) return std::nullopt;
+  const std::size_t end = job.first_of_map() + map_sums(*scene.map, scene.stage);
+  return jackknife(sums, EntryRange{end - labels, labels}, few_of_values);
+}
+
 void write_map(ResultFile& file, const RenderScene& scene, const RenderJob& job,
                const GroupedSums& sums) {
   const LightMap& map = *scene.map;
@@ -83,6 +94,10 @@ void write_map(ResultFile& file, const RenderScene& scene, const RenderJob& job,
   std::visit([&](const auto& of) { write_axes(root, of); }, map);
   root.put("map/fluence", fluence(sums, job.first_of_map(), map));
   root.put("map/absorbed", absorbed(sums, job.first_of_map(), map));
+  if (const auto powers = absorbed_by_label(scene, job, sums)) {
+    root.number("map/label", powers->value.size());
+    root.put("map/label_absorbed", *powers);
+  }
 }
 
 }  // namespace flatspeckle::grin

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "core/result/dataset_row.h"
 #include "core/result/result_file.h"
 #include "grin/render/pictures/render_job.h"
@@ -15,6 +17,10 @@ std::vector<Complex> map_means(double samples, std::span<const Complex> sums, st
 /// first sum among the sums of a batch.
 Estimate fluence(const GroupedSums& sums, std::size_t first, const LightMap& map);
 Estimate absorbed(const GroupedSums& sums, std::size_t first, const LightMap& map);
+
+/// Returns the power absorbed within the map in voxels of each label; nullopt without labels.
+std::optional<Estimate> absorbed_by_label(const RenderScene& scene, const RenderJob& job,
+                                          const GroupedSums& sums);
 
 /// Writes the fluence rate and the absorbed power density of a scene's map; the scene must have
 /// one. The absorbed power is 0 without absorption.

@@ -30,6 +30,11 @@ std::vector<double> sums_around(const std::vector<double>& values, const PixelGr
   return sums_along(sums_along(sums_along(values, 1, bins), bins, columns), bins * columns, rows);
 }
 
+/// Relative error above which an entry is undersampled: that of six contributions of one size. Their
+/// sum is skewed, and where paths of high weight are rare, an estimate that lacks them has too small
+/// an error. In a run of few groups their number shows this less reliably.
+constexpr double rough_error = 0.4;
+
 /// Error bound for contributions that may have been missed. Contributions of size c have a variance
 /// of c times their sum, from which c follows. If three of them are expected, with sum 3 c, none
 /// arrives with probability 1/20. As this is the probability of a deviation by two standard errors,
@@ -45,10 +50,11 @@ void bound_errors(Estimate& picture, const PixelGrid& grid) {
   const std::vector<double> values = real_parts(picture.value);
   std::vector<double> variances(size), undersampled(size), undersampled_lit(size), lit(size);
   for (std::size_t i = 0; i < size; ++i) {
+    const bool is_rare = picture.rare[i] || picture.error[i] > rough_error * std::abs(values[i]);
     variances[i] = picture.error[i] * picture.error[i];
-    undersampled[i] = picture.rare[i] ? values[i] : 0;
+    undersampled[i] = is_rare ? values[i] : 0;
     lit[i] = values[i] != 0;
-    undersampled_lit[i] = picture.rare[i] ? lit[i] : 0;
+    undersampled_lit[i] = is_rare ? lit[i] : 0;
   }
   const double of_all = unseen(std::reduce(variances.begin(), variances.end()),
                                std::reduce(values.begin(), values.end()));

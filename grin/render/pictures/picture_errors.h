@@ -14,8 +14,9 @@ inline constexpr double few_of_values = 36;
 inline constexpr double few_of_pixels = 12;
 
 /// Recomputes the undersampled flags (Estimate::rare) of a picture [row][column][bin] from
-/// neighbourhoods, and replaces the errors of undersampled entries by upper bounds. An entry is
-/// undersampled if more than half of the entries with light around it are flagged, or if flagged
+/// neighbourhoods, and replaces the errors of undersampled entries by upper bounds. Entries whose
+/// error exceeds 40 % are flagged first, whatever the number of groups. An entry is undersampled if
+/// more than half of the entries with light around it are flagged, or if flagged
 /// entries have more than half of the light there. The flag of the entry alone is not used: an
 /// entry that paths of high weight have missed by chance has a small error. Entries that no path
 /// has hit are also undersampled if there is light around them. The error of an undersampled entry

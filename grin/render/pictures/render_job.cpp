@@ -427,7 +427,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.has_energy = tallies_power || map;
   if (tracer.has_control_variates) job.controls = control_variate_count;
   job.sensors = scene.sensors.size();
-  job.batches.size = job.first_of_map() + (map ? sums_per_cell * cells(*scene.map) : 0) +
+  job.batches.size = job.first_of_map() + (map ? map_sums(*scene.map, scene.stage) : 0) +
                      (job.keeps_steady() ? job.pixels() : 0) + job.controls;
   const int least =
       paths_per_batch(tracer, tracers.plan().scatters, tracers.cost_of_flight(), job.batches.size);

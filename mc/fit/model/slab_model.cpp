@@ -54,12 +54,14 @@ bool SlabModel::reversed() const {
   return std::ranges::any_of(groups_, &Group::reversed);
 }
 
-double SlabModel::refine(const Media& media, const VectorXd& errors, double share) {
+double SlabModel::refine(const Media& media, const VectorXd& errors, double share,
+                         const std::function<void()>& solved) {
   constexpr int most = 30;
-  VectorXd found = solved(media, resolution_);
+  VectorXd found = solution(media, resolution_);
   while (true) {
+    solved();
     const Resolution next{Resolution::next(resolution_.order), Resolution::next(resolution_.modes)};
-    const VectorXd finer = solved(media, next);
+    const VectorXd finer = solution(media, next);
     const double change = (finer - found).cwiseQuotient(errors).cwiseAbs().maxCoeff();
     if (change < share || next.order > most) return change;
     resolution_ = next;
@@ -67,7 +69,7 @@ double SlabModel::refine(const Media& media, const VectorXd& errors, double shar
   }
 }
 
-VectorXd SlabModel::solved(const Media& media, const Resolution& at) const {
+VectorXd SlabModel::solution(const Media& media, const Resolution& at) const {
   VectorXd all(size_);
   for (const Group& group : groups_)
     group.flux ? solve_flux(group, media, all) : solve_fields(group, media, at, all);

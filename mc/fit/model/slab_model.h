@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -20,12 +21,13 @@ class SlabModel {
   SlabModel(std::vector<Curve> curves, const Media& media);
 
   /// Returns the values of all curves, concatenated. media: the medium of each curve.
-  Eigen::VectorXd values(const Media& media) const { return solved(media, resolution_); }
+  Eigen::VectorXd values(const Media& media) const { return solution(media, resolution_); }
 
   /// Increases the resolution until a further increase changes no value by more than
   /// `share` of its error. Returns the largest change by that further increase, in units of the
-  /// errors.
-  double refine(const Media& media, const Eigen::VectorXd& errors, double share);
+  /// errors. solved: called after each solution.
+  double refine(const Media& media, const Eigen::VectorXd& errors, double share,
+                const std::function<void()>& solved);
 
   const Resolution& resolution() const { return resolution_; }
   bool reversed() const;
@@ -39,7 +41,7 @@ class SlabModel {
   };
 
   bool can_share(const Group& group, const Media& media, std::size_t curve) const;
-  Eigen::VectorXd solved(const Media& media, const Resolution& at) const;
+  Eigen::VectorXd solution(const Media& media, const Resolution& at) const;
   void solve_fields(const Group& group, const Media& media, const Resolution& at,
                     Eigen::VectorXd& all) const;
   void solve_flux(const Group& group, const Media& media, Eigen::VectorXd& all) const;

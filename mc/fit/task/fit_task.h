@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -41,6 +42,14 @@ struct FitTask {
   // For a search by Monte Carlo: callback for each step, and steps of an earlier run.
   std::function<void(const FitStep&)> keep{};
   std::vector<FitStep> made{};
+
+  /// Callback for each medium whose model has been computed, with chi^2 there; infinity if it is
+  /// not known.
+  std::function<void(double chi_squared)> tried{};
+
+  void report(double chi_squared = std::numeric_limits<double>::infinity()) const {
+    if (tried) tried(chi_squared);
+  }
 
   /// Whether any curve is a function of delays or exposures.
   bool moving() const {

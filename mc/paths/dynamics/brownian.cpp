@@ -228,7 +228,7 @@ PathJob delay_job(const Scene& scene, const Plan& plan, const std::vector<double
                   std::uint64_t seed, const Motion& motion) {
   if (scene.request.kind != CovarianceRequest::Kind::intensity)
     throw InputError("delays: requires covariance = intensity");
-  check_delays(scene, delays);
+  check_delays(scene, delays, motion);
   std::vector<double> scaled = delays;  // k^2 D tau
   for (double& delay : scaled) delay *= motion.diffusion;
   const auto scorer = [=, local = LocalMotion(scene, motion), flows = !motion.only_diffuses(scene)](

@@ -143,7 +143,7 @@ PathJob moving_derivative_job(const Scene& scene, const Plan& plan,
                               const std::vector<double>& delays, const Motion& motion,
                               const std::vector<MovingDerivative>& derivatives,
                               std::uint64_t seed) {
-  check_delays(scene, delays);
+  check_delays(scene, delays, motion);
   MovingDerivatives all{delays, motion, derivatives, {}, {}};
   for (const MovingDerivative& derivative : derivatives) all.media.push_back(derivative.medium);
   require_derivatives(scene, all.media);

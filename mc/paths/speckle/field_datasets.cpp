@@ -189,7 +189,9 @@ const DatasetTable field_table{
              {"intensity_autocorrelation", Data::estimate, "view_lag", "1",
               "<I I'> / (<I> <I'>) - 1 over the first light's views"},
              {"grain_width", Data::estimate, "", "LAG",
-              "full width of intensity_autocorrelation at half its maximum: the size of a speckle"},
+              "full width of intensity_autocorrelation at half its maximum: the size of a speckle; "
+              "on a "
+              "camera the mean over rows and columns"},
              {"siegert", Data::estimate, "view_lag", "1",
               "|<u u'*>|^2 / (<I> <I'>) over the same views, from light paths"}},
     .attributes =
@@ -323,16 +325,31 @@ void write_histogram(const ResultGroup& root, const FieldStatistics& statistics)
                                         [&](double share) { return share * values; }));
 }
 
+/// Returns the step between pixels, as a difference of direction cosines or, in an image, as a
+/// length. Returns nullopt if a line of pixels is too short for an autocorrelation.
+std::optional<double> pixel_step(const Scene& scene, const DrawnFields& drawn) {
+  constexpr std::size_t fewest = 8;
+  if (drawn.image) {
+    if (drawn.image->pixels < fewest) return std::nullopt;
+    return drawn.image->coordinate(1) - drawn.image->coordinate(0);
+  }
+  const FarCamera& camera = *scene.request.camera;
+  if (camera.pixels < fewest) return std::nullopt;
+  return 2 * camera.aperture / static_cast<double>(camera.pixels);
+}
+
 }  // namespace
 
 FieldSummary write_fields(ResultFile& file, const Scene& scene, const DrawnFields& drawn) {
   const auto& views = scene.request.views;
   const std::size_t pixels = pixels_of(scene, drawn), channels = fields_of(scene, drawn) * pixels;
-  const auto step = scene.request.camera ? std::nullopt : equal_step(views);
+  const bool camera = scene.request.camera.has_value();
+  const auto step = camera ? std::nullopt : equal_step(views);
+  const auto spacing = camera ? pixel_step(scene, drawn) : step;
   const auto realizations = static_cast<double>(drawn.field.size() / channels);
   const bool own_mean = drawn.image || drawn.plan.has_own_mean;
-  FieldStatistics statistics(real_parts(drawn.intensity.value), pixels, step.has_value(),
-                             own_mean ? 1 + 1 / realizations : 1);
+  FieldStatistics statistics(real_parts(drawn.intensity.value), pixels, spacing.has_value(),
+                             own_mean ? 1 + 1 / realizations : 1, camera);
   for (std::size_t first = 0; first < drawn.field.size(); first += channels)
     statistics.add(std::span(drawn.field).subspan(first, channels));
 
@@ -342,10 +359,12 @@ FieldSummary write_fields(ResultFile& file, const Scene& scene, const DrawnField
   write_plan(root, drawn.plan);
   FieldSummary summary{statistics.mean_contrast(), statistics.circularity(),
                        step ? statistics.autocorrelation() : Estimate{},
-                       step ? statistics.grain_width() : std::nullopt};
+                       spacing ? statistics.grain_width() : std::nullopt};
+  file.bind("LAG", {drawn.image || views.front().near ? "length" : "1"});
   if (summary.grain_width) {
-    summary.grain_width->value.front() *= *step;
-    summary.grain_width->error.front() *= *step;
+    summary.grain_width->value.front() *= *spacing;
+    summary.grain_width->error.front() *= *spacing;
+    root.put("grain_width", *summary.grain_width);
   }
   root.put("intensity", drawn.intensity);
   root.put("contrast", statistics.contrast());
@@ -353,10 +372,8 @@ FieldSummary write_fields(ResultFile& file, const Scene& scene, const DrawnField
   root.put("circularity", summary.circularity);
   write_histogram(root, statistics);
   if (!step) return summary;
-  file.bind("LAG", {views.front().near ? "length" : "1"});
   root.put("view_lag", steps(views.size(), *step));
   root.put("intensity_autocorrelation", summary.autocorrelation);
-  if (summary.grain_width) root.put("grain_width", *summary.grain_width);
   if (!drawn.siegert.value.empty()) root.put("siegert", drawn.siegert);
   return summary;
 }

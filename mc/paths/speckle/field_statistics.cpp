@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fftw3.h>
+#include <numeric>
 
 #include "core/numbers/fourier.h"
 #include "flatland/request/request.h"
@@ -106,16 +107,42 @@ std::vector<double> Autocorrelation::operator()(std::span<const double> x) const
 }
 
 FieldStatistics::FieldStatistics(std::vector<double> intensity, std::size_t views,
-                                 bool autocorrelated, double squares)
-    : intensity_(std::move(intensity)), views_(autocorrelated ? views : 0), squares_(squares) {
-  if (autocorrelated) autocorrelation_.emplace(views);
-  sums_ = GroupedSums(lags_at + views_ + intensity_.size());
+                                 bool autocorrelated, double squares, bool is_camera)
+    : intensity_(std::move(intensity)), line_(0), squares_(squares), is_camera_(is_camera) {
+  if (autocorrelated) {
+    line_ = is_camera ? static_cast<std::size_t>(std::lround(std::sqrt(views))) : views;
+    autocorrelation_.emplace(line_);
+  }
+  sums_ = GroupedSums(lags_at + line_ + intensity_.size());
+}
+
+/// Adds the autocorrelation of x - 1 over the line of views or, for a camera, that of |u|^2 -
+/// E|u|^2 over its rows and columns.
+void FieldStatistics::add_lags(std::span<const double> fluctuation, std::span<Complex> sums) const {
+  const auto add_line = [&](std::span<const double> line, double weight) {
+    const auto lags = (*autocorrelation_)(line);
+    for (std::size_t d = 0; d < line_; ++d) sums[d] += weight * lags[d];
+  };
+  if (!is_camera_) return add_line(fluctuation.first(line_), 1);
+  const std::size_t pixels = line_ * line_;
+  const double mean =
+      std::accumulate(intensity_.begin(), intensity_.begin() + static_cast<long>(pixels), 0.0) /
+      static_cast<double>(pixels);
+  if (mean == 0) return;
+  std::vector<double> picture(pixels), column(line_);
+  for (std::size_t c = 0; c < pixels; ++c) picture[c] = fluctuation[c] * intensity_[c] / mean;
+  const double weight = 0.5 / static_cast<double>(line_);
+  for (std::size_t i = 0; i < line_; ++i) {
+    add_line(std::span(picture).subspan(i * line_, line_), weight);
+    for (std::size_t row = 0; row < line_; ++row) column[row] = picture[row * line_ + i];
+    add_line(column, weight);
+  }
 }
 
 void FieldStatistics::add(std::span<const Complex> field) {
   std::vector<Complex> sums(sums_.size());
   std::vector<double> fluctuation(intensity_.size());
-  const std::size_t channels_at = lags_at + views_;
+  const std::size_t channels_at = lags_at + line_;
   for (std::size_t c = 0; c < intensity_.size(); ++c) {
     if (intensity_[c] == 0) continue;
     const double x = std::norm(field[c]) / intensity_[c];
@@ -127,10 +154,7 @@ void FieldStatistics::add(std::span<const Complex> field) {
     sums[histogram_at + bin] += 1;
     sums[channels_at + c] = Complex(x, x * x);
   }
-  if (autocorrelation_) {
-    const auto lags = (*autocorrelation_)({fluctuation.data(), views_});
-    std::copy(lags.begin(), lags.end(), sums.begin() + lags_at);
-  }
+  if (autocorrelation_) add_lags(fluctuation, std::span(sums).subspan(lags_at, line_));
   sums_.add(1, sums);
 }
 
@@ -159,7 +183,7 @@ Estimate FieldStatistics::histogram() const {
 
 Estimate FieldStatistics::autocorrelation() const {
   return jackknife(sums_, [this](double fields, std::span<const Complex> sums) {
-    std::vector<Complex> mean(sums.begin() + lags_at, sums.begin() + lags_at + views_);
+    std::vector<Complex> mean(sums.begin() + lags_at, sums.begin() + lags_at + line_);
     for (Complex& value : mean) value /= fields;
     return mean;
   });
@@ -183,7 +207,7 @@ double half_lag(std::span<const Complex> curve) {
 
 std::optional<Estimate> FieldStatistics::grain_width() const {
   Estimate width = jackknife(sums_, [this](double, std::span<const Complex> sums) {
-    return std::vector<Complex>{2 * half_lag(sums.subspan(lags_at, views_))};
+    return std::vector<Complex>{2 * half_lag(sums.subspan(lags_at, line_))};
   });
   if (width.value.front().real() < 2) return std::nullopt;
   return width;

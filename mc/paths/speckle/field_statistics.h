@@ -39,9 +39,12 @@ class FieldStatistics {
   /// intensity: E|u|^2 of the channels [light][view]. autocorrelated: whether to compute the
   /// autocorrelation over the views of the first light. squares: factor of the mean of x^2 in the
   /// contrast; (N + 1)/N if the intensity is the mean of |u|^2 over the same N fields, whose mean
-  /// of x^2 is then 2 N/(N + 1) for Gaussian fields.
+  /// of x^2 is then 2 N/(N + 1) for Gaussian fields. is_camera: whether the views are the pixels of
+  /// a square camera. The autocorrelation is then the mean over its rows and columns, of |u|^2 -
+  /// E|u|^2 relative to the mean over the camera: if E|u|^2 is the mean over few fields, its shape
+  /// remains that of many fields.
   FieldStatistics(std::vector<double> intensity, std::size_t views, bool autocorrelated,
-                  double squares = 1);
+                  double squares = 1, bool is_camera = false);
 
   void add(std::span<const Complex> field);
 
@@ -65,9 +68,12 @@ class FieldStatistics {
   static std::vector<double> exponential_law();
 
  private:
+  void add_lags(std::span<const double> fluctuation, std::span<Complex> sums) const;
+
   std::vector<double> intensity_;
-  std::size_t views_;
+  std::size_t line_;  ///< number of views in a line of the autocorrelation; 0 without it
   double squares_;
+  bool is_camera_;
   std::optional<Autocorrelation> autocorrelation_;
   GroupedSums sums_;
 };
