@@ -168,13 +168,16 @@ TEST_CASE("field correlation: derivatives by diffusion equal differences of the 
 /// The reference values are by harmonics (reflectance), with an error of 7e-4. Rows: distance,
 /// power, g1 at 1e-3 and at 1e-2.
 TEST_CASE("guided paths in tissue: power and field correlation on far disks agree with harmonics") {
-  const double expected[][4] = {{10, 6.81782e-4, 0.9130, 0.4506},
-                                {20, 1.47102e-5, 0.8168, 0.1749},
-                                {30, 5.51492e-7, 0.7273, 0.06547}};
-  for (const auto& [distance, power, early, late] : expected) {
-    if (!is_night && distance > 10) continue;
-    CAPTURE(distance);
-    RenderScene scene = bench::tissue_disk(distance);
+  struct Expected {
+    double distance, power, early, late;
+  };
+  const Expected expected[] = {{10, 6.81782e-4, 0.9130, 0.4506},
+                               {20, 1.47102e-5, 0.8168, 0.1749},
+                               {30, 5.51492e-7, 0.7273, 0.06547}};
+  for (const Expected& row : expected) {
+    if (!is_night && row.distance > 10) continue;
+    CAPTURE(row.distance);
+    RenderScene scene = bench::tissue_disk(row.distance);
     scene.bins.decay =
         std::make_shared<const FieldDecay>(FieldDecay{.delays = {1e-3, 1e-2}, .diffusion = {0, 1}});
     const Powers found = powers(scene, is_night ? 200000 : 1000);
@@ -182,11 +185,11 @@ TEST_CASE("guided paths in tissue: power and field correlation on far disks agre
                  error = area * found.found.mean.error[0];
     CAPTURE(total);
     CAPTURE(error);
-    CHECK(std::abs(total - power) < 4 * error + 1e-3 * power);
-    CHECK(error < (is_night ? 0.006 : 0.15) * power);
+    CHECK(std::abs(total - row.power) < 4 * error + 1e-3 * row.power);
+    CHECK(error < (is_night ? 0.006 : 0.15) * row.power);
     for (std::size_t t = 0; t < 2; ++t) {
       const double g1 = found.found.decay->mean.value[t].real(),
-                   own = found.found.decay->mean.error[t], value = t == 0 ? early : late;
+                   own = found.found.decay->mean.error[t], value = t == 0 ? row.early : row.late;
       CAPTURE(g1);
       CHECK(std::abs(g1 - value) < 4 * own + 1e-3 * value);
       CHECK(own < (is_night ? 0.006 : 0.15) * value);
@@ -206,9 +209,9 @@ TEST_CASE("path guide: wide or near sensors and other lights are left to unguide
   tilted.lights = {BeamLight{{0.5, 0, -0.2}, Vec3(0.6, 0, 0.8), 0.1}};
   CHECK(!PathGuide::of(tilted, 1));
   RenderScene voxels = layers;
-  voxels.stage.medium = labelled_medium(
-      {Vec3::Constant(-3), Vec3::Constant(3), {2, 2, 2}, {0, 0, 0, 0, 0, 0, 0, 1}},
-      {1, 0, 0.5, 3, 1, 0}, "label_media");
+  voxels.stage.medium =
+      labelled_medium({Vec3::Constant(-3), Vec3::Constant(3), {2, 2, 2}, {0, 0, 0, 0, 0, 0, 0, 1}},
+                      {1, 0, 0.5, 3, 1, 0}, "label_media");
   CHECK(!PathGuide::of(voxels, 1));
 }
 
