@@ -122,8 +122,7 @@ void write_delays(ResultFile& file, const Scene& scene, const Dynamics& dynamics
   }
   root.put("covariance", found.changes.covariance);
   root.put("field_correlation", found.changes.correlation);
-  if (scene.domain.kind == Domain::Kind::slab && !scene.profile &&
-      !has_near_endpoints(scene.request))
+  if (scene.domain.kind == Domain::Kind::slab && !has_near_endpoints(scene.request))
     write_theory(root, scene, dynamics);
 }
 
