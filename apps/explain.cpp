@@ -47,6 +47,8 @@ std::vector<Drawing> all_drawings() {
           {"focus_matrix", {"field", "light_x", "sensor_x"}},
           {"frequency", {"frequency_shift", "frequency_correlation"}},
           {"matrix", {"eigenvalue_count"}},
+          {"scattering_matrix", {"scattering_matrix"}},
+          {"depth_profile", {"map_transmittance"}},
           {"recovered_picture", {"agreement", "phased_picture"}},
           {"simulated_picture", {"recovered_picture", "true_picture"}},
           {"validation", {"deviation", "mc/intensity"}},
@@ -247,6 +249,13 @@ void print_all(const std::string& path) {
   if (!file.has_attribute("/", "program") || !file.has_attribute("/", "converged"))
     throw InputError("explain", path, "must be a result of flatspeckle");
   print_run(file);
+  if (file.has_attribute("/", "complete") && !file.attribute<bool>("/", "complete")) {
+    std::cout << "The file only contains sums, since the run was interrupted. The same command with "
+                 "--resume\ncontinues it; with --samples "
+              << number_text(file.attribute<double>("/", "samples"))
+              << " as well, it writes the results of what is done.\n";
+    return;
+  }
   print_medium(file);
   print_datasets(file);
   print_drawings(file);

@@ -93,6 +93,8 @@ class ExportTable {
   }
 
   void write(std::ostream& out) const {
+    // names come first, since NumPy takes them from the first line
+    write_row(out, [](const CsvColumn& column) { return csv_text(column.name); });
     const char* between = "# units: ";
     for (const CsvColumn& column : columns_) {
       if (column.unit.empty()) continue;
@@ -100,7 +102,6 @@ class ExportTable {
       between = ", ";
     }
     if (*between == ',') out << '\n';
-    write_row(out, [](const CsvColumn& column) { return csv_text(column.name); });
     for (std::size_t row = 0; row < number_of_values(shape_) && out; ++row)
       write_row(out, [row](const CsvColumn& column) { return column.text(row); });
   }
@@ -205,6 +206,9 @@ class ExportTable {
 ExportTable table_of(const ResultReader& file, const std::vector<std::string>& names) {
   const auto known = names_in(file);
   const std::string all = join_texts(known, " ");
+  if (known.empty())
+    throw InputError("export", file.path().string(),
+                     "contains no results: its run was interrupted; continue it with --resume");
   if (names.empty())
     throw InputError("export: must have names of datasets after the file, which has " + all);
   for (const std::string& name : names)
@@ -216,22 +220,26 @@ ExportTable table_of(const ResultReader& file, const std::vector<std::string>& n
 struct ExportValues {
   std::vector<std::string> words;
   std::string to{};
-  std::vector<std::string> select{};
-  std::int64_t nodes = 65;
+  ExportFormat format{65, {}};
 };
 
 void add_keys(Keys& keys, ExportValues& values) {
   keys.add("to", values.to,
            "File to write instead of CSV; its ending is the format. .npy: numbers of one dataset; "
            ".pfm or .exr (OpenEXR, channel Y): a picture, 32-bit floats; .png: a picture for "
-           "display; .tif: a picture or several frames, 32-bit floats, which recover and other programs read; .vtk or .npy of "
+           "display, or with --linear for other programs; .tif: a picture or several frames, "
+           "32-bit floats, which recover and other programs read; .vtk or .npy of "
            "ball_spline, radial_spline or excess: the index of a designed field");
-  keys.add("select", values.select,
+  keys.add("select", values.format.select,
            "Elements of the dataset to write, such as realization=0 delay=2: an index, from 0, for "
            "each axis that the file leaves out. Pictures of a complex dataset have its squared "
            "magnitude")
       .only_of("to");
-  keys.add("nodes", values.nodes,
+  keys.add("linear", values.format.linear,
+           "PNG of 16 bits for other programs, instead of one for display: counts are proportional "
+           "to the values, the largest is 65535, and rows are in the order of the file")
+      .only_of("to");
+  keys.add("nodes", values.format.nodes,
            "Number of points along each axis at which the index of a designed field is written")
       .from(2, 1025)
       .only_of("to");
@@ -244,11 +252,12 @@ int export_to_file(const Subcommand& command, const ExportValues& values, const 
   const std::string& to = keys.read(values.to);
   if (names.size() != 1) throw InputError("to", to, "requires the name of one dataset");
   if (is_designed_field(names.front()))
-    keys.read(values.nodes);
+    keys.read(values.format.nodes);
   else
-    keys.read(values.select);
+    keys.read(values.format.select);
+  if (std::filesystem::path(to).extension() == ".png") keys.read(values.format.linear);
   if (!command.settle()) return ExitStatus::done;
-  std::puts(export_file(result, names.front(), to, values.nodes, values.select).c_str());
+  std::puts(export_file(result, names.front(), to, values.format).c_str());
   return ExitStatus::done;
 }
 

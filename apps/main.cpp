@@ -118,6 +118,8 @@ const SubcommandEntry& subcommand_named(const std::string& word) {
 
 CallEnd run(const Arguments& arguments) {
   const std::string word = arguments.size() > 1 ? arguments[1] : "--help";
+  if (word == "help" && arguments.size() > 2)
+    return run_subcommand(subcommand_named(arguments[2]), {arguments[0], arguments[2], "--help"});
   if (word == "--help" || word == "-h" || word == "help") {
     print_usage();
     return {};

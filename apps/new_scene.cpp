@@ -87,6 +87,31 @@ object_depth = -40000         # far away on the side opposite to the camera
 camera = [-0.5, 0.5]          # sines of the first and last viewing direction
 pixels = 8192
 repeats = 2                   # number of media, with one frame each
+)"},
+    {"matrix", "matrix",
+     R"(# Transmission matrices of slabs that repeat: open channels, focusing, memory effect.
+width = 40.3                  # the period, in wavelengths; it sets the number of channels
+depth = 10
+scatterer = "tm"              # dielectric cylinders, E along the axis
+radius = 0.25
+index = "1.5"
+count = 200                   # number of cylinders; each placement has new positions
+samples = 20                  # placements
+)"},
+    {"tissue", "reflectance",
+     R"(# Diffuse light at distances from a beam on tissue, and its decorrelation by moving scatterers.
+length_unit = "mm"
+wavelength = "785nm"          # in vacuum
+depth = 60
+scatterer = "hg"
+mu_s = 10
+mu_a = 0.02
+g = 0.9
+medium_index = 1.4            # the surface reflects; outside_index is 1
+distances = [5, 10, 20, 30]
+ring_width = 1
+diffusion = "1e-12 m^2/s"     # of the scatterers
+delays = ["0", "1us:1ms:21:log"]
 )"}};
 
 std::string words() {

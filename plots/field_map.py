@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Amplitude and phase of the total field on the map of `flatspeckle solve --map`, one row per illumination, or of a periodic
-cell for one channel and for the most open eigenchannel, with the outlines of the disks. Light at angle 0 travels to the
+cell for one channel and for eigenchannels, with the outlines of disks, or of spheres cut by the plane of the map. Light at angle 0 travels to the
 right. The highest 0.1 % of the amplitudes share one colour."""
 
 from lib import script, style
@@ -16,11 +16,14 @@ DPI = 118  # pictures that fill the page make large files
 
 
 def outlines(result, wavelength):
-    """Returns the outlines of the disks, to be drawn in each panel; point scatterers have none."""
+    """Returns the outlines of the scatterers in the plane of the map, to be drawn in each panel; points have none."""
     x, z, radius = (result.values(f"placement/{name}") / wavelength for name in ("x", "z", "radius"))
-    size = 2 * radius[radius > 0]
-    return {"widths": size, "heights": size, "angles": 0 * size,
-            "offsets": np.column_stack([z, x])[radius > 0]}
+    off = 0 * radius  # distances of the centres from the plane
+    if result.has("placement/y"):
+        off = result.values("placement/y") / wavelength - result.scene.get("map_y", 0) / wavelength
+    cut = radius > np.abs(off)
+    size = 2 * np.sqrt(radius**2 - off**2, where=cut, out=0 * radius)[cut]
+    return {"widths": size, "heights": size, "angles": 0 * size, "offsets": np.column_stack([z, x])[cut]}
 
 
 def panel(figure, axis, values, extent, disks, label, bar="neither", **look):
@@ -49,7 +52,8 @@ def draw_light(figure, axes, field, extent, disks):
 
 def title(result, light):
     if result.has("map_wave"):
-        return ("channel closest to normal incidence", "most open eigenchannel")[light]
+        name = "eigenchannel" if light else "channel closest to normal incidence"
+        return f"{name}, transmittance {result.values('map_transmittance')[light]:.2g}"
     return f"illumination at {style.angle(result.values('light_angle')[light])}"
 
 

@@ -11,44 +11,60 @@ NAMES = {"field_correlation": r"$C_E$", "intensity_correlation": r"$C_I$", "inte
          "reflectance": "reflectance", "transmittance": "transmittance", "squared_contrast": "$K^2$",
          "field_covariance": r"$\langle u_i u_j^*\rangle$"}
 
-
-def abscissa(result, observable):
-    """Returns the abscissa of every datum and its label: a tilt or angle, a time, or, for covariances of fields, the
-    index of the value."""
-    angle, is_pair = result.values("datum_angle"), observable == "field_covariance"
-    time = result.values("datum_time") if result.has("datum_time") else 0 * angle
-    name = "delay or exposure" if result.has("datum_time") else "tilt or angle (rad)"
-    return (np.select([is_pair, time > 0], [np.arange(len(angle)), time], angle),
-            "index of the value" if is_pair.any() else name)
+MOST_PAIRS = 6  # those of the most correlated errors
 
 
-def draw_data(axis, pulls, result):
-    observable = np.array(result.texts("datum_observable"))
-    curve, (angle, name_of_angle) = result.values("datum_curve"), abscissa(result, observable)
+def abscissas(result, observable):
+    """Returns the abscissa of every datum and its label: a tilt or angle, a time, a distance from a beam, or, for
+    covariances of fields, the index of the value."""
+    angle = result.values("datum_angle")
+    time, distance = (result.values(name) if result.has(name) else 0 * angle for name in ("datum_time", "datum_distance"))
+    curve = result.values("datum_curve")
+    moves = np.isin(curve, curve[time > 0])  # curves over times may begin at 0
+    kinds = [observable == "field_covariance", moves, distance > 0]
+    return (np.select(kinds, [np.arange(len(angle)), time, distance], angle),
+            np.select(kinds, ["index of the value", "delay or exposure", "distance"], "tilt or angle (rad)"))
+
+
+def name_of(result, observable, row):
+    """Returns the name of the curve that contains this row."""
+    distance = result.values("datum_distance")[row] if result.has("datum_distance") else 0
+    if not distance:
+        return NAMES[observable]
+    return {"reflectance": "reflectance per area", "field_correlation": "$g_1$",
+            "intensity_correlation": "$g_2 - 1$"}[observable] + (f" at {distance:g}" if observable != "reflectance" else "")
+
+
+def draw_data(columns, result, at, label):
+    """columns: for each label of an abscissa, the axes of the data and of the residuals."""
+    observable, curve = np.array(result.texts("datum_observable")), result.values("datum_curve")
     (value, error), pull, single = result.measured("measured"), result.values("pull"), []
     for number in np.unique(curve):
         rows = np.flatnonzero(curve == number)
+        axis, pulls = columns[label[rows[0]]]
         symbols = {**style.look(int(number)), "linestyle": "none"}
-        name = observable[rows[0]]
+        name = name_of(result, observable[rows[0]], rows[0])
         if len(rows) == 1:
             single.append((name, rows[0]))
             continue
-        rows = rows[np.argsort(angle[rows])]
-        axis.errorbar(angle[rows], value[rows], error[rows], **symbols, label=NAMES[name])
-        axis.plot(angle[rows], result.values("model")[rows], **style.line(int(number)))
-        pulls.plot(angle[rows], pull[rows], **symbols)
+        rows = rows[np.argsort(at[rows])]
+        axis.errorbar(at[rows], value[rows], error[rows], **symbols, label=name)
+        axis.plot(at[rows], result.values("model")[rows], **style.line(int(number)))
+        pulls.plot(at[rows], pull[rows], **symbols)
     for place, (name, row) in enumerate(single):
-        axis.text(0.97, 0.97 - 0.08 * place, f"{NAMES[name]} {value[row]:.3g}, residual {pull[row]:+.1f} errors",
+        axis.text(0.97, 0.97 - 0.08 * place, f"{name} {value[row]:.3g}, residual {pull[row]:+.1f} errors",
                   transform=axis.transAxes, ha="right", va="top", fontsize=7)
-    axis.set_ylabel("measured value")
-    axis.tick_params(labelbottom=False)
-    pulls.axhspan(-1, 1, color="0.9")
     most = 1.2 * max(2, np.abs(pull).max())
-    pulls.set(xlabel=name_of_angle, ylabel="residual / error", ylim=(-most, most),
-              xscale="log" if result.has("datum_time") else "linear")
+    for name, (axis, pulls) in columns.items():
+        axis.tick_params(labelbottom=False)
+        axis.set_yscale("log" if name == "distance" else "linear")
+        pulls.axhspan(-1, 1, color="0.9")
+        pulls.set(xlabel=name, ylim=(-most, most), xscale="log" if name.startswith("delay") else "linear")
+        if result.has("datum_distance") and axis.get_legend_handles_labels()[1]:
+            axis.legend()
 
 
-def draw_pair(axis, result, i, j):
+def draw_pair(axis, result, i, j, columns):
     names, estimate = result.texts("parameter_name"), result.values("estimate")
     values, vectors = np.linalg.eigh(result.values("parameter_covariance")[np.ix_([j, i], [j, i])])
     for size, line in ((1, "-"), (2, "--")):  # ellipses of 1 and 2 standard errors
@@ -56,25 +72,32 @@ def draw_pair(axis, result, i, j):
         axis.plot(estimate[j] + x, estimate[i] + y, line, color=style.COLOURS[0])
     axis.plot(estimate[j], estimate[i], "+", color="k")
     axis.set(xlabel=names[j], ylabel=names[i])
-    axis.locator_params(nbins=4)
+    axis.locator_params(axis="x", nbins=4 if columns == 1 else 2)
+    axis.locator_params(axis="y", nbins=4)
 
 
 @script.plot()
 def draw(result):
     count = len(result.values("estimate"))
     pairs = [(i, j) for i in range(count) for j in range(i)]
+    correlation = np.abs(result.values("parameter_correlation"))
+    pairs = sorted(sorted(pairs, key=lambda pair: -correlation[pair])[:MOST_PAIRS])
     columns = max(1, -(-len(pairs) // 3))
     figure = plt.figure(figsize=(style.PAGE, 3.6))
-    left, right = figure.subfigures(1, 2, width_ratios=[1.6, columns])
-    data, pulls = left.subplots(2, 1, sharex=True, height_ratios=[3, 1])
-    draw_data(data, pulls, result)
+    at, label = abscissas(result, np.array(result.texts("datum_observable")))
+    names = list(dict.fromkeys(label))
+    left, right = figure.subfigures(1, 2, width_ratios=[1.6 * len(names), columns])
+    axes = left.subplots(2, len(names), sharex="col", sharey=False, height_ratios=[3, 1], squeeze=False)
+    axes[0, 0].set_ylabel("measured value")
+    axes[1, 0].set_ylabel("residual / error")
+    draw_data({name: axes[:, i] for i, name in enumerate(names)}, result, at, label)
     if not pairs:
         (value,), (error,) = result.measured("estimate")
         right.text(0.5, 0.5, f"{result.texts('parameter_name')[0]}\n{value:.4g} ± {error:.2g}", ha="center")
         return figure
     axes = np.atleast_1d(right.subplots(min(3, len(pairs)), columns)).ravel()
     for axis, (i, j) in zip(axes, pairs):
-        draw_pair(axis, result, i, j)
+        draw_pair(axis, result, i, j, columns)
     for axis in axes[len(pairs):]:
         axis.remove()
     return figure

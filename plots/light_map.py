@@ -41,9 +41,10 @@ def draw(result, arguments):
                          cmap="inferno", norm=norm, interpolation="nearest", aspect="auto")
     plane.set(xlabel=f"{right} ({length})", ylabel=f"{up} ({length})")
     plane.tick_params(direction="out", top=False, right=False)
-    figure.colorbar(image, ax=plane, label=label, extend="both", pad=0.02)
+    figure.colorbar(image, ax=plane, extend="both", pad=0.02)
     lit = row > 0
     line.errorbar(across[lit], row[lit], pictures.below(row, errors)[lit],
                   **{**style.look(0), "marker": "."})
     line.set(xlabel=f"{right} ({length})", ylabel=label, yscale="log", title=where)
+    line.set_ylim(bottom=max(line.get_ylim()[0], row[lit].min() / 3))  # errors may be as large as the values
     return figure

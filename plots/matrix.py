@@ -21,7 +21,9 @@ def draw(result):
         left.errorbar(result.values("eigenvalue"), result.values("filtered_eigenvalue_count"),
                       result.values("filtered_eigenvalue_count_error"), **style.symbols(2), label="within the aperture")
         left.plot(result.values("eigenvalue"), result.values("filtered_law_count"), **style.line(3), label="filtered law")
-    left.set(xlabel=r"transmission eigenvalue $\tau$", ylabel="number in each bin", yscale="log", ylim=(0.02, None))
+    counts = result.values("eigenvalue_count")
+    left.set(xlabel=r"transmission eigenvalue $\tau$", ylabel="number in each bin", yscale="log",
+             ylim=(0.3 * counts[counts > 0].min(), None))
     left.legend()
     for number, (name, label) in enumerate(CURVES.items()):
         right.errorbar(result.values("tilt"), result.values(name), result.values(f"{name}_error"), **style.symbols(number),

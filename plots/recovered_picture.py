@@ -16,16 +16,21 @@ def read_picture(path):
     return picture if picture.ndim == 2 else picture[..., :3].mean(axis=-1)
 
 
-def show(axis, picture, title, bar):
-    axis.imshow(picture, cmap="gray", vmin=0)
-    axis.plot([1, 1 + bar], [len(picture) - 2] * 2, color="w", linewidth=2)
-    axis.text(1, len(picture) - 3, f"{bar} pixels", color="w", fontsize=6, va="bottom")
+def show(axis, picture, title, bar, size, width):
+    """Draws a picture of this width in the middle of a black square. Size and width are in pixels of the camera."""
+    half = np.array([width, width * picture.shape[0] / picture.shape[1]]) / 2
+    axis.imshow(picture, cmap="gray", vmin=0,
+                extent=(size / 2 - half[0], size / 2 + half[0], size / 2 + half[1], size / 2 - half[1]))
+    axis.plot([1, 1 + bar], [size - 2] * 2, color="w", linewidth=2)
+    axis.text(1, size - 3, f"{bar} pixels", color="w", fontsize=6, va="bottom")
     axis.set_title(title, fontsize=7)
-    axis.set(xticks=[], yticks=[])
+    axis.set(xticks=[], yticks=[], facecolor="k", xlim=(0, size), ylim=(size, 0))
 
 
 @script.plot(needs={"agreement": "run recover with frames that are pictures"}, dpi=150)
 @script.option("--truth", metavar="PICTURE", help="NPY or PNG file of the true picture")
+@script.option("--truth_width", type=float, metavar="PIXELS",
+               help="width of the true picture in pixels of the camera (default: its own number of pixels)")
 def draw(result, arguments):
     truth = read_picture(arguments.truth) if arguments.truth else None
     panels = 3 + (truth is not None)
@@ -38,10 +43,10 @@ def draw(result, arguments):
     picture = result.dataset("phased_picture")[0]
     bar = max(length for length in BAR if length <= len(picture) / 3)
     agreement = result.values("agreement")[0]
-    show(axes[1], picture, f"recovered, agreement {agreement:.2f}", bar)
+    size = len(picture)
+    show(axes[1], picture, f"recovered, agreement {agreement:.2f}", bar, size, size)
     if truth is not None:
-        margin = max(0, len(picture) - len(truth))  # so that both pictures have the same scale
-        show(axes[2], np.pad(truth, margin // 2), "truth", bar)
+        show(axes[2], truth, "truth", bar, size, arguments.truth_width or truth.shape[1])
     axes[-1].semilogy(result.values("phase_iteration"), result.dataset("phase_residual")[0], **style.line(0))
     axes[-1].set(xlabel="iteration", ylabel="residual")
     return figure

@@ -12,6 +12,7 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator, NullFormatter
 
 DPI = 150  # pictures that fill the page make large files
 MOST = 1.0  # largest relative error on the colour scale
+DECADES = 4  # of relative errors on the colour scale, at most
 
 
 def relative_error(result):
@@ -78,10 +79,11 @@ def draw(results, arguments):
     figure, axes = plt.subplots(len(results), 2, squeeze=False,
                                 figsize=(style.PAGE, len(results) * height))
     # The colour scale of errors begins at the power of ten below the smallest errors in all results, without those of
-    # pixels that are exact, such as of an even background.
+    # pixels that are exact, such as of an even background, but at most DECADES below the largest.
     found = np.concatenate([relative_error(result).compressed() for result in results])
     best = np.quantile(found[found > 0], 0.01) if np.any(found > 0) else MOST
-    errors = LogNorm(min(10 ** np.floor(np.log10(best)), MOST / 10), MOST, clip=True)
+    least = np.clip(10 ** np.floor(np.log10(best)), MOST / 10**DECADES, MOST / 10)
+    errors = LogNorm(least, MOST, clip=True)
     quantities = [pictures.quantity(result) for result in results]  # all results with the same quantity share a scale
     norms = {name: pictures.tone([result.values("image") for result, own in zip(results, quantities)
                                   if own == name], arguments.tone, arguments.decades)

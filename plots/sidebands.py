@@ -21,7 +21,8 @@ def draw_rings(axis, result, over):
     axis.errorbar(result.values(over)[lit], 1 - value[lit], error[lit], color=style.look(0)["color"],
                   marker=style.look(0)["marker"])
     unit = "rad" if over == "angle" else pictures.length_name(result)
-    axis.set(xlabel=f"{over} ({unit})", ylabel="tagged fraction", ylim=(0, None))
+    axis.set(xlabel=f"{over} ({unit})", ylabel="tagged fraction")
+    axis.set_ylim(0, 1.05 * axis.get_ylim()[1])
 
 
 @script.plot(one_run=True, needs={"mean_sideband": "requires a result of render with tag_wavelength"})

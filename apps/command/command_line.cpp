@@ -174,10 +174,13 @@ std::string line_of(const Arguments& arguments) {
   return text;
 }
 
-/// Alternatives to keys that some subcommands do not have.
+/// Alternatives to keys that some subcommands do not have, and to names of other renderers.
 const std::map<std::string, std::string> alternatives{
     {"medium_index",
-     "; pictures of speckle behind reflecting faces: image --dimension 3 with one point"}};
+     "; pictures of speckle behind reflecting faces: image --dimension 3 with one point"},
+    {"spp", "; see samples_per_pixel of render"},
+    {"fov", "; see field_of_view of render, the full angle of a row in radians"},
+    {"envmap", "; see environment_map of render"}};
 
 std::string unknown_key(const Keys& keys, const std::string& name) {
   if (gone.contains(name)) return name + ": unknown key" + gone.at(name);

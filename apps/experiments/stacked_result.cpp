@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <functional>
+#include <iostream>
 #include <map>
 #include <utility>
 
@@ -334,7 +335,13 @@ class Stack {
     std::erase_if(stacked_, hangs);
     std::stable_partition(stacked_.begin(), stacked_.end(),
                           [](const Surveyed* set) { return set->first.is_scale; });
-    if (!left_out.empty()) ResultGroup(file_, stacked_table).attribute("left_out", left_out);
+    if (left_out.empty()) return;
+    ResultGroup(file_, stacked_table).attribute("left_out", left_out);
+    std::erase_if(left_out, [](const std::string& name) { return has_row(stacked_table, name); });
+    if (left_out.empty()) return;
+    std::cerr << "note: left out, because points lack them or have them in other shapes:";
+    for (const std::string& name : left_out) std::cerr << ' ' << name;
+    std::cerr << '\n';
   }
 
   void begin(const Surveyed& set) {

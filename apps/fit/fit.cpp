@@ -61,6 +61,7 @@ mc::FitStep step_of(ByteReader& record) {
 /// Values of the keys of the subcommand `fit`.
 struct FitKeys {
   mc::MovingSpec medium;
+  mc::DetectorValues detectors;
   std::vector<std::string> free, measurements, compare;
   std::int64_t starts = 2, most_iterations = 60;
   std::string method = "auto";
@@ -130,6 +131,10 @@ void add_keys(Keys& keys, FitKeys& values) {
   add_space_keys(keys, values.medium);
   add_faces_keys(keys, values.medium);
   mc::add_motion_keys(keys, values.medium);
+  keys.group("Detectors", "measurements at distances");
+  mc::add_keys(keys, values.detectors);
+  mc::add_scale_key(keys, values.medium);
+  keys.group("");
   add_output_key(keys, values.run);
   add_seed_key(keys, values.run, "Random seed of a Monte Carlo model");
   keys.add("seconds", values.run.seconds,
@@ -235,24 +240,32 @@ bool is_still_slab(const mc::FitTask& task, const mc::Curve& curve) {
   return curve.scene.domain == "slab" && !(curve.moving() && flows);
 }
 
-/// Reads the keys about motion of the scatterers that the measurements require.
+/// Reads the keys about motion of the scatterers and about detectors that the measurements require.
 void read_motion(const Keys& keys, const FitKeys& values, const mc::FitTask& task) {
   const auto curves = mc::curves_of(task);
-  const bool contrast = std::ranges::any_of(curves, [](const mc::Curve& curve) {
-    return curve.observable == mc::Observable::squared_contrast;
-  });
+  const auto any = [&](mc::Observable observable, bool at_distances) {
+    return std::ranges::any_of(curves, [&](const mc::Curve& curve) {
+      return curve.observable == observable && curve.distances.has_value() == at_distances;
+    });
+  };
+  using mc::Observable;
+  const bool contrast =
+      any(Observable::squared_contrast, false) || any(Observable::intensity_correlation, true);
   const mc::MovingSpec& medium = values.medium;
-  const std::pair<const double&, bool> rows[] = {{medium.diffusion, task.moving()},
-                                                 {medium.velocity_x, task.moving()},
-                                                 {medium.velocity_z, task.moving()},
-                                                 {medium.shear, task.moving()},
-                                                 {medium.beta, contrast}};
+  const std::pair<const double&, bool> rows[] = {
+      {medium.diffusion, task.moving()},
+      {medium.velocity_x, task.moving()},
+      {medium.velocity_z, task.moving()},
+      {medium.shear, task.moving()},
+      {medium.beta, contrast},
+      {medium.detector_scale, any(Observable::reflectance, true)}};
   for (const auto& [member, of_use] : rows) {
     if (of_use)
       keys.read(member);
     else if (is_free(task, keys.name(member)))
       throw InputError("free", keys.name(member),
-                       "cannot be determined: requires measurements with delays or exposures");
+                       "cannot be determined: requires measurements with delays or exposures, or "
+                       "reflectances at distances for detector_scale");
   }
 }
 
@@ -266,6 +279,10 @@ std::optional<mc::PathSettings> paths_of(const Keys& keys, const FitKeys& values
                                [&](const mc::Curve& curve) { return is_still_slab(task, curve); });
   });
   if (method == "transport" || (method == "auto" && slabs)) return std::nullopt;
+  if (task.at_distances())
+    throw InputError("method", method,
+                     "values at distances require method = transport and domain = slab, without "
+                     "flow of the scatterers");
   return mc::PathSettings{session.seed(), session.threads(), keys.read(values.model_share),
                           keys.read(values.run.seconds), keys.read(values.trust_paths)};
 }
@@ -277,7 +294,7 @@ mc::FitTask task_of(const Keys& keys, const FitKeys& values, const Session& sess
   task.most_iterations = static_cast<int>(keys.read(values.most_iterations));
   task.free = mc::read_free_parameters(keys.required(values.free), values.medium);
   for (const std::string& path : keys.required(values.measurements))
-    task.measurements.push_back(read_measurement(path, keys, values.medium));
+    task.measurements.push_back(read_measurement(path, keys, values.medium, values.detectors));
   read_motion(keys, values, task);
   task.paths = paths_of(keys, values, task, session);
   check_depths(task);

@@ -101,6 +101,20 @@ void print_neglected(const mc::FitTask& task, const mc::MediumFit& fit) {
   std::puts("");
 }
 
+/// Prints the intervals of two standard errors by the profile of chi^2.
+void print_intervals(const mc::FitTask& task, const mc::MediumFit& fit) {
+  std::puts("chi^2 is not quadratic: judge by these intervals (chi^2 + 4), not by the errors");
+  const auto line = [](const std::string& name, double low, double high) {
+    std::printf("%-26s %12.6g to %-12.6g\n", name.c_str(), low, high);
+  };
+  for (std::size_t i = 0; i < task.free.size(); ++i) {
+    const auto j = static_cast<Index>(i);
+    line(task.free[i].key, fit.low[j], fit.high[j]);
+  }
+  for (const mc::Derived& one : fit.derived)
+    if (one.name == "reduced_scattering") line(one.name, one.low, one.high);
+}
+
 void print_parameters(const mc::FitTask& task, const mc::MediumFit& fit) {
   std::printf("%-26s %12s %10s\n", "parameter", "value", "error");
   for (std::size_t i = 0; i < task.free.size(); ++i) {
@@ -111,6 +125,7 @@ void print_parameters(const mc::FitTask& task, const mc::MediumFit& fit) {
   for (const mc::Derived& one : fit.derived)
     if (std::ranges::find(task.free, one.name, &mc::FreeParameter::key) == task.free.end())
       std::printf("%-26s %12.6g %10.2g\n", one.name.c_str(), one.value, one.error);
+  if (!fit.is_quadratic) print_intervals(task, fit);
 }
 
 }  // namespace

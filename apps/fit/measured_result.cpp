@@ -137,6 +137,10 @@ Contents contents_of(const ResultReader& file) {
     found.observed.push_back(observed(file, Observable::reflectance, "light_angle"));
     found.observed.push_back(observed(file, Observable::transmittance, "light_angle"));
   }
+  if (file.has("distance_reflectance"))
+    throw InputError("measurement", file.path().string(),
+                     "has numerical errors instead of measurement errors: give a table with the "
+                     "columns distance, reflectance and error");
   if (found.observed.empty())
     throw InputError("measurement", file.path().string(),
                      "must contain field_correlation over tilts or delays, squared_contrast, "
@@ -357,9 +361,11 @@ mc::Measurement measurement_of_result(const std::string& path, const Keys& fit_k
 }
 
 mc::Measurement read_measurement(const std::string& path, const Keys& fit_keys,
-                                 const mc::MovingSpec& medium) {
-  mc::Measurement found = path.ends_with(".h5") ? measurement_of_result(path, fit_keys, medium)
-                                                : measurement_of_table(path, medium);
+                                 const mc::MovingSpec& medium,
+                                 const mc::DetectorValues& detectors) {
+  mc::Measurement found = path.ends_with(".h5")
+                              ? measurement_of_result(path, fit_keys, medium)
+                              : measurement_of_table(path, fit_keys, medium, detectors);
   check_sizes(found);
   return found;
 }

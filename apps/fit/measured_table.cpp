@@ -34,10 +34,18 @@ Observable observable_of(const std::string& path, const Table& table) {
 }
 
 /// Variable of a table over which its values are given as a curve.
-enum class CurveAxis { none, tilt, delay, exposure };
-const std::vector<std::string> axis_words = {"", "tilt", "delay", "exposure"};
+enum class CurveAxis { none, tilt, delay, exposure, distance };
+const std::vector<std::string> axis_words = {"", "tilt", "delay", "exposure", "distance"};
+
+/// Whether the values are those of detectors at distances from a beam.
+bool is_at_distances(const Table& table) {
+  return table.has("distance");
+}
 
 CurveAxis axis_of(const Table& table, Observable observable) {
+  if (is_at_distances(table) && observable == Observable::reflectance) return CurveAxis::distance;
+  if (is_at_distances(table) && observable <= Observable::intensity_correlation)
+    return CurveAxis::delay;
   if (observable == Observable::squared_contrast) return CurveAxis::exposure;
   if (observable > Observable::intensity_correlation) return CurveAxis::none;
   return table.has("delay") ? CurveAxis::delay : CurveAxis::tilt;
@@ -47,12 +55,15 @@ CurveAxis axis_of(const Table& table, Observable observable) {
 void check_columns(const std::string& path, const Table& table, Observable observable,
                    CurveAxis axis) {
   const std::string covariance = "covariance_";
+  const bool distances = is_at_distances(table) && observable <= Observable::reflectance &&
+                         observable != Observable::intensity;
   for (const std::string& name : table.names()) {
-    const bool known = name == "error" || name == "light_angle" || name == "depth" ||
-                       name.starts_with(covariance) ||
+    const bool known = name == "error" || name.starts_with(covariance) ||
                        name == mc::observable_words[static_cast<std::size_t>(observable)] ||
-                       (name == "view_angle" && !mc::is_flux(observable)) ||
-                       name == axis_words[static_cast<std::size_t>(axis)];
+                       name == axis_words[static_cast<std::size_t>(axis)] ||
+                       (distances ? name == "distance"
+                                  : name == "light_angle" || name == "depth" ||
+                                        (name == "view_angle" && !mc::is_flux(observable)));
     if (!known)
       throw InputError("measurement", path, "column " + name + ": is not used here; remove it");
   }
@@ -94,15 +105,17 @@ Eigen::MatrixXd covariance_of(const std::string& path, const Table& table) {
 }
 
 /// Groups consecutive rows of a table into curves. A new curve begins where the depth changes; for
-/// correlations over tilts and times, also where the light or the view changes, and for intensities
-/// where the light changes.
+/// correlations over tilts and times, also where the light, the view or the distance changes, and
+/// for intensities where the light changes.
 class CurvesOfRows {
  public:
+  /// detectors: one for each row of values at distances, else none.
   CurvesOfRows(const Table& table, Observable observable, CurveAxis axis,
-               const mc::MovingSpec& medium)
+               const mc::MovingSpec& medium, std::optional<mc::DistanceRequest> detectors)
       : observable_(observable),
         axis_(axis),
         medium_(medium),
+        detectors_(std::move(detectors)),
         lights_(column_or(table, "light_angle", 0)),
         views_(column_or(table, "view_angle", 0)),
         at_(axis == CurveAxis::none
@@ -127,6 +140,8 @@ class CurvesOfRows {
  private:
   bool continues_curve(std::size_t row) const {
     if (depths_[row] != depths_[row - 1]) return false;
+    if (axis_ == CurveAxis::distance) return true;
+    if (detectors_ && detectors_->detectors[row] != detectors_->detectors[row - 1]) return false;
     const bool same_light = lights_[row] == lights_[row - 1];
     if (axis_ != CurveAxis::none) return same_light && views_[row] == views_[row - 1];
     return observable_ != Observable::intensity || same_light;
@@ -140,6 +155,11 @@ class CurvesOfRows {
     if (!mc::is_flux(observable_)) curve.scene.light_angles = {lights_[row]};
     if (observable_ == Observable::intensity) curve.scene.view_angles.clear();
     if (axis_ == CurveAxis::tilt) curve.scene.covariance = "memory_effect";
+    if (detectors_) {
+      curve.scene.light_angles = {0};
+      curve.distances = detectors_;
+      curve.distances->detectors.clear();
+    }
     return curve;
   }
 
@@ -152,7 +172,8 @@ class CurvesOfRows {
   }
 
   void add(Curve& curve, std::size_t row) const {
-    list(curve).push_back(at_[row]);
+    if (axis_ != CurveAxis::distance) list(curve).push_back(at_[row]);
+    if (detectors_) curve.distances->detectors.push_back(detectors_->detectors[row]);
     curve.entries.push_back(curve.entries.size());
     curve.abscissa.push_back(at_[row]);
   }
@@ -160,20 +181,23 @@ class CurvesOfRows {
   Observable observable_;
   CurveAxis axis_;
   const mc::MovingSpec& medium_;
+  std::optional<mc::DistanceRequest> detectors_;
   std::vector<double> lights_, views_, at_, depths_;
 };
 
-void check_times(const std::string& path, CurveAxis axis, const std::vector<double>& times) {
+/// may_be_zero: whether a value at time 0 contains information.
+void check_times(const std::string& path, CurveAxis axis, const std::vector<double>& times,
+                 bool may_be_zero) {
   for (const double time : times)
-    if (!(time > 0))
+    if (!(time > 0) && !(may_be_zero && time == 0))
       throw InputError("measurement", path,
                        axis_words[static_cast<std::size_t>(axis)] + " must be positive");
 }
 
 /// Throws InputError for flux fractions outside [0, 1] and correlations outside [-1, 1], unless
 /// noise explains the excess. Such values may be meant as percentages.
-void check_values(const mc::Measurement& measured, Observable observable) {
-  if (observable == Observable::intensity) return;
+void check_values(const mc::Measurement& measured, Observable observable, CurveAxis axis) {
+  if (observable == Observable::intensity || axis == CurveAxis::distance) return;
   const bool share = observable > Observable::intensity;
   const double most_noise = share ? 0.15 : 0.5, least = share ? 0 : -1;
   for (Index i = 0; i < measured.values.size(); ++i) {
@@ -189,11 +213,12 @@ void check_values(const mc::Measurement& measured, Observable observable) {
   }
 }
 
-/// Returns the table without rows at tilt or delay 0, because their correlation is always 1 and
-/// contains no information.
+/// Returns the table without rows at tilt or delay 0, if their correlation is always 1 and contains
+/// no information.
 Table without_trivial_rows(const std::string& path, const Table& table) {
   const char* const axis = table.has("delay") ? "delay" : "tilt";
-  const bool correlations = table.has("field_correlation") || table.has("intensity_correlation");
+  const bool correlations = table.has("field_correlation") ||
+                            (table.has("intensity_correlation") && !is_at_distances(table));
   if (!correlations || !table.has(axis)) return table;
   const auto at = table.column(axis);
   std::vector<std::string> names;
@@ -213,35 +238,57 @@ Table without_trivial_rows(const std::string& path, const Table& table) {
   return {path, names, columns};
 }
 
+/// Returns the medium for light at distances: in space, with faces that reflect unpolarised light.
+mc::MovingSpec in_space_of_distances(mc::MovingSpec medium) {
+  medium.dimension = 3;
+  if (medium.medium_index && !medium.polarisation) medium.polarisation = "unpolarised";
+  return medium;
+}
+
 mc::Measurement measurement_of_values(const std::string& path, const Table& table,
-                                      const mc::MovingSpec& medium) {
+                                      const Keys& fit_keys, const mc::MovingSpec& medium,
+                                      const mc::DetectorValues& detectors) {
   const Observable observable = observable_of(path, table);
   const CurveAxis axis = axis_of(table, observable);
   check_columns(path, table, observable, axis);
   if (axis != CurveAxis::none) {
     const auto at = table.column(axis_words[static_cast<std::size_t>(axis)]);
-    if (axis != CurveAxis::tilt) check_times(path, axis, {at.begin(), at.end()});
+    if (axis != CurveAxis::tilt)
+      check_times(path, axis, {at.begin(), at.end()},
+                  is_at_distances(table) && observable == Observable::intensity_correlation);
   }
   if (table.has("depth") && medium.depth)
     throw InputError("depth", *medium.depth, path + " has a column depth: leave the key out");
   mc::Measurement found;
   found.name = path;
-  found.curves = CurvesOfRows(table, observable, axis, medium).curves();
+  if (is_at_distances(table)) {
+    const auto at = table.column("distance");
+    found.curves =
+        CurvesOfRows(table, observable, axis, in_space_of_distances(medium),
+                     mc::make_detectors(fit_keys, detectors, "measurement = " + path + ", distance",
+                                        {at.begin(), at.end()}))
+            .curves();
+  } else {
+    found.curves = CurvesOfRows(table, observable, axis, medium, std::nullopt).curves();
+  }
   const auto values = table.column(mc::observable_words[static_cast<std::size_t>(observable)]);
   found.values =
       Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Index>(values.size()));
   found.covariance = covariance_of(path, table);
-  check_values(found, observable);
+  check_values(found, observable, axis);
   return found;
 }
 
 }  // namespace
 
-mc::Measurement measurement_of_table(const std::string& path, const mc::MovingSpec& medium) {
+mc::Measurement measurement_of_table(const std::string& path, const Keys& fit_keys,
+                                     const mc::MovingSpec& medium,
+                                     const mc::DetectorValues& detectors) {
   const Table table = read_key_table("measurement", path);
   if (table.has("field_re")) return measurement_of_fields(path, table, medium);
   if (table.has("speckle_intensity")) return measurement_of_intensities(path, table, medium);
-  return measurement_of_values(path, without_trivial_rows(path, table), medium);
+  return measurement_of_values(path, without_trivial_rows(path, table), fit_keys, medium,
+                               detectors);
 }
 
 }  // namespace flatspeckle::apps

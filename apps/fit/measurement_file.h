@@ -4,6 +4,7 @@
 
 #include "core/keys/csv.h"
 #include "core/keys/keys.h"
+#include "mc/distance/detector_keys.h"
 #include "mc/fit/task/measurement.h"
 
 namespace flatspeckle::apps {
@@ -12,13 +13,16 @@ namespace flatspeckle::apps {
 /// wavelength, lights, views, tilts, delays and exposures. A table (CSV) has one column named after
 /// an observable, and standard errors in a column `error` or a covariance matrix in the columns
 /// covariance_1, covariance_2 ... Optional columns are light_angle and view_angle (default 0),
-/// tilt, delay or exposure, and depth (default: the depth given to the fit). fit_keys: keys of the
-/// fit; medium: values of these keys. Throws InputError.
+/// tilt, delay or exposure, distance from a beam, and depth (default: the depth given to the fit).
+/// fit_keys: keys of the fit; medium, detectors: values of these keys. Throws InputError.
 mc::Measurement read_measurement(const std::string& path, const Keys& fit_keys,
-                                 const mc::MovingSpec& medium);
+                                 const mc::MovingSpec& medium,
+                                 const mc::DetectorValues& detectors);
 
 /// Read a measurement from a table (CSV) and from a result file (HDF5).
-mc::Measurement measurement_of_table(const std::string& path, const mc::MovingSpec& medium);
+mc::Measurement measurement_of_table(const std::string& path, const Keys& fit_keys,
+                                     const mc::MovingSpec& medium,
+                                     const mc::DetectorValues& detectors);
 mc::Measurement measurement_of_result(const std::string& path, const Keys& fit_keys,
                                       const mc::MovingSpec& medium);
 

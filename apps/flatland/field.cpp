@@ -208,6 +208,13 @@ void print_summary(const mc::DrawnFields& drawn, const mc::FieldSummary& summary
   std::printf("contrast %.4f +- %.2g, <u u> / <I> %.2g%+.2gi +- %.2g (Gaussian: 1 and 0)\n",
               contrast.value[0].real(), contrast.error[0], pseudo.real(), pseudo.imag(),
               circularity.error[0]);
+  const bool by_paths = drawn.plan.method == mc::FieldMethod::paths;
+  const double expected = by_paths ? std::sqrt(1 + drawn.plan.excess) : 1;
+  if (by_paths && contrast.value[0].real() > expected + 4 * contrast.error[0])
+    std::fprintf(stderr,
+                 "note: the contrast is too high: a few strong paths dominate the fields; raise "
+                 "paths_per_field, which is %llu\n",
+                 static_cast<unsigned long long>(drawn.plan.paths_per_field));
   if (grain)
     std::printf(
         "grain width %.4g +- %.2g (full width at half maximum of the intensity autocorrelation)\n",
@@ -220,7 +227,6 @@ void print_summary(const mc::DrawnFields& drawn, const mc::FieldSummary& summary
     std::puts("no grain width: it requires view_angles in equal steps of their sine");
   const Estimate& siegert = drawn.siegert;
   if (found.value.empty() || siegert.value.empty()) return;
-  const bool by_paths = drawn.plan.method == mc::FieldMethod::paths;
   const double excess = by_paths ? drawn.plan.excess : 0;
   double deviation = 0;
   for (std::size_t d = 0; d < found.value.size(); ++d) {

@@ -91,7 +91,9 @@ class MatrixExperiment : public Experiment {
 
   static void print(const wave::MatrixStatistics& found, const PlacementRule& placement) {
     const auto line = [](const char* name, const Estimate& of, const char* note = "") {
-      std::printf("%-28s %.6g +- %.2g%s\n", name, of.value[0].real(), of.error[0], note);
+      std::printf("%-28s %.6g", name, of.value[0].real());
+      if (std::isfinite(of.error[0])) std::printf(" +- %.2g", of.error[0]);
+      std::printf("%s%s\n", std::isfinite(of.error[0]) ? "" : ", of unknown error", note);
     };
     line("conductance", found.conductance);
     const bool is_poisson = placement.kind == PlacementRule::Kind::poisson && !placement.count;

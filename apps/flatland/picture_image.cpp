@@ -68,7 +68,7 @@ mc::PictureObject picture_points(const Keys& keys, const ImageKeys& values) {
   const std::string& path = keys.read(values.space.object_picture);
   const double width = keys.required(values.space.object_width),
                depth = depth_of_plane(keys, values);
-  const Frames read = read_frames("object_picture", path, {"", "picture"});
+  const Frames read = read_frames("object_picture", path, {"", "picture", true});
   const double step = width / static_cast<double>(read.columns);
   mc::PictureObject object;
   for (std::size_t row = 0; row < read.rows; ++row)

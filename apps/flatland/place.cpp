@@ -186,7 +186,8 @@ std::string csv_text(const PlacementDraw& drawing, const Placement& placement,
                      const std::string& command_line) {
   const bool disks = !drawing.radii.empty(), space = drawing.in_space();
   std::ostringstream text;
-  text << "# flatspeckle " << version() << " (" << git_commit() << "): " << command_line << "\n# "
+  // names come first, since NumPy takes them from the first line
+  text << "x,z" << (space ? ",y" : "") << (disks ? ",radius" : "") << "\n# flatspeckle " << version() << " (" << git_commit() << "): " << command_line << "\n# "
        << placement_word(drawing.kind) << ": " << drawing.count
        << (!disks  ? " points"
            : space ? " spheres"
@@ -197,7 +198,7 @@ std::string csv_text(const PlacementDraw& drawing, const Placement& placement,
   if (disks)
     text << "; packing fraction " << drawing.packing(0) << ", min_gap "
          << number_text(drawing.min_gap);
-  text << "\nx,z" << (space ? ",y" : "") << (disks ? ",radius\n" : "\n");
+  text << '\n';
   for (const auto& [position, scatterer] : placement)
     text << number_text(position.x) << ',' << number_text(position.z)
          << (space ? ',' + number_text(position.y) : "")

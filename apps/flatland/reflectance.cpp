@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <numeric>
 #include <span>
 #include <string>
 
@@ -12,6 +13,7 @@
 #include "core/session/session.h"
 #include "flatland/media/layers.h"
 #include "flatland/scene/scene_datasets.h"
+#include "mc/distance/detector_keys.h"
 #include "mc/distance/distance_job.h"
 #include "mc/distance/flow_plan.h"
 #include "mc/jobs/delay_results.h"
@@ -60,6 +62,13 @@ void print_rows(const char* name, const std::vector<double>& rows, std::span<con
     for (std::size_t d = 0; d < columns; ++d) std::printf(" %-10.4g", values[r * columns + d]);
     std::printf("\n");
   }
+}
+
+/// Prints the mean path of the detected light in each layer.
+void print_paths(const mc::DistanceRequest& request, const mc::DistanceEstimates& found) {
+  std::vector<double> layers(found.layer_path.value.size() / request.detectors.size());
+  std::iota(layers.begin(), layers.end(), 0.0);
+  print_rows("layer: path", layers, real_parts(found.layer_path.value), request);
 }
 
 /// Prints the best detector and exposure of an instrument. counts_photons: whether it has photon
@@ -123,24 +132,8 @@ class ReflectanceExperiment : public Experiment {
         .positive()
         .unit("length")
         .swept();
-    keys.add("detector_radius", detector_radius_, "Radius of the detectors, which are disks")
-        .positive()
-        .unit("length")
-        .only_of("detectors without ring_width");
-    keys.add("ring_width", ring_width_,
-             "Width of the detectors, which are rings around the beam; distances are to its middle")
-        .positive()
-        .unit("length")
-        .only_of("detectors without detector_radius");
-    keys.add("numerical_aperture", request_.numerical_aperture,
-             "Numerical aperture of the detectors: sine of the largest angle of detected light, "
-             "times the index outside")
-        .positive();
-    keys.add("source_radius", request_.source_radius,
-             "Radius of the beam, which is uniform (0: a beam without extent)")
-        .not_negative()
-        .unit("length");
-    add_length_unit_key(keys, request_.length_unit);
+    mc::add_keys(keys, detectors_);
+    add_length_unit_key(keys, length_unit_);
     mc::add_keys(keys, instrument_values_);
     keys.group("Motion");
     mc::add_keys(keys, dynamics_);
@@ -154,10 +147,11 @@ class ReflectanceExperiment : public Experiment {
   void read(const Keys& keys) override {
     read_transport(keys, methods_, spec_, run_);
     stop_ = both_batches(methods_.tolerance);
-    request_.detectors = detectors(keys);
-    keys.read(request_.numerical_aperture);
+    if (keys.read(distances_).empty())
+      throw InputError("distances: required, such as distances = 10 20 30");
+    request_ = mc::make_detectors(keys, detectors_, "distances", distances_);
     request_.gradient = keys.read(gradient_);
-    keys.read(request_.length_unit);
+    request_.length_unit = keys.read(length_unit_);
     request_.dynamics = mc::make_dynamics(keys, dynamics_, spec_, length_unit(keys));
     const mc::Motion& motion = request_.dynamics.motion;
     if (motion.velocity != Vec{} || motion.shear != 0)
@@ -169,7 +163,7 @@ class ReflectanceExperiment : public Experiment {
     if (instrument_) {
       mc::set_flow(*instrument_, *scene_);
       request_.gradient = true;
-      if (request_.dynamics.exposure.beta == 1) request_.dynamics.exposure.beta = instrument_->beta;
+      if (!keys.given(dynamics_.beta)) request_.dynamics.exposure.beta = instrument_->beta;
     }
     mc::check_delays(*scene_, request_.dynamics.delays, motion);
     inputs_ = inputs_text(*scene_) + inputs_text(keys);
@@ -194,31 +188,12 @@ class ReflectanceExperiment : public Experiment {
   }
 
  private:
-  std::vector<mc::DistanceDetector> detectors(const Keys& keys) const {
-    using Detector = mc::DistanceDetector;
-    keys.read(distances_);
-    if (distances_.empty()) throw InputError("distances: required, such as distances = 10 20 30");
-    const auto radius = keys.read(detector_radius_), width = keys.read(ring_width_);
-    if (radius.has_value() == width.has_value())
-      throw InputError("detector_radius, ring_width: give exactly one of them");
-    const double source = keys.read(request_.source_radius);
-    std::vector<Detector> found;
-    for (const double distance : distances_) {
-      found.push_back({radius ? Detector::Kind::disk : Detector::Kind::ring, distance,
-                       radius ? *radius : *width});
-      if (!(found.back().nearest() > source))
-        throw InputError("distances", distance,
-                         "the detector must not overlap the beam: it requires a larger distance, "
-                         "or a smaller detector or source_radius");
-    }
-    return found;
-  }
-
   void write(ResultFile& file, const GroupedSums& sums, bool prints) const {
     const auto found = mc::distance_estimates(request_, sums);
     const mc::Dynamics& dynamics = request_.dynamics;
     if (prints) {
       print_distances(request_, found);
+      if (gradient_) print_paths(request_, found);
       print_rows("delay: g1", dynamics.delays, real_parts(found.correlation.value), request_);
       print_rows("exposure: K^2", dynamics.exposure.times, real_parts(found.contrast.value),
                  request_);
@@ -243,7 +218,8 @@ class ReflectanceExperiment : public Experiment {
   mc::DynamicsValues dynamics_;
   mc::DistanceRequest request_;
   std::vector<double> distances_;
-  std::optional<double> detector_radius_, ring_width_;
+  mc::DetectorValues detectors_;
+  std::optional<double> length_unit_;
   bool gradient_ = false;
   mc::InstrumentValues instrument_values_;
   std::optional<mc::Instrument> instrument_;

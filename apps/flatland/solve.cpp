@@ -11,11 +11,11 @@
 #include "apps/command/experiment.h"
 #include "apps/flatland/map_settings.h"
 #include "apps/flatland/own_places.h"
+#include "apps/flatland/solve_places.h"
 #include "apps/flatland/solver_keys.h"
 #include "apps/flatland/space_solve.h"
 #include "apps/results/wavelengths.h"
 #include "core/error.h"
-#include "core/keys/csv.h"
 #include "core/keys/keys.h"
 #include "core/keys/number_text.h"
 #include "core/numbers/blas.h"
@@ -45,6 +45,7 @@ struct SolveKeys : SolverKeys {
   SpectrumSettings spectrum;
   std::string cluster;
   std::optional<double> t_matrix_gap, period;
+  std::vector<std::int64_t> map_eigenchannels = {0};
 };
 
 void add_solve_keys(Keys& keys, SolveKeys& values) {
@@ -71,6 +72,11 @@ void add_solve_keys(Keys& keys, SolveKeys& values) {
       .positive()
       .unit("length");
   add_period_phase_key(keys, values);
+  keys.add("map_eigenchannels", values.map_eigenchannels,
+           "Transmission eigenchannels whose fields are mapped, beside light at normal incidence: 0 "
+           "is the most open")
+      .from(0, 1e6)
+      .only_of("period with map");
   keys.group("Clusters");
   keys.add("t_matrix_gap", values.t_matrix_gap,
            "Also write the T-matrix of the whole placement, for sources at least this far from the "
@@ -81,42 +87,6 @@ void add_solve_keys(Keys& keys, SolveKeys& values) {
            "Result file with a T-matrix: a copy of its cluster is placed at each position of "
            "placement")
       .file();
-}
-
-[[noreturn]] void refuse_bulk(const SceneSpec& spec) {
-  throw InputError("scatterer", spec.scatterer,
-                   std::string("is a bulk phase function; must be point, soft, hard") +
-                       (spec.dimension == 3 ? " or penetrable" : ", tm or te"));
-}
-
-/// Reads a placement from the file that `placement` names. Throws InputError if keys are given that
-/// describe random placements.
-Placement placement_of_file(const Keys& keys, const SceneSpec& spec) {
-  const Scatterer scatterer = make_scatterer(keys, spec);
-  if (scatterer.is_bulk()) refuse_bulk(spec);
-  const std::string& path = *keys.read(spec.placement);
-  try {
-    keys.refuse_unread();
-  } catch (const InputError& error) {
-    throw InputError(std::string(error.what()) + " (the placement comes from " + path + ')');
-  }
-  Placement placement = read_placement(path, scatterer, spec.dimension == 3);
-  const Table table = read_csv(path);
-  if (table.has("radius")) {
-    keys.disregard(spec.radius);
-    keys.disregard(spec.diameter);
-  }
-  if (table.has("index_re")) keys.disregard(spec.index);
-  return placement;
-}
-
-Placement drawn_placement(const SceneSpec& spec, const Scene& scene, std::uint64_t seed) {
-  if (scene.domain.kind == Domain::Kind::slab)
-    throw InputError("domain", spec.domain, "must be box for the exact solver");
-  if (!scene.medium.has_scatterers) refuse_bulk(spec);
-  if (spec.dimension == 3) require_uniform_space(scene);
-  RandomStream random(seed, static_cast<std::uint64_t>(Stream::placement), 0);
-  return draw_placement(scene, random);
 }
 
 std::string plan_of(const wave::WaveSolution& solution, const std::string& map) {
@@ -152,17 +122,6 @@ Sensors sensors_of(const Keys& keys, const SceneSpec& spec) {
   return sensors;
 }
 
-/// Checks that the refractive index comes only from index_table. Throws InputError if it is also
-/// given by the placement file or the key `index`, or if no scatterer has an index.
-void require_index_from_table(const SceneSpec& spec, const Placement& placement) {
-  if (spec.index) throw InputError("index_table, index: give only one of them");
-  if (has_own_places(spec) && read_csv(*spec.placement).has("index_re"))
-    throw InputError("index_table: " + *spec.placement +
-                     " also has indices (index_re); leave one out");
-  if (std::ranges::none_of(placement, &Scatterer::is_penetrable, &PlacedScatterer::scatterer))
-    throw InputError("index_table: requires tm or te cylinders");
-}
-
 wave::WaveSolution solved(const SolveKeys& values, const Placement& placement, double wavelength,
                           const std::optional<wave::MapGrid>& grid,
                           const std::vector<Vec>& sensors) {
@@ -172,20 +131,6 @@ wave::WaveSolution solved(const SolveKeys& values, const Placement& placement, d
     for (const Vec& point : wave::map_sensors(*grid, placement)) options.sensors.push_back(point);
   return wave::solve(placement, 2 * std::numbers::pi / wavelength, values.spec.light_angles,
                      options);
-}
-
-/// Prints a note if a refractive index is so small that it may be meant as n - 1, which is given in
-/// tables for gases or index contrasts.
-void note_thin_index(const Placement& placement) {
-  // gas bubbles in solids have an index, relative to the solid, down to about this value
-  constexpr double rare = 0.8;
-  const auto thin = std::ranges::find_if(placement, [](const PlacedScatterer& placed) {
-    const Complex index = placed.scatterer.index;
-    return placed.scatterer.is_penetrable() && index.imag() == 0 && index.real() < rare;
-  });
-  if (thin != placement.end())
-    std::cerr << "note: index " << number_text(thin->scatterer.index.real())
-              << " is far below the index of the surroundings, 1; if it is n - 1, give n instead\n";
 }
 
 /// Solves for all wavelengths, one after the other, and returns the fields as a spectrum.
@@ -228,24 +173,6 @@ struct GradedWork {
   std::optional<wave::GradedFields> fields;
   CovarianceRequest request;
 };
-
-/// Returns a scene without bulk properties: an infinite layer with reflecting faces that contains
-/// these point scatterers. Throws InputError if a scatterer is not a point of the layer.
-Scene layer_around(const Faces& faces, const SceneSpec& spec, const Placement& placement) {
-  Scene scene;
-  scene.faces = faces;
-  refuse_unpolarised(scene);
-  scene.wavelength = spec.inside_wavelength();
-  scene.k = 2 * std::numbers::pi / scene.wavelength;
-  if (placement.empty() || placement.front().scatterer.is_disk())
-    throw InputError("medium_index", *spec.medium_index, "requires at least one point scatterer");
-  const auto [low, high] = bounds_of(placement, &PlacedScatterer::position);
-  scene.domain = Domain{Domain::Kind::slab, high.x - low.x, *spec.depth};
-  if (!(low.z > 0 && high.z < scene.domain.depth))
-    throw InputError("placement", *spec.placement, "must have all z between 0 and depth");
-  scene.request = intensity_request(spec.light_angles, far_views(spec.view_angles));
-  return scene;
-}
 
 class SolveExperiment : public OneShot {
  public:
@@ -326,11 +253,21 @@ class SolveExperiment : public OneShot {
     refuse(values_.spectrum.wavelengths, "; use sweep --of solve --vary wavelength=...");
   }
 
+  void read_eigenchannels(const Keys& keys) {
+    const double k = 2 * std::numbers::pi / values_.spec.wavelength;
+    const auto channels = wave::channels_of(k, {*values_.period, values_.period_phase}).size();
+    for (const std::int64_t number : keys.read(values_.map_eigenchannels))
+      if (static_cast<std::size_t>(number) >= channels)
+        throw InputError("map_eigenchannels", number,
+                         "must be less than the number of channels, " + std::to_string(channels));
+  }
+
   void read_periodic(const Keys& keys) {
     const SceneSpec& spec = values_.spec;
     refuse_keys_of_one_light(keys);
     keys.read(values_.period_phase);
     grid_ = map_grid(keys, values_.map, keys.read(spec.wavelength));
+    if (grid_) read_eigenchannels(keys);
     if (has_own_places(spec)) {
       placement_ = placement_of_file(keys, spec);
       return;
@@ -494,7 +431,8 @@ class SolveExperiment : public OneShot {
     write_scene(file);
     std::string map_method;
     if (grid_)
-      map_method = wave::write_cell_map(file, placement, k, images, found, options, *grid_);
+      map_method = wave::write_cell_map(file, placement, k, images, found,
+                                        values_.map_eigenchannels, options, *grid_);
     std::ostringstream plan;
     plan << placement_.size() << " scatterers a period, " << found.channels.size()
          << " channels on each side, " << found.unknowns << " unknowns: " << found.method

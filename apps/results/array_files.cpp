@@ -7,7 +7,6 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
-#include <png.h>
 #include <sstream>
 #include <tiffio.h>
 
@@ -37,14 +36,6 @@ double big_endian(double value) {
   return value;
 }
 
-/// Returns the value that 99.5 % of the pixels do not exceed, or the largest if that is 0.
-double white_of(std::vector<double> values) {
-  const auto place = values.begin() +
-                     static_cast<std::ptrdiff_t>(0.995 * (static_cast<double>(values.size()) - 1));
-  std::nth_element(values.begin(), place, values.end());
-  return *place > 0 ? *place : *std::max_element(values.begin(), values.end());
-}
-
 }  // namespace
 
 void write_npy(const std::filesystem::path& path, const NumberArray& array) {
@@ -72,23 +63,6 @@ void write_pfm(const std::filesystem::path& path, const GreyPicture& picture) {
   std::ostringstream header;
   header << "Pf\n" << picture.columns << ' ' << picture.rows << "\n-1.0\n";
   write_bytes(path, header.str(), pixels.data(), pixels.size() * sizeof(float));
-}
-
-void write_png(const std::filesystem::path& path, const GreyPicture& picture) {
-  constexpr double gamma = 2.2, top = 255;
-  const double white = white_of(picture.values);
-  std::vector<png_byte> pixels;
-  for (const double value : picture.values) {
-    const double light = white > 0 ? std::clamp(value / white, 0.0, 1.0) : 0;
-    pixels.push_back(static_cast<png_byte>(std::lround(top * std::pow(light, 1 / gamma))));
-  }
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = static_cast<png_uint_32>(picture.columns);
-  image.height = static_cast<png_uint_32>(picture.rows);
-  image.format = PNG_FORMAT_GRAY;
-  if (png_image_write_to_file(&image, path.c_str(), 0, pixels.data(), 0, nullptr) == 0)
-    throw IoError("cannot write " + path.string() + ": " + image.message);
 }
 
 void write_tiff(const std::filesystem::path& path, const NumberArray& array) {

@@ -29,8 +29,12 @@ void write_pfm(const std::filesystem::path& path, const GreyPicture& picture);
 /// OpenEXR of one channel Y, 32-bit floats without compression.
 void write_exr(const std::filesystem::path& path, const GreyPicture& picture);
 /// PNG of 8 bits for display. Values are divided by the one that 99.5 % of the pixels do not
-/// exceed, cut off at 1, and raised to the power 1/2.2.
-void write_png(const std::filesystem::path& path, const GreyPicture& picture);
+/// exceed, cut off at 1, and raised to the power 1/2.2. Returns the note that the file contains
+/// about this.
+std::string write_display_png(const std::filesystem::path& path, const GreyPicture& picture);
+/// PNG of 16 bits whose counts are proportional to the values; the largest value has 65535. Returns
+/// the note that the file contains about the factor. Throws InputError for negative values.
+std::string write_linear_png(const std::filesystem::path& path, const GreyPicture& picture);
 /// TIFF of 32-bit floats: one page for each frame. array: [row][column] or [frame][row][column].
 void write_tiff(const std::filesystem::path& path, const NumberArray& array);
 /// Legacy VTK file of structured points. array: [x][y][z]; origin, spacing: three numbers each.

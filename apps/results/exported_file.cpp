@@ -168,6 +168,18 @@ std::string export_field(const std::string& result, const std::string& dataset,
          text_of(origin) + ", grid_spacing = " + text_of(spacing);
 }
 
+/// Writes a picture for display, or one with its rows in the order of the file for other programs.
+/// Returns a description of its pixels.
+std::string export_png(const ResultReader& file, const std::string& dataset, ChosenPart part,
+                       const std::filesystem::path& to, const ExportFormat& format) {
+  if (!format.linear)
+    return write_display_png(to, picture_of(file, dataset, std::move(part))) +
+           "; for numbers add --linear, or write .tif or .npy";
+  require_axes(dataset, part, part.array.shape.size() == 2, "two axes, to be written as a picture");
+  take_intensities(part.array);
+  return write_linear_png(to, {part.array.shape[0], part.array.shape[1], part.array.values});
+}
+
 }  // namespace
 
 bool is_designed_field(const std::string& dataset) {
@@ -175,16 +187,16 @@ bool is_designed_field(const std::string& dataset) {
 }
 
 std::string export_file(const std::filesystem::path& result, const std::string& dataset,
-                        const std::filesystem::path& to, std::int64_t nodes,
-                        const std::vector<std::string>& select) {
+                        const std::filesystem::path& to, const ExportFormat& format) {
   const std::string ending = to.extension().string();
   const bool is_array = ending == ".npy" || ending == ".vtk";
-  if (is_array && is_designed_field(dataset)) return export_field(result, dataset, to, nodes);
+  if (is_array && is_designed_field(dataset))
+    return export_field(result, dataset, to, format.nodes);
   if (ending == ".vtk")
     throw InputError("to", to.string(),
                      "is for fields of design: ball_spline, radial_spline, excess");
   const ResultReader file(result);
-  const auto part = [&] { return part_of(file, dataset, select); };
+  const auto part = [&] { return part_of(file, dataset, format.select); };
   if (ending == ".npy")
     write_npy(to, part().array);
   else if (ending == ".pfm")
@@ -192,7 +204,7 @@ std::string export_file(const std::filesystem::path& result, const std::string& 
   else if (ending == ".exr")
     write_exr(to, picture_of(file, dataset, part()));
   else if (ending == ".png")
-    write_png(to, picture_of(file, dataset, part()));
+    return to.string() + ": " + dataset + ", " + export_png(file, dataset, part(), to, format);
   else if (ending == ".tif" || ending == ".tiff")
     write_tiff(to, frames_of(dataset, part()));
   else

@@ -26,7 +26,7 @@ std::string signature(const std::filesystem::path& path) {
   return bytes;
 }
 
-enum class Format { png, tiff, npy, pfm, hdf5, text };
+enum class Format { png, tiff, npy, pfm, exr, hdf5, other, text };
 
 Format format_of(const std::filesystem::path& path) {
   const std::string bytes = signature(path);
@@ -38,7 +38,10 @@ Format format_of(const std::filesystem::path& path) {
   if (begins("\x93NUMPY")) return Format::npy;
   for (const std::string& pfm : {"Pf\n"s, "PF\n"s, "Pf "s, "PF "s})
     if (begins(pfm)) return Format::pfm;
+  if (begins("\x76\x2f\x31\x01")) return Format::exr;
   if (begins("\x89HDF")) return Format::hdf5;
+  for (const char* other : {"#?RADIAN", "#?RGBE", "\xff\xd8\xff"})  // the last is JPEG
+    if (begins(other)) return Format::other;
   return Format::text;
 }
 
@@ -123,13 +126,18 @@ Frames read_text(const std::string& key, const std::filesystem::path& path,
 Frames read(const std::string& key, const std::filesystem::path& path, const FrameFormat& how) {
   switch (format_of(path)) {
     case Format::png:
-      return read_png(path);
+      return read_png(path, how.allows_display);
     case Format::tiff:
       return read_tiff(path);
     case Format::npy:
       return read_npy(file_bytes(path));
     case Format::pfm:
       return read_pfm(file_bytes(path));
+    case Format::exr:
+      return read_exr(file_bytes(path));
+    case Format::other:
+      throw std::runtime_error(std::string("is in a format that is not read: ") +
+                               accepted_pictures);
     case Format::hdf5:
       return guarded_read(path, [&] { return read_hdf5(path, how.dataset); });
     case Format::text:

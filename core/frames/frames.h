@@ -31,6 +31,9 @@ struct Frames {
 struct FrameFormat {
   std::string dataset;           ///< HDF5: name of the dataset; empty if the file has only one
   std::string axes = "unknown";  ///< CSV: columns (one line of pixels in each) or picture
+  /// Whether PNG files of `export` for display are read, whose pixels are not proportional to the
+  /// values that were exported
+  bool allows_display = false;
 };
 
 /// Adds the keys of FrameFormat.
@@ -55,8 +58,9 @@ auto naming_frames(const std::string& path, const F& f) {
   }
 }
 
-/// Reads frames from PNG (grey, 8 or 16 bit), TIFF (grey, one or several pages), NPY,
-/// PFM (grey), HDF5 or CSV.
+/// Reads frames from PNG (8 or 16 bit), TIFF (one or several pages), NPY, PFM, uncompressed
+/// OpenEXR, HDF5 or CSV. Colour channels must be equal, except in OpenEXR, of which the luminance
+/// is read.
 /// The content of the file tells its format. Throws InputError, which names the key and the file,
 /// for files that are damaged, that have colours, or that can be read in several ways.
 Frames read_frames(const std::string& key, const std::filesystem::path& path,

@@ -1,8 +1,10 @@
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
 #include <tiffio.h>
+#include <utility>
 
 #include "core/frames/frame_formats.h"
 
@@ -24,9 +26,11 @@ Page page_of(TIFF* tiff) {
   TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &page.samples);
   TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &page.kind);
   TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &page.photometric);
-  if (page.samples != 1 || page.photometric == PHOTOMETRIC_RGB ||
-      page.photometric == PHOTOMETRIC_PALETTE)
-    throw std::runtime_error("has colours: give a grey picture, as the camera counts");
+  std::uint16_t planes = PLANARCONFIG_CONTIG;
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_PLANARCONFIG, &planes);
+  const bool is_apart = page.samples > 1 && planes != PLANARCONFIG_CONTIG;
+  if (page.samples < 1 || page.samples > 4 || is_apart || page.photometric == PHOTOMETRIC_PALETTE)
+    throw std::runtime_error("has colours in planes or a palette: convert it to grey");
   if (page.photometric == PHOTOMETRIC_MINISWHITE)
     throw std::runtime_error("is inverted: 0 must be black");
   if (TIFFIsTiled(tiff) != 0) throw std::runtime_error("is tiled, which is not supported");
@@ -54,6 +58,12 @@ ValueAt reader_of(const Page& page) {
   throw std::runtime_error("must have 8, 16 or 32 bit per pixel, or floating point");
 }
 
+/// Returns the largest value of a page: 1 for floating point.
+double largest_of(const Page& page) {
+  if (page.kind == SAMPLEFORMAT_IEEEFP) return 1;
+  return std::exp2(page.kind == SAMPLEFORMAT_UINT ? page.bits : page.bits - 1) - 1;
+}
+
 }  // namespace
 
 Frames read_tiff(const std::filesystem::path& path) {
@@ -68,17 +78,20 @@ Frames read_tiff(const std::filesystem::path& path) {
     if (frames.rows == 0) {
       frames.rows = page.height;
       frames.columns = page.width;
-      if (page.kind == SAMPLEFORMAT_UINT && page.bits < 32)
-        frames.full_scale = page.bits == 8 ? 255 : 65535;
+      if (page.kind == SAMPLEFORMAT_UINT && page.bits < 32) frames.full_scale = largest_of(page);
     }
     if (page.height != frames.rows || page.width != frames.columns)
       throw std::runtime_error("has pages of different sizes");
+    std::vector<double> values;
     std::vector<std::uint8_t> row(static_cast<std::size_t>(TIFFScanlineSize(tiff.get())));
     for (std::uint32_t y = 0; y < page.height; ++y) {
       if (TIFFReadScanline(tiff.get(), row.data(), y) < 0)
         throw std::runtime_error("is a damaged TIFF file");
-      for (std::size_t x = 0; x < page.width; ++x) frames.values.push_back(value(row.data(), x));
+      for (std::size_t x = 0; x < std::size_t{page.width} * page.samples; ++x)
+        values.push_back(value(row.data(), x));
     }
+    const auto grey = grey_pixels(std::move(values), page.samples, largest_of(page));
+    frames.values.insert(frames.values.end(), grey.begin(), grey.end());
   } while (TIFFReadDirectory(tiff.get()) != 0);
   return frames;
 }

@@ -224,7 +224,11 @@ void Key::check() const {
     for (const std::string& path : texts)
       if (access(path.c_str(), R_OK) != 0)
         throw InputError(name_, path, errno == ENOENT ? "no such file" : std::strerror(errno));
-  if (exactly_ > 0 && texts.size() != exactly_) throw InputError(name_, shown(), accepted());
+  if (exactly_ > 0 && texts.size() != exactly_) {
+    const bool is_twice = texts.size() == 2 * exactly_;
+    const std::string twice = "; given twice (" + std::to_string(texts.size()) + " numbers)";
+    throw InputError(name_, shown(), accepted() + (is_twice ? twice : ""));
+  }
   if (each_ > 0 && texts.size() % each_ != 0) throw InputError(name_, shown(), accepted());
   if (is_number())
     for (const std::string& text : texts) check(*read_number(text), text);

@@ -128,6 +128,19 @@ double lift(double size) {
   return size > 0 && size < small ? std::ldexp(1.0, std::min(-std::ilogb(size), most)) : 1;
 }
 
+/// Calls use(group, theta without this group) for each group.
+template <class Use>
+void leave_out_each(const GroupedSums& sums, const Estimator& theta, const Use& use) {
+  const double samples = sums.total_samples();
+  const std::vector<Complex> total = sums.total();
+  std::vector<Complex> without(total.size());
+  for (std::size_t group = 0; group < sums.groups(); ++group) {
+    const auto left_out = sums.group_sums(group);
+    for (std::size_t i = 0; i < total.size(); ++i) without[i] = total[i] - left_out[i];
+    use(group, theta(samples - sums.group_samples(group), without));
+  }
+}
+
 }  // namespace
 
 Estimate controlled_jackknife(const GroupedSums& sums, Estimator theta,
@@ -235,8 +248,7 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta) {
 
 Estimate jackknife(const GroupedSums& sums, const Estimator& theta, double few) {
   const double samples = sums.total_samples();
-  const std::vector<Complex> total = sums.total();
-  Estimate estimate{theta(samples, total), {}};
+  Estimate estimate{theta(samples, sums.total()), {}};
   const std::size_t size = estimate.value.size(), groups = sums.groups();
   estimate.rare.resize(size);
   if (groups < 2) {
@@ -250,12 +262,8 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta, double few) 
   std::vector<Complex> sum_d(size), sum_mean(size);
   std::vector<double> sum_dd(size), sum_d4(size), lifted(size);
   for (std::size_t i = 0; i < size; ++i) lifted[i] = lift(std::abs(estimate.value[i]));
-  std::vector<Complex> without(total.size());
-  for (std::size_t group = 0; group < groups; ++group) {
-    const auto left_out = sums.group_sums(group);
-    for (std::size_t i = 0; i < total.size(); ++i) without[i] = total[i] - left_out[i];
+  leave_out_each(sums, theta, [&](std::size_t group, const std::vector<Complex>& value) {
     const double h_minus_1 = samples / sums.group_samples(group) - 1;
-    const auto value = theta(samples - sums.group_samples(group), without);
     sum_w += 1 / h_minus_1;
     for (std::size_t i = 0; i < size; ++i) {
       const Complex difference = lifted[i] * (estimate.value[i] - value[i]);
@@ -265,7 +273,7 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta, double few) 
       sum_d4[i] += dd * dd;
       sum_mean[i] += h_minus_1 / (h_minus_1 + 1) * difference;
     }
-  }
+  });
   estimate.error.resize(size);
   for (std::size_t i = 0; i < size; ++i) {
     const Complex mean = sum_mean[i];  // jackknife estimate minus theta
@@ -275,6 +283,18 @@ Estimate jackknife(const GroupedSums& sums, const Estimator& theta, double few) 
     estimate.rare[i] = is_carried_by_few(estimate, i, sum_dd[i], sum_d4[i], groups, few);
   }
   return estimate;
+}
+
+std::vector<Complex> jackknife_bias(const GroupedSums& sums, const Estimator& theta) {
+  const double samples = sums.total_samples();
+  const std::vector<Complex> all = theta(samples, sums.total());
+  std::vector<Complex> bias(all.size());
+  if (sums.groups() < 2) return bias;
+  leave_out_each(sums, theta, [&](std::size_t group, const std::vector<Complex>& value) {
+    const double share = 1 - sums.group_samples(group) / samples;
+    for (std::size_t i = 0; i < all.size(); ++i) bias[i] += share * (value[i] - all[i]);
+  });
+  return bias;
 }
 
 Estimate jackknife(const GroupedSums& sums, const EntryRange& of, double few) {

@@ -111,6 +111,10 @@ constexpr double few_groups = 24;
 /// undersampled entries.
 Estimate jackknife(const GroupedSums& sums, const Estimator& theta, double few);
 
+/// Returns by how much the mean of theta exceeds the theta of infinitely many samples, estimated by
+/// the same jackknife; 0 with fewer than two groups.
+std::vector<Complex> jackknife_bias(const GroupedSums& sums, const Estimator& theta);
+
 /// Computes the jackknife of the means of these entries. This is faster than with an Estimator,
 /// because means are linear in the sums: their errors follow directly from the means of the groups.
 Estimate jackknife(const GroupedSums& sums, const EntryRange& of, double few = few_groups);

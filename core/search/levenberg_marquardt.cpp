@@ -90,18 +90,12 @@ LeastSquaresFit levenberg_marquardt(const BoundedLeastSquares& problem, const Ve
   return at;
 }
 
-namespace {
-
-/// Step of finite differences, relative to the distance of the bounds.
-constexpr double step = 1e-3;
-
-}  // namespace
-
 std::optional<Invariant> check_derivative(const BoundedLeastSquares& problem,
                                           const LeastSquaresFit& fit) {
   const VectorXd range = problem.upper - problem.lower;
   Index i = 0;
   (fit.jacobian * range.asDiagonal()).colwise().norm().maxCoeff(&i);
+  constexpr double step = 1e-3;
   const double width = step * range[i], size = fit.jacobian.col(i).norm();
   VectorXd below = fit.parameters, above = below;
   below[i] -= width;
@@ -117,7 +111,8 @@ std::optional<Invariant> check_derivative(const BoundedLeastSquares& problem,
                    rounding + 2 * bent / size};
 }
 
-MatrixXd jacobian(const BoundedLeastSquares& problem, const VectorXd& at, const VectorXd& here) {
+MatrixXd jacobian(const BoundedLeastSquares& problem, const VectorXd& at, const VectorXd& here,
+                  double step) {
   MatrixXd derivatives(here.size(), at.size());
   for (Index i = 0; i < at.size(); ++i) {
     const double range = problem.upper[i] - problem.lower[i],

@@ -50,9 +50,9 @@ Eigen::VectorXd damped_step(const BoundedLeastSquares& problem, const LeastSquar
 
 /// Returns the Jacobian of the residuals by one-sided finite differences. Each difference is taken
 /// towards the middle of the bounds, because the model may not be defined beyond them. here:
-/// residuals at the parameters `at`.
+/// residuals at the parameters `at`. step: relative to the distance of the bounds.
 Eigen::MatrixXd jacobian(const BoundedLeastSquares& problem, const Eigen::VectorXd& at,
-                         const Eigen::VectorXd& here);
+                         const Eigen::VectorXd& here, double step = 1e-3);
 
 /// Checks one column of the Jacobian of a fit, that of the parameter which the residuals determine
 /// best, against central finite differences. The limit of the invariant follows from the curvature

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <fcntl.h>
 #include <filesystem>
 #include <fstream>
@@ -155,10 +156,18 @@ void report_nothing_found(const std::string& label) {
                "standard errors of 0 are meaningless\n";
 }
 
+double largest_error(const std::map<std::string, RunState>& states) {
+  double largest = 0;
+  for (const auto& [name, state] : states)
+    if (!state.trace.relative_error.empty())
+      largest = std::max(largest, state.trace.relative_error.back());
+  return largest;
+}
+
 void report_rare(const std::vector<std::string>& estimates) {
   if (estimates.empty()) return;
   constexpr std::size_t most = 5;
-  std::cerr << "note: undersampled, with rough errors that a few strong paths dominate: ";
+  std::cerr << "note: undersampled, with rough errors that a few strong samples dominate: ";
   for (std::size_t i = 0; i < std::min(most, estimates.size()); ++i)
     std::cerr << (i == 0 ? "" : ", ") << estimates[i];
   if (estimates.size() > most) std::cerr << " and " << estimates.size() - most << " more";
@@ -448,13 +457,12 @@ int Session::finish(const std::function<void(ResultFile&)>& contents) {
   std::cout << '\n';
   if (converged_) return ExitStatus::done;
   const auto is_deterministic = [](const PlannedRun& run) { return run.job.one_by_one; };
-  if (!reached)
-    std::cout << (std::ranges::all_of(runs_, is_deterministic)
-                      ? "not converged: the error exceeds the tolerance\n"
-                  : blind_
-                      ? "not converged: no error can be estimated from equal batches; continue "
-                        "with --resume\n"
-                      : "stopped before the target error was reached; continue with --resume\n");
+  if (!reached && std::ranges::all_of(runs_, is_deterministic))
+    std::printf("not converged: the error, %.2g, exceeds the tolerance\n", largest_error(states_));
+  else if (!reached)
+    std::cout << (blind_ ? "not converged: no error can be estimated from equal batches; continue "
+                           "with --resume\n"
+                         : "stopped before the target error was reached; continue with --resume\n");
   return ExitStatus::error_not_reached;
 }
 

@@ -6,7 +6,7 @@ namespace {
 
 void read_hg(const Keys& keys, const ScattererValues& values, Scatterer& made) {
   made.g = keys.read(values.g).value_or(0);
-  read_albedo(keys, values, made);
+  read_bulk_albedo(keys, values, made);
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ Scatterer make_scatterer(const Keys& keys, const ScattererValues& values) {
     kind->read(keys, values, made);
     return made;
   }
-  read_albedo(keys, values, made);
+  read_bulk_albedo(keys, values, made);
   return made;
 }
 
@@ -75,6 +75,18 @@ void read_radius_and_index(const Keys& keys, const ScattererValues& values, Scat
 
 void read_albedo(const Keys& keys, const ScattererValues& values, Scatterer& made) {
   made.albedo = keys.read(values.albedo).value_or(1);
+}
+
+void read_bulk_albedo(const Keys& keys, const ScattererValues& values, Scatterer& made) {
+  read_albedo(keys, values, made);
+  const auto& mu_s = keys.read(values.mu_s);
+  const auto& mu_a = keys.read(values.mu_a);
+  if (mu_a && !mu_s) throw InputError(keys.name(values.mu_a), *mu_a, "requires mu_s");
+  if (!mu_s) return;
+  if (values.albedo)
+    throw InputError(keys.name(values.albedo), *values.albedo,
+                     "follows from mu_s and mu_a; leave it out");
+  made.albedo = *mu_s / (*mu_s + mu_a.value_or(0));
 }
 
 }  // namespace flatspeckle

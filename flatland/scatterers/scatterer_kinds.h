@@ -15,6 +15,7 @@ struct ScattererValues {
   double wavelength = 1;
   std::string scatterer = "point";
   std::optional<double> radius, diameter, g, albedo, phase_shift;
+  std::optional<double> mu_s, mu_a;           ///< instead of albedo and an extinction
   std::optional<std::string> index;           ///< relative to the medium around the scatterers
   std::optional<std::string> particle_index;  ///< absolute; requires medium_index
   std::optional<double> medium_index;
@@ -42,6 +43,8 @@ void require_radius(const ScattererValues& values);
 void read_radius(const Keys& keys, const ScattererValues& values, Scatterer& made);
 void read_radius_and_index(const Keys& keys, const ScattererValues& values, Scatterer& made);
 void read_albedo(const Keys& keys, const ScattererValues& values, Scatterer& made);
+/// Reads the albedo of a phase function, or mu_s and mu_a instead.
+void read_bulk_albedo(const Keys& keys, const ScattererValues& values, Scatterer& made);
 
 /// Returns the kind of a scatterer, which must not be other_bulk.
 const ScattererKind& kind_of(const Scatterer& scatterer);

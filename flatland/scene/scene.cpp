@@ -111,6 +111,10 @@ class LayerTable {
     };
     for (const Column& column : scatterer_columns) refuse(column.name, spec.*column.member);
     refuse("mu_s", spec.albedo);
+    for (const auto* coefficient : {&spec.mu_s, &spec.mu_a})
+      if (*coefficient)
+        throw InputError(keys.name(*coefficient), **coefficient,
+                         "cannot be combined with layers, whose file has the column mu_s");
     refuse("radius", spec.diameter);
     refuse("index_re", spec.index);
     refuse("index_re", spec.particle_index);
@@ -183,7 +187,9 @@ Domain make_domain(const Keys& keys, const SceneSpec& spec,
   domain.kind = keys.read(spec.domain) == "box" ? Domain::Kind::box : Domain::Kind::slab;
   domain.depth = layers ? layers->depth() : keys.required(spec.depth);
   if (domain.kind == Domain::Kind::slab) return domain;
-  domain.width = keys.required(spec.width);
+  if (!keys.read(spec.width))
+    throw InputError("width is not given: a box requires it; domain = slab is infinite in x");
+  domain.width = *spec.width;
   const double most = 1e8 * spec.wavelength;  // rounding errors of phases k r grow with the extent
   if (spec.dimension == 3) {
     if (!keys.read(spec.height))
@@ -300,7 +306,7 @@ void make_phase_of_bulk(const Keys& keys, const SceneSpec& spec, Scene& scene) {
   const auto mu_t = stated_extinction(spec, scene.domain);
   const auto density = stated_density(spec, scene.domain, scene.scatterer);
   if (!mu_t && scene.scatterer.kind != Scatterer::Kind::mie)
-    throw InputError("scatterer", spec.scatterer, "requires mean_free_path or optical_depth");
+    throw InputError("scatterer", spec.scatterer, "requires mean_free_path, optical_depth or mu_s");
   scene.medium =
       bulk_medium(scene.scatterer, make_phase(keys, spec.bulk, spec.scatterer), mu_t.value_or(0));
   if (!density) return;

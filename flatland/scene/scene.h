@@ -82,7 +82,7 @@ struct Scene {
 
 // These functions add the schema entries of the scene keys, by topic. add_keys() calls all of them.
 void add_scatterer_keys(Keys& keys, SceneSpec& spec);
-/// Adds the keys g, albedo and optical_depth, and the keys of other phase functions.
+/// Adds the keys g, albedo, mu_s, mu_a and optical_depth, and the keys of other phase functions.
 void add_bulk_keys(Keys& keys, SceneSpec& spec);
 void add_medium_keys(Keys& keys, SceneSpec& spec);
 /// Adds the keys of scenes in space, for methods that also work in three dimensions.

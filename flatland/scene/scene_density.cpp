@@ -19,7 +19,8 @@ constexpr DensityKey density_keys[] = {{"density", &SceneSpec::density},
                                        {"mean_free_path", &SceneSpec::mean_free_path},
                                        {"optical_depth", &SceneSpec::optical_depth},
                                        {"volume_fraction", &SceneSpec::volume_fraction},
-                                       {"mass_fraction", &SceneSpec::mass_fraction}};
+                                       {"mass_fraction", &SceneSpec::mass_fraction},
+                                       {"mu_s", &SceneSpec::mu_s}};
 
 /// Returns the fraction of the volume that the scatterers fill, in the plane of the area, if a key
 /// gives it.
@@ -56,7 +57,9 @@ void check_density_keys(const Keys& keys, const SceneSpec& spec, const Scatterer
         (given.empty() ? "no density is given"
                        : "the density is given more than once (" + join_texts(given, ", ") + ")") +
         ": give exactly one of count, density, volume_fraction, mass_fraction, "
-        "mean_free_path, optical_depth");
+        "mean_free_path, optical_depth, mu_s");
+  if (spec.mu_s && !(scatterer.is_bulk() && scatterer.kind != Scatterer::Kind::mie))
+    throw InputError("mu_s", *spec.mu_s, "requires a phase function, such as scatterer = hg");
   for (const auto* fraction : {&spec.volume_fraction, &spec.mass_fraction})
     if (*fraction && !(scatterer.radius > 0))
       throw InputError(keys.name(*fraction), **fraction,
@@ -67,6 +70,7 @@ void check_density_keys(const Keys& keys, const SceneSpec& spec, const Scatterer
 }
 
 std::optional<double> stated_extinction(const SceneSpec& spec, const Domain& domain) {
+  if (spec.mu_s) return *spec.mu_s + spec.mu_a.value_or(0);
   if (spec.mean_free_path) return 1 / *spec.mean_free_path;
   if (spec.optical_depth) return *spec.optical_depth / domain.depth;
   return std::nullopt;

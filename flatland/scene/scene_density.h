@@ -18,7 +18,7 @@ void remove_densities(SceneSpec& spec);
 /// is a fraction of volume or mass.
 void check_density_keys(const Keys& keys, const SceneSpec& spec, const Scatterer& scatterer);
 
-/// Returns mu_t if mean_free_path or optical_depth is given, otherwise nullopt.
+/// Returns mu_t if mean_free_path, optical_depth or mu_s is given, otherwise nullopt.
 std::optional<double> stated_extinction(const SceneSpec& spec, const Domain& domain);
 /// Returns the number of scatterers per area (in space per volume) if keys determine it without the
 /// extinction of a scatterer, otherwise nullopt. A mass fraction w is converted to the volume

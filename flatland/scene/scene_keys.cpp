@@ -51,6 +51,14 @@ void add_bulk_keys(Keys& keys, SceneSpec& spec) {
       .from(0, 1)
       .only_of("points and phase functions of the bulk")
       .swept();
+  keys.add("mu_s", spec.mu_s, "Scattering coefficient, instead of albedo and a density")
+      .positive()
+      .unit("1/length")
+      .only_of("phase functions of the bulk");
+  keys.add("mu_a", spec.mu_a, "Absorption coefficient (default 0)")
+      .not_negative()
+      .unit("1/length")
+      .only_of("mu_s");
 }
 
 void add_medium_keys(Keys& keys, SceneSpec& spec) {

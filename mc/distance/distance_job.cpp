@@ -385,6 +385,14 @@ Refined distance_solution(const Scene& slab, const DistanceRequest& request, dou
   return DistanceSolution(slab, request, tolerance).found();
 }
 
+std::vector<Complex> distance_values(const Scene& slab, const DistanceRequest& request,
+                                     int degree) {
+  blas_single_thread();
+  const DistanceProblem problem(slab, optics_of(slab), request, degree);
+  const Numbers all = problem.all_frequencies();
+  return problem.values(problem.spectra(problem.all_delays(), all), all);
+}
+
 BatchJob distance_job(const Scene& slab, const DistanceRequest& request, double tolerance) {
   const auto* profile = slab.profile.get();
   const std::size_t layers = profile != nullptr ? profile->materials().size() : 1,

@@ -31,11 +31,30 @@ struct DistanceRequest {
 enum class LayerCoefficient { mu_a, mu_s, diffusion };
 inline constexpr int layer_coefficients = 3;
 
+/// Indices of the values of distance_solution().
+struct DistanceLayout {
+  std::size_t detectors, delays, parts;
+
+  DistanceLayout(const DistanceRequest& request, std::size_t values)
+      : detectors(request.detectors.size()),
+        delays(request.dynamics.delays.size() + 1),
+        parts(values / (detectors * delays)) {}
+  /// delay: 0, or one more than the index of a delay of the request. part: 0, or that of a
+  /// derivative.
+  std::size_t operator()(std::size_t part, std::size_t delay, std::size_t detector) const {
+    return (part * delays + delay) * detectors + detector;
+  }
+};
+
 /// Solves for the field correlation on the detectors by expansion in spherical harmonics at each
 /// transverse frequency. values: [delay][detector], the first delay being 0; then, with
 /// derivatives, [layer][coefficient][delay][detector]. They are fractions of the incident power.
 /// The degree of the harmonics is increased until two successive solutions agree.
 Refined distance_solution(const Scene& slab, const DistanceRequest& request, double tolerance);
+
+/// Returns the values of distance_solution() for harmonics up to one fixed degree: a smooth function
+/// of the medium.
+std::vector<Complex> distance_values(const Scene& slab, const DistanceRequest& request, int degree);
 
 /// Returns distance_solution() as a job (two_batches()).
 BatchJob distance_job(const Scene& slab, const DistanceRequest& request, double tolerance);
@@ -50,6 +69,7 @@ struct DistanceEstimates {
   /// Derivatives of the power and of g1 by the coefficients, [layer][coefficient][detector] and
   /// [layer][coefficient][delay][detector].
   Estimate power_gradient, correlation_gradient;
+  Estimate layer_path;  ///< mean path of the detected light in a layer: [layer][detector]
 };
 DistanceEstimates distance_estimates(const DistanceRequest& request, const GroupedSums& sums);
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "core/result/result_group.h"
@@ -8,19 +9,6 @@
 namespace flatspeckle::mc {
 
 namespace {
-
-/// Positions of the values of distance_solution().
-struct DistanceLayout {
-  std::size_t detectors, delays, parts;
-
-  DistanceLayout(const DistanceRequest& request, std::size_t values)
-      : detectors(request.detectors.size()),
-        delays(request.dynamics.delays.size() + 1),
-        parts(values / (detectors * delays)) {}
-  std::size_t at(std::size_t part, std::size_t delay, std::size_t detector) const {
-    return (part * delays + delay) * detectors + detector;
-  }
-};
 
 /// Returns the estimates of f(values, layout, list), which appends its results to the list.
 template <typename F>
@@ -38,6 +26,7 @@ using List = std::vector<Complex>;
 }  // namespace
 
 DistanceEstimates distance_estimates(const DistanceRequest& request, const GroupedSums& sums) {
+  constexpr double rounding = 1e-12;
   const Dynamics& dynamics = request.dynamics;
   DistanceEstimates found;
   const auto estimate = [&](const auto& f) { return estimated(request, sums, f); };
@@ -50,12 +39,13 @@ DistanceEstimates distance_estimates(const DistanceRequest& request, const Group
   });
   const auto correlation = [](const List& values, const DistanceLayout& of, std::size_t delay,
                               std::size_t detector) {
-    return values[of.at(0, delay, detector)] / values[of.at(0, 0, detector)];
+    return values[of(0, delay, detector)] / values[of(0, 0, detector)];
   };
   found.correlation = estimate([&](const List& values, const DistanceLayout& of, List& list) {
     for (std::size_t t = 1; t < of.delays; ++t)
       for (std::size_t d = 0; d < of.detectors; ++d) list.push_back(correlation(values, of, t, d));
   });
+  for (double& error : found.correlation.error) error = std::max(error, rounding);
   found.intensity = estimate([&](const List& values, const DistanceLayout& of, List& list) {
     for (std::size_t t = 1; t < of.delays; ++t)
       for (std::size_t d = 0; d < of.detectors; ++d)
@@ -72,16 +62,21 @@ DistanceEstimates distance_estimates(const DistanceRequest& request, const Group
   });
   found.power_gradient = estimate([](const List& values, const DistanceLayout& of, List& list) {
     for (std::size_t part = 1; part < of.parts; ++part)
-      for (std::size_t d = 0; d < of.detectors; ++d) list.push_back(values[of.at(part, 0, d)]);
+      for (std::size_t d = 0; d < of.detectors; ++d) list.push_back(values[of(part, 0, d)]);
+  });
+  found.layer_path = estimate([](const List& values, const DistanceLayout& of, List& list) {
+    for (std::size_t by_mu_a = 1; by_mu_a < of.parts; by_mu_a += layer_coefficients)
+      for (std::size_t d = 0; d < of.detectors; ++d)
+        list.push_back(-values[of(by_mu_a, 0, d)] / values[of(0, 0, d)]);
   });
   found.correlation_gradient =
       estimate([&](const List& values, const DistanceLayout& of, List& list) {
         for (std::size_t part = 1; part < of.parts; ++part)
           for (std::size_t t = 1; t < of.delays; ++t)
             for (std::size_t d = 0; d < of.detectors; ++d)
-              list.push_back((values[of.at(part, t, d)] -
-                              correlation(values, of, t, d) * values[of.at(part, 0, d)]) /
-                             values[of.at(0, 0, d)]);
+              list.push_back((values[of(part, t, d)] -
+                              correlation(values, of, t, d) * values[of(part, 0, d)]) /
+                             values[of(0, 0, d)]);
       });
   return found;
 }
@@ -105,6 +100,8 @@ const DatasetTable distance_table{
       "coefficient of a layer: 0: mu_a; 1: mu_s; 2: factor on the diffusion constant"},
      {"power_gradient", Data::estimate, "layer_number coefficient distance", "",
       "derivative of detected_power by a coefficient of a layer"},
+     {"layer_path", Data::estimate, "layer_number distance", "length",
+      "mean path of the detected light in a layer (partial path length)"},
      {"correlation_gradient", Data::estimate, "layer_number coefficient delay distance", "",
       "derivative of distance_correlation by a coefficient of a layer"},
      {"invariants/reciprocity", Data::invariant, "distance", "1",
@@ -135,6 +132,7 @@ void write_distance(ResultFile& file, const DistanceRequest& request,
               found.power_gradient.value.size() / (layer_coefficients * request.detectors.size()));
   root.number("coefficient", layer_coefficients);
   root.put("power_gradient", found.power_gradient);
+  root.put("layer_path", found.layer_path);
   if (!dynamics.delays.empty()) root.put("correlation_gradient", found.correlation_gradient);
 }
 

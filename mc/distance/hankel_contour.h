@@ -18,6 +18,7 @@ struct DistanceDetector {
 
   double nearest() const { return distance - (kind == Kind::disk ? extent : extent / 2); }
   double area() const;
+  bool operator==(const DistanceDetector&) const = default;
 };
 
 /// Inverse Hankel transform from transverse frequencies q to powers on detectors. The integral over

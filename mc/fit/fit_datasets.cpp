@@ -19,6 +19,10 @@ const DatasetTable fit_table{
          {"estimate", Data::estimate, "parameter", "", "the value that fits best"},
          {"lower_bound", Data::real, "parameter", "", "least value that is accepted"},
          {"upper_bound", Data::real, "parameter", "", "largest value that is accepted"},
+         {"interval_low", Data::real, "parameter", "",
+          "lower end of the interval of two standard errors: chi_squared, minimised over the other "
+          "parameters, exceeds its minimum by 4"},
+         {"interval_high", Data::real, "parameter", "", "upper end of this interval"},
          {"known", Data::count, "parameter", "1",
           "1 if the error is less than a quarter of the distance between the bounds, else 0"},
          {"parameter_covariance", Data::real, "parameter parameter_2", "",
@@ -35,6 +39,9 @@ const DatasetTable fit_table{
          {"derived", Data::numbers, "", "1", "number of the derived quantity"},
          {"derived_name", Data::text, "derived", "", "name of the derived quantity"},
          {"derived_value", Data::estimate, "derived", "", "value of the derived quantity"},
+         {"derived_low", Data::real, "derived", "",
+          "least value at the ends of the intervals of the parameters"},
+         {"derived_high", Data::real, "derived", "", "largest value at these ends"},
          {"measurement", Data::numbers, "", "1", "number of the measurement"},
          {"measurement_name", Data::text, "measurement", "", "file of the measurement"},
          {"datum", Data::numbers, "", "1", "number of the measured value"},
@@ -47,6 +54,8 @@ const DatasetTable fit_table{
           "tilt; view angle of intensities; light angle of powers; 0 for delays and exposures"},
          {"datum_time", Data::real, "datum", "1",
           "delay or exposure, all in the same unit of time; 0 for other values"},
+         {"datum_distance", Data::real, "datum", "length",
+          "distance of the detector from the beam; 0 for other values"},
          {"measured", Data::estimate, "datum", "", "measured value"},
          {"model", Data::real, "datum", "", "value for the medium that fits best"},
          {"pull", Data::real, "datum", "1", "measured - model, in standard errors"},
@@ -83,6 +92,10 @@ void write_parameters(const ResultGroup& root, const FitTask& task, const Medium
   root.put("estimate", row_major(fit.estimates), row_major(fit.errors));
   root.put("lower_bound", column(task.free, &FreeParameter::lower));
   root.put("upper_bound", column(task.free, &FreeParameter::upper));
+  if (fit.low.size() > 0) {
+    root.put("interval_low", row_major(fit.low));
+    root.put("interval_high", row_major(fit.high));
+  }
   root.put("known", std::vector<std::uint64_t>(fit.known.begin(), fit.known.end()));
   root.put("parameter_covariance", row_major(fit.covariance));
   if (task.paths) {
@@ -95,21 +108,27 @@ void write_parameters(const ResultGroup& root, const FitTask& task, const Medium
   root.put("derived_name", column(fit.derived, &Derived::name));
   root.put("derived_value", column(fit.derived, &Derived::value),
            column(fit.derived, &Derived::error));
+  if (fit.low.size() > 0) {
+    root.put("derived_low", column(fit.derived, &Derived::low));
+    root.put("derived_high", column(fit.derived, &Derived::high));
+  }
 }
 
 void write_data(const ResultGroup& root, const FitTask& task, const MediumFit& fit) {
   std::vector<std::uint64_t> measurements, curves;
   std::vector<std::string> observables;
-  std::vector<double> angles, times, values, errors;
+  std::vector<double> angles, times, distances, values, errors;
   std::uint64_t measurement = 0, number = 0;
   for (const Measurement& one : task.measurements) {
     for (const Curve& curve : one.curves) {
-      for (const double at : curve.abscissa) {
+      for (std::size_t i = 0; i < curve.abscissa.size(); ++i) {
+        const double at = curve.abscissa[i];
         measurements.push_back(measurement);
         curves.push_back(number);
         observables.push_back(observable_words[static_cast<std::size_t>(curve.observable)]);
-        angles.push_back(curve.moving() ? 0 : at);
+        angles.push_back(curve.moving() || curve.distances ? 0 : at);
         times.push_back(curve.moving() ? at : 0);
+        distances.push_back(curve.distances ? curve.distances->detectors[i].distance : 0);
       }
       ++number;
     }
@@ -127,6 +146,7 @@ void write_data(const ResultGroup& root, const FitTask& task, const MediumFit& f
   root.put("datum_observable", observables);
   root.put("datum_angle", angles);
   if (task.moving()) root.put("datum_time", times);
+  if (task.at_distances()) root.put("datum_distance", distances);
   root.put("measured", values, errors);
   root.put("model", row_major(fit.model));
   root.put("pull", row_major(fit.standardized_residuals));
@@ -154,8 +174,8 @@ std::string percent(double share) {
 
 std::string degeneracy(const FitTask& task, const MediumFit& fit) {
   constexpr double much = 3;
-  const std::set<std::string> of_motion = {"diffusion", "velocity_x", "velocity_z", "shear",
-                                           "beta"};
+  const std::set<std::string> beside_medium = {"diffusion", "velocity_x", "velocity_z", "shear",
+                                           "beta",      "detector_scale"};
   const Derived& joint = fit.derived.front();
   const double known = joint.error / std::abs(joint.value);
   std::string worst;
@@ -163,7 +183,7 @@ std::string degeneracy(const FitTask& task, const MediumFit& fit) {
   for (std::size_t i = 0; i < task.free.size(); ++i) {
     const auto j = static_cast<Eigen::Index>(i);
     const double error = fit.errors[j] / std::abs(fit.estimates[j]);
-    if (!(error > least) || of_motion.contains(task.free[i].key)) continue;
+    if (!(error > least) || beside_medium.contains(task.free[i].key)) continue;
     worst = task.free[i].key;
     least = error;
   }

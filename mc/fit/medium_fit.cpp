@@ -1,8 +1,10 @@
 #include "mc/fit/medium_fit.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/error.h"
+#include "core/search/profile.h"
 #include "mc/fit/model/slab_model.h"
 #include "mc/fit/task/curve_values.h"
 #include "mc/fit/task/fit_data.h"
@@ -46,20 +48,28 @@ VectorXd of_each_parameter(const FitTask& task, const VectorXd& coordinates,
   return found;
 }
 
-/// Returns the derived quantities of the medium of the first curve.
-std::vector<Derived> derived_at(const FitTask& task, const VectorXd& at,
-                                const MatrixXd& covariance) {
-  const MovingSpec& spec = task.measurements.front().curves.front().scene;
+std::vector<DerivedRow> rows_of(const FitTask& task) {
   std::vector<DerivedRow> rows;
   for (const DerivedRow& row : derived_rows)
     if (!row.of_motion || task.moving()) rows.push_back(row);
+  return rows;
+}
+
+/// Returns the values of the derived quantities of the medium of the first curve.
+VectorXd derived_values(const FitTask& task, const std::vector<DerivedRow>& rows,
+                        const VectorXd& at) {
+  const MovingSpec& spec = task.measurements.front().curves.front().scene;
+  const Medium of(with_parameters(spec, task.free, at));
+  VectorXd found(std::ssize(rows));
+  for (Index r = 0; r < found.size(); ++r) found[r] = rows[static_cast<std::size_t>(r)].value(of);
+  return found;
+}
+
+std::vector<Derived> derived_at(const FitTask& task, const VectorXd& at,
+                                const MatrixXd& covariance) {
+  const std::vector<DerivedRow> rows = rows_of(task);
   const auto count = std::ssize(rows);
-  const auto values = [&](const VectorXd& x) {
-    const Medium of(with_parameters(spec, task.free, x));
-    VectorXd found(count);
-    for (Index r = 0; r < count; ++r) found[r] = rows[static_cast<std::size_t>(r)].value(of);
-    return found;
-  };
+  const auto values = [&](const VectorXd& x) { return derived_values(task, rows, x); };
   BoundedLeastSquares as_problem = bounds_of(task.free);
   as_problem.residuals = values;
   const VectorXd here = values(at);
@@ -69,13 +79,54 @@ std::vector<Derived> derived_at(const FitTask& task, const VectorXd& at,
   std::vector<Derived> derived;
   for (Index r = 0; r < count; ++r) {
     const DerivedRow& row = rows[static_cast<std::size_t>(r)];
-    derived.push_back({row.name, row.unit, here[r], error[r]});
+    derived.push_back({row.name, row.unit, here[r], std::abs(error[r])});
   }
   return derived;
 }
 
 using Eigen::Index;
 using Eigen::VectorXd;
+
+/// Returns the step of finite differences, relative to the distance of the bounds. Light at
+/// distances is computed to nearly full precision, and its derivatives by mu_a and mu_s are so
+/// similar that they must be accurate.
+double step_of(const FitTask& task) {
+  return task.at_distances() ? 3e-5 : 1e-3;
+}
+
+/// Returns which values are positive powers at distances, which range over decades.
+std::vector<bool> powers_of(const FitTask& task, const FitData& data) {
+  std::vector<bool> found;
+  for (const Curve& curve : curves_of(task))
+    for (std::size_t i = 0; i < curve.entries.size(); ++i) {
+      const double value = data.values()[std::ssize(found)];
+      found.push_back(curve.distances && curve.observable == Observable::reflectance && value > 0);
+    }
+  return found;
+}
+
+/// Returns the problem with which the search begins if there are such powers: their residuals are
+/// differences of logarithms. Far from the best medium, chi^2 itself is nearly constant.
+BoundedLeastSquares logarithmic_problem(const FitTask& task, const SlabModel& model,
+                                        const FitData& data, const std::vector<bool>& is_power) {
+  BoundedLeastSquares problem = bounds_of(task.free);
+  problem.residuals = [&](const VectorXd& at) {
+    constexpr double least = 1e-300;
+    VectorXd found = model.values(media_at(task, at));
+    task.report();
+    for (Index i = 0; i < found.size(); ++i) {
+      const double value = data.values()[i], error = data.errors()[i];
+      found[i] = is_power[static_cast<std::size_t>(i)]
+                     ? value / error * std::log(std::max(found[i], least) / value)
+                     : (found[i] - value) / error;
+    }
+    return found;
+  };
+  problem.jacobian = [&task, values = problem](const VectorXd& at, const VectorXd& here) {
+    return jacobian(values, at, here, step_of(task));
+  };
+  return problem;
+}
 
 BoundedLeastSquares problem_of(const FitTask& task, const SlabModel& model, const FitData& data) {
   BoundedLeastSquares problem = bounds_of(task.free);
@@ -84,8 +135,8 @@ BoundedLeastSquares problem_of(const FitTask& task, const SlabModel& model, cons
     task.report(found.squaredNorm());
     return found;
   };
-  problem.jacobian = [values = problem](const VectorXd& at, const VectorXd& here) {
-    return jacobian(values, at, here);
+  problem.jacobian = [&task, values = problem](const VectorXd& at, const VectorXd& here) {
+    return jacobian(values, at, here, step_of(task));
   };
   return problem;
 }
@@ -114,16 +165,24 @@ double degrees_of_freedom(const LeastSquaresFit& fit, const FitData& data) {
 /// unless its fit is unlikely (is_likely()).
 LeastSquaresFit refined_fit(const FitTask& task, const BoundedLeastSquares& problem,
                             SlabModel& model, const FitData& data, MediumFit& fit) {
-  constexpr double share = 0.05, tolerance = 1e-3, rough = 1e-3;
+  constexpr double share = 0.05, tolerance = 1e-3, rough = 1e-3, rough_end = 1;
   const VectorXd at_first = data.errors().cwiseMax(rough * data.values().cwiseAbs());
   const auto report = [&] { task.report(); };
   model.refine(media_at(task, middle(task)), at_first, share, report);
-  auto starts = best_starts(problem, grid_of_starts(task), 3);
+  const auto is_power = powers_of(task, data);
+  std::vector<VectorXd> starts;
+  if (std::ranges::count(is_power, true) > 0) {
+    const auto begin = logarithmic_problem(task, model, data, is_power);
+    const VectorXd start = best_starts(begin, grid_of_starts(task), 1).front();
+    starts = {levenberg_marquardt(begin, start, task.most_iterations, rough_end).parameters};
+  } else {
+    starts = best_starts(problem, grid_of_starts(task), 3);
+  }
   LeastSquaresFit best =
       levenberg_marquardt(problem, starts.front(), task.most_iterations, tolerance);
   if (!(best.converged && is_likely(best.chi_squared(), degrees_of_freedom(best, data))))
     best = best_fit(problem, starts, task.most_iterations, tolerance);
-  const Resolution before = model.resolution();
+  const auto before = model.resolution();
   fit.numerical = model.refine(media_at(task, best.parameters), data.errors(), share, report);
   if (model.resolution() == before) return best;
   auto trace = std::move(best.trace);
@@ -151,6 +210,30 @@ LeastSquaresFit likeliest_fit(const FitTask& task, const BoundedLeastSquares& pr
   }
   best.converged = false;
   return best;
+}
+
+/// Sets the intervals of the parameters and of the derived quantities.
+void put_intervals(const FitTask& task, const BoundedLeastSquares& problem,
+                   const LeastSquaresFit& best, MediumFit& fit) {
+  constexpr double unlike = 0.3;  // relative difference from two standard errors
+  const auto rows = rows_of(task);
+  const double errors = std::sqrt(interval_rise);
+  fit.low = fit.high = fit.estimates;
+  for (Derived& one : fit.derived) one.low = one.high = one.value;
+  const VectorXd error = information(problem, best.jacobian).errors();
+  for (Index i = 0; i < best.parameters.size(); ++i)
+    for (const double side : {-1.0, 1.0}) {
+      const VectorXd end = profile_end(problem, best, i, side, interval_rise);
+      (side < 0 ? fit.low : fit.high)[i] = values_at(task, end)[i];
+      const double distance = std::abs(end[i] - best.parameters[i]);
+      if (std::abs(distance - errors * error[i]) > unlike * errors * error[i])
+        fit.is_quadratic = false;
+      const VectorXd derived = derived_values(task, rows, end);
+      for (std::size_t r = 0; r < rows.size(); ++r) {
+        fit.derived[r].low = std::min(fit.derived[r].low, derived[static_cast<Index>(r)]);
+        fit.derived[r].high = std::max(fit.derived[r].high, derived[static_cast<Index>(r)]);
+      }
+    }
 }
 
 }  // namespace
@@ -205,6 +288,7 @@ MediumFit fit_medium(const FitTask& task) {
   LeastSquaresFit best = refined_fit(task, problem, model, data, fit);
   if (data.has_fields()) best = likeliest_fit(task, problem, model, std::move(best), data);
   put_information(task, information(problem, best.jacobian), best.parameters, fit);
+  if (!data.has_fields()) put_intervals(task, problem, best, fit);
   fit.model = model.values(media_at(task, best.parameters));
   fit.residuals = best.residuals;
   fit.standardized_residuals = (data.values() - fit.model).cwiseQuotient(data.errors());

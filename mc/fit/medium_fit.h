@@ -11,15 +11,21 @@
 
 namespace flatspeckle::mc {
 
-/// A quantity derived from the parameters, with its error.
+/// A quantity derived from the parameters, with its error. low, high: least and largest value at
+/// the ends of the intervals of the parameters.
 struct Derived {
   std::string name, unit;
-  double value = 0, error = 0;
+  double value = 0, error = 0, low = 0, high = 0;
 };
 
 struct MediumFit {
   Eigen::VectorXd coordinates;  ///< estimates, as coordinates (FreeParameter)
   Eigen::VectorXd estimates, errors;
+  /// Intervals of the parameters in which chi^2, minimised over the others, exceeds its minimum by
+  /// less than interval_rise: two standard errors. Empty for measured fields and Monte Carlo.
+  Eigen::VectorXd low, high;
+  /// Whether these intervals differ from two standard errors.
+  bool is_quadratic = true;
   Eigen::MatrixXd covariance, correlation;
   /// Condition number of the Fisher information; infinite if a combination of the parameters is not
   /// determined.
@@ -48,6 +54,8 @@ struct MediumFit {
   /// Accepted steps of the search. They contain values of the parameters, not coordinates.
   std::vector<LeastSquaresFit::Step> trace;
 };
+
+constexpr double interval_rise = 4;
 
 /// Throws InputError if the measurements do not determine the parameters, or the scene is not
 /// valid.

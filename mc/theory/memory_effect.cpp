@@ -60,31 +60,21 @@ double intensity_products(const CovarianceRequest& request, std::span<const Comp
   return sum;
 }
 
-/// Returns by how much noise raises each C_E on average. The mean of an estimate of C_E^2 exceeds
-/// C_E^2 by the variance of C; the excess is estimated by the jackknife.
-std::vector<double> excess_by_noise(
-    const GroupedSums& sums,
-    const std::function<std::vector<Complex>(double, std::span<const Complex>)>& correlation) {
-  const std::size_t groups = sums.groups();
-  const double samples = sums.total_samples();
-  const std::vector<Complex> total = sums.total();
-  const auto all = correlation(samples, total);
-  std::vector<double> squares(all.size());  // mean excess of C_E^2
-  std::vector<Complex> without(total.size());
-  for (std::size_t group = 0; groups > 1 && group < groups; ++group) {
-    const auto left_out = sums.group_sums(group);
-    for (std::size_t i = 0; i < total.size(); ++i) without[i] = total[i] - left_out[i];
-    const double rest = samples - sums.group_samples(group);
-    const auto values = correlation(rest, without);
-    for (std::size_t move = 0; move < all.size(); ++move)
-      squares[move] += rest / samples * (std::norm(values[move]) - std::norm(all[move]));
+/// Returns by how much noise raises each C_E on average: the mean of an estimate of C_E^2 exceeds
+/// C_E^2 by the variance of C. moves: C_E of every move.
+std::vector<double> excess_by_noise(const GroupedSums& sums, const Estimator& correlation,
+                                    std::span<const Complex> moves) {
+  const auto bias = jackknife_bias(sums, [&](double samples, std::span<const Complex> total) {
+    std::vector<Complex> squares = correlation(samples, total);
+    for (Complex& square : squares) square = std::norm(square);
+    return squares;
+  });
+  std::vector<double> excess;
+  for (std::size_t move = 0; move < moves.size(); ++move) {
+    const double raised = moves[move].real(), square = raised * raised;
+    excess.push_back(raised - std::sqrt(std::clamp(square - bias[move].real(), 0.0, square)));
   }
-  for (std::size_t move = 0; move < all.size(); ++move) {
-    const double raised = all[move].real();
-    squares[move] =
-        raised - std::sqrt(std::clamp(raised * raised - squares[move], 0.0, raised * raised));
-  }
-  return squares;
+  return excess;
 }
 
 /// Returns the ranges that Correlations describes. moves: C_E of every move.
@@ -204,7 +194,7 @@ Correlations correlations(const CovarianceRequest& request, const GroupedSums& s
     return with_ranges(request, curve(samples, total));
   });
   Correlations found{part(all, 0, request.moves), {}};
-  const auto excess = excess_by_noise(sums, curve);
+  const auto excess = excess_by_noise(sums, curve, found.moves.value);
   for (std::size_t move = 0; move < request.moves; ++move)
     found.moves.error[move] = std::hypot(found.moves.error[move], excess[move]);
   for (const Range& range : ranges(request, found.moves.value)) {

@@ -17,7 +17,7 @@ from flatspeckle.result import source_of
 COLUMNS = re.compile(r"columns (\w+\b(?! [a-z])(?:(?:, | \[, )\w+\b(?! [a-z]))*)")
 DATASET = re.compile(r"HDF5 (?:file )?with (?:its dataset )?(\w+)\b(?!/)")
 TABLE = re.compile(r"\bCSV\b|\btables\b")
-PICTURES = "Files of numbers"
+PICTURES = "Square pictures"
 FRAMES = ("frames", "reference", "dark", "flat")
 FILES = re.compile(r"\bCSV\b|^Files|or a file|results of fits")
 WORDS_OR_FILES = ("placement", "structure")

@@ -8,15 +8,16 @@ import numpy as np
 
 
 def write_png(path, values):
-    """Writes a grey PNG file of 8 or 16 bit, as the type of the values states."""
-    rows, columns = values.shape
+    """Writes a PNG file of 8 or 16 bit, as the type of the values states: grey, or with a last axis of 3 or 4 channels."""
+    rows, columns, *channels = values.shape
+    colour = {(): 0, (3,): 2, (4,): 6}[tuple(channels)]
     data = values.astype(values.dtype.newbyteorder(">"))
     raw = b"".join(b"\0" + row.tobytes() for row in data)
 
     def chunk(kind, content):
         return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
 
-    header = struct.pack(">IIBBBBB", columns, rows, 8 * values.dtype.itemsize, 0, 0, 0, 0)
+    header = struct.pack(">IIBBBBB", columns, rows, 8 * values.dtype.itemsize, colour, 0, 0, 0)
     path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(raw)) + chunk(b"IEND", b""))
 
 

@@ -81,6 +81,25 @@ class BadFit(RefusingTest):
         self.write("damaged.h5", "no result")
         self.assert_refused(["damaged.h5"], "fit", free="g=0:0.5", measurement="damaged.h5", **SLAB)
 
+    def test_distances(self):
+        reflectance, decay = "distance,reflectance,error\n5,1e-3,1e-5\n9,1e-4,1e-6\n", "distance,delay,field_correlation,error\n5,0.1,0.5,0.1\n"
+        def refused(words, table=reflectance, free=("mu_a=0.001:0.1",), **keys):
+            self.refused(words, table, free, **{"depth": 100, "optical_depth": None, "mu_s": 10, "g": 0.9, "detector_radius": 1, **keys})
+        refused(["detector_radius, ring_width", "exactly one"], detector_radius=None)
+        refused(["distance = 5", "must not overlap"], detector_radius=5)
+        refused(["column distance"], "distance,transmittance,error\n5,0.5,0.1\n")
+        refused(["column light_angle"], "distance,light_angle,reflectance,error\n5,0,0.5,0.1\n")
+        refused(["delay"], "distance,field_correlation,error\n5,0.5,0.1\n")
+        refused(["delay must be positive"], decay.replace("0.1,0.5", "-0.1,0.5"))
+        refused(["values at distances", "transport"], method="mc", seed=1)
+        refused(["free = detector_scale", "cannot be determined"], decay, free=("detector_scale=0.1:10",))
+        refused(["detector_scale"], decay, detector_scale=2)
+        refused(["albedo = 0.9", "follows from mu_s"], albedo=0.9)
+        refused(["more than once (mean_free_path, mu_s)"], mean_free_path=1)
+        refused(["mu_a", "requires mu_s"], mu_s=None, mean_free_path=1)
+        refused(["mu_s = 10", "requires a phase function"], scatterer="mie", g=None, free=("radius=0.1:1",))
+        self.refused(["detector_radius", "at distances"], detector_radius=1)
+
     def test_results(self):
         slab = {"domain": "slab", "scatterer": "hg", "optical_depth": 2, "depth": 100}
         self.call("flux", **slab, method="transport", out="transport.h5")

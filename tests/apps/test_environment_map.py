@@ -1,5 +1,6 @@
 """Light from a picture of all directions: its directions, and powers by every method."""
 
+import struct
 import unittest
 
 import numpy as np
@@ -30,6 +31,23 @@ def write_pfm(path, values):
         file.write(values[::-1].astype("<f4").tobytes())
 
 
+def write_exr(path, channels):
+    """Writes an OpenEXR file of uncompressed scan lines with these channels {name: values}, in the order of names."""
+    rows, columns = next(iter(channels.values())).shape
+    window = struct.pack("<4i", 0, 0, columns - 1, rows - 1)
+    listed = b"".join(name.encode() + struct.pack("<Biiii", 0, 1 if values.dtype.itemsize == 2 else 2, 0, 1, 1)
+                      for name, values in sorted(channels.items())) + b"\0"
+    header = struct.pack("<2i", 20000630, 2)
+    for name, kind, value in (("channels", "chlist", listed), ("compression", "compression", b"\0"),
+                              ("dataWindow", "box2i", window), ("displayWindow", "box2i", window)):
+        header += f"{name}\0{kind}\0".encode() + struct.pack("<i", len(value)) + value
+    header += b"\0"
+    lines = [b"".join(values[row].tobytes() for _, values in sorted(channels.items())) for row in range(rows)]
+    places = len(header) + 8 * rows + (8 + len(lines[0])) * np.arange(rows)
+    path.write_bytes(header + places.astype("<u8").tobytes() +
+                     b"".join(struct.pack("<2i", row, len(line)) + line for row, line in enumerate(lines)))
+
+
 class EnvironmentMap(RenderTest):
     def setUp(self):
         super().setUp()
@@ -45,13 +63,17 @@ class EnvironmentMap(RenderTest):
                                 method="path", samples=400)
             np.testing.assert_allclose(found["image"], 2 * self.values[row, column], rtol=1e-12)
 
-    def test_turned_and_as_pfm(self):
+    def test_turned_and_in_other_formats(self):
         write_pfm(self.folder / "sky.pfm", self.values)
-        found = self.render(**BOX, environment_map="sky.pfm", environment_centre=[1, 0, 0],
-                            environment_up=[0, 0, 1], sensor="camera", sensor_at=[0.1, 0, 2],
-                            sensor_direction=[np.cos(0.2), -np.sin(0.2), 0.2], sensor_up=[0, 0, 1],
-                            field_of_view=0.02, pixels=[1, 1], method="path", samples=400)
-        np.testing.assert_allclose(found["image"], self.values[3, 8], rtol=1e-6)
+        write_exr(self.folder / "y.exr", {"Y": self.values.astype("<f4")})
+        write_exr(self.folder / "rgb.exr", {"B": 3 * self.values.astype("<f2"), "G": self.values.astype("<f4"),
+                                            "R": 2 * self.values.astype("<f2")})
+        for name, factor in (("sky.pfm", 1), ("y.exr", 1), ("rgb.exr", 0.7152 + 2 * 0.2126 + 3 * 0.0722)):
+            found = self.render(**BOX, environment_map=name, environment_centre=[1, 0, 0],
+                                environment_up=[0, 0, 1], sensor="camera", sensor_at=[0.1, 0, 2],
+                                sensor_direction=[np.cos(0.2), -np.sin(0.2), 0.2], sensor_up=[0, 0, 1],
+                                field_of_view=0.02, pixels=[1, 1], method="path", samples=400)
+            np.testing.assert_allclose(found["image"], factor * self.values[3, 8], rtol=1e-3 if factor > 1 else 1e-6)
 
     def test_powers_by_every_method(self):
         """The irradiance of an area in scattering fog: rays of an own sum are the reference where nothing

@@ -4,6 +4,7 @@ import csv
 import io
 import struct
 import unittest
+import zlib
 
 import h5py
 import numpy as np
@@ -40,6 +41,27 @@ def read_exr(data):
     return np.array(rows)
 
 
+def read_png(path):
+    """Returns the pixels of a grey PNG file."""
+    data, at, parts = path.read_bytes(), 8, {}
+    while at < len(data):
+        size, kind = struct.unpack_from(">I4s", data, at)
+        parts[kind] = parts.get(kind, b"") + data[at + 8:at + 8 + size]
+        at += 12 + size
+    columns, rows, depth, colour = struct.unpack_from(">IIBB", parts[b"IHDR"])
+    assert colour == 0 and b"gAMA" in parts and parts[b"tEXt"].startswith(b"flatspeckle\0")
+    size = depth // 8
+    lines = np.frombuffer(zlib.decompress(parts[b"IDAT"]), np.uint8).reshape(rows, 1 + size * columns)
+    out = np.zeros((rows, size * columns), np.uint8)
+    for row, (kind, *line) in enumerate(lines):
+        for i, byte in enumerate(line):
+            left, up, corner = (int(out[row, i - size]) if i >= size else 0, int(out[row - 1, i]) if row else 0,
+                                int(out[row - 1, i - size]) if row and i >= size else 0)
+            nearest = min((left, up, corner), key=lambda value: abs(left + up - corner - value))
+            out[row, i] = (byte + (0, left, up, (left + up) // 2, nearest)[kind]) % 256
+    return np.frombuffer(out.tobytes(), f">u{size}").reshape(rows, columns)
+
+
 class Files(ProgramTest):
     """Pictures of render as PFM, OpenEXR, PNG and NPY."""
 
@@ -57,9 +79,17 @@ class Files(ProgramTest):
         np.testing.assert_array_equal(read_exr((self.folder / "r.exr").read_bytes()), top_down.astype("f4"))
         self.call("export", "r.h5", "image", to="r.npy")
         np.testing.assert_array_equal(np.load(self.folder / "r.npy"), image)
-        self.call("export", "r.h5", "image", to="r.png")
-        self.assertTrue((self.folder / "r.png").read_bytes().startswith(b"\x89PNG"))
-        for words, flags in (("must end with", {"to": "r.gif"}), ("two axes", {"dataset": "mean", "to": "r.png"})):
+        done = self.call("export", "r.h5", "image", to="r.png")
+        white = np.quantile(image, 0.995, method="lower")
+        self.assertIn("for display (gamma 2.2, white = ", done.stdout)
+        self.assertAlmostEqual(float(done.stdout.split("white = ")[1].split(")")[0]), white)
+        np.testing.assert_array_equal(read_png(self.folder / "r.png"), np.round(255 * np.clip(top_down / white, 0, 1)**(1 / 2.2)))
+        done = self.call("export", "r.h5", "image", to="linear.png", linear=True)
+        self.assertIn("linear (count = ", done.stdout)
+        np.testing.assert_array_equal(read_png(self.folder / "linear.png"), np.round(65535 / image.max() * image))
+        for words, flags in (("must end with", {"to": "r.gif"}), ("two axes", {"dataset": "mean", "to": "r.png"}),
+                             ("two axes", {"dataset": "mean", "to": "r.png", "linear": True}),
+                             ("linear", {"to": "r.tif", "linear": True})):
             done = self.call("export", "r.h5", flags.pop("dataset", "image"), **flags, status=2)
             self.assertIn(words, done.stderr)
 
@@ -68,7 +98,7 @@ class ExportTest(ProgramTest):
     def table(self, *words):
         """Returns the comment and the columns {name: texts} that export prints."""
         lines = self.call("export", *words).stdout.splitlines(keepends=True)
-        comment = lines.pop(0) if lines[0].startswith("#") else ""
+        comment = lines.pop(1) if lines[1].startswith("#") else ""
         names, *rows = csv.reader(io.StringIO("".join(lines)))
         return comment, dict(zip(names, map(list, zip(*rows))))
 

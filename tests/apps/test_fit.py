@@ -41,6 +41,20 @@ class Fit(ProgramTest):
         off = np.abs(found["estimate"] - stated["estimate"]) / found["estimate_error"]
         self.assertLess(off.max(), 0.1)
 
+    def test_distances(self):
+        """Shipped tables of tissue: coefficients, and scale, diffusion and beta of a detector without calibration."""
+        keys = {"depth": 100, "g": 0.9, "medium_index": 1.4, "detector_radius": 0.5}
+        tables = [MEASURED / f"distance_{name}.csv" for name in ("reflectance", "correlation")]
+        free = {"mu_a=0.001:0.1": 0.013, "mu_s=2:50": 11.5, "detector_scale=0.01:100": 1, "diffusion=10:10000": 125.6, "beta=0.1:1": 0.45}
+        for count, limit, values in ((1, 2, 11), (2, 5, 41)):
+            done = self.call("fit", "--free", *list(free)[:limit], measurement=[str(one) for one in tables[:count]], out="fit.h5", **keys)
+            found = datasets(self.folder / "fit.h5")
+            off = (found["estimate"] - list(free.values())[:limit]) / found["estimate_error"]
+            self.assertLess(np.abs(off).max(), 3)
+            self.assertEqual(len(found["measured"]), values)
+            self.assertTrue(np.all(found["datum_distance"] >= 5))
+            self.assertIn("reduced_scattering", done.stdout)
+
     def test_progress_on_a_terminal(self):
         """The line is updated five times per second, and ends before the table."""
         terminal, line = pty.openpty()

@@ -21,6 +21,13 @@ class Formats(ProgramTest):
             self.call("recover", frames=name, **keys, **FAST, out="r.h5")
             results[name] = datasets(self.folder / "r.h5")
         first = results.pop("frame.png")
+        opaque = np.full_like(frame, 65535)
+        write_png(self.folder / "rgba.png", np.stack([frame] * 3 + [opaque], axis=-1))
+        (self.folder / "colours.pfm").write_bytes(
+            b"PF\n%d %d\n-1\n" % frame.shape[::-1] + np.repeat(frame[::-1, :, None], 3, axis=-1).astype("<f4").tobytes())
+        for name in ("rgba.png", "colours.pfm"):  # with equal colours
+            self.call("recover", frames=name, **FAST, out="r.h5")
+            results[name] = datasets(self.folder / "r.h5")
         for name, found in results.items():
             for dataset in ("autocorrelation", "phased_picture", "phase_residual", "contrast"):
                 np.testing.assert_array_equal(found[dataset], first[dataset], f"{name} {dataset}")
@@ -119,6 +126,14 @@ class Refused(RefusingTest):
         whole = (self.folder / "frame.png").read_bytes()
         (self.folder / "cut.png").write_bytes(whole[:len(whole) // 2])
         self.check(["damaged PNG"], "cut.png")
+        colours = np.stack([frame, frame, frame + 1], axis=-1)
+        write_png(self.folder / "colours.png", colours.astype(np.uint8))
+        self.check(["has colours: convert it to grey"], "colours.png")
+        write_png(self.folder / "clear.png", np.stack([frame] * 4, axis=-1).astype(np.uint8))
+        self.check(["transparent"], "clear.png")
+        for name, start in (("sky.hdr", b"#?RADIANCE\n"), ("sky.jpg", b"\xff\xd8\xff\xe0"), ("sky.exr", b"v/1\1\2\0\0\0")):
+            (self.folder / name).write_bytes(start)
+            self.check(["give a grey PNG, TIFF, NPY, PFM, HDF5 or an uncompressed EXR"], name)
         (self.folder / "cut.tif").write_bytes((self.folder / "frame.tif").read_bytes()[:2000])
         self.check(["TIFF"], "cut.tif")
         (self.folder / "cut.npy").write_bytes((self.folder / "frame.npy").read_bytes()[:2000])

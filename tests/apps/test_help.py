@@ -51,8 +51,8 @@ KEYS = {
 class Help(ProgramTest):
     def test_every_key_is_listed(self):
         for subcommand, keys in KEYS.items():
-            for flag in ("--help", "-h"):
-                done = self.call(subcommand, flag)
+            for words in ((subcommand, "--help"), (subcommand, "-h"), ("help", subcommand)):
+                done = self.call(*words)
                 self.assertEqual(done.stderr, "")
                 listed = done.stdout.split()
                 for key in keys + PROGRAM:

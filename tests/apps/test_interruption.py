@@ -45,6 +45,8 @@ class Interruption(ProgramTest):
             self.assertIn("identity", file.attrs)
             self.assertIn("state", file)
         self.assertEqual([path for path in self.listing() if ".tmp" in path], [])
+        self.assertIn("--resume", self.call("explain", name).stdout)
+        self.assertIn("continue it with --resume", self.call("export", name, "intensity", status=2).stderr)
 
     def test_resumed_equals_uninterrupted(self):
         """Covers both parts of `validate` by night, its second one by day."""

@@ -26,6 +26,14 @@ class Images(ProgramTest):
                            phase_iterations=200, prediction_draws=12, paths_per_field=3000, quantum_efficiency=0.5, read_noise=3, full_well=20000, bit_depth=12)
         self.assertEqual(found["frames"].shape, (6, 128, 128))
         self.call("export", "image.h5", "frames", to="frames.tif")
+        for name, linear in (("shown", {}), ("linear", {"linear": True})):
+            self.call("export", "image.h5", "frames", select="camera_frame=0", to=f"{name}.png", **linear)
+        self.assertIn("is a picture for display", self.call("contrast", frames="shown.png", out="c.h5", status=2).stderr)
+        self.call("export", "image.h5", "frames", select="camera_frame=0", to="first.tif")
+        for name, frames in (("c.h5", "linear.png"), ("d.h5", "first.tif")):
+            self.assertNotIn("saturated", self.call("contrast", frames=frames, out=name).stderr)
+        png, tif = (datasets(self.folder / name)["contrast_map"] for name in ("c.h5", "d.h5"))
+        np.testing.assert_allclose(png, tif, rtol=1e-3)
         self.assertTrue(np.all(found["frames"] == np.round(found["frames"])))
         np.testing.assert_allclose(found["frames"].mean() * 20000 / 4095, 1500, rtol=0.02)
         self.assertEqual(np.count_nonzero(LETTER), len(found["point_x"]))

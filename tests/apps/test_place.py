@@ -15,6 +15,7 @@ class PlaceTest(ProgramTest):
         """Returns the columns of the file that is written."""
         self.call("place", out=out, **keys)
         lines = [line for line in (self.folder / out).read_text().splitlines() if line[0] != "#"]
+        self.assertEqual(np.genfromtxt(self.folder / out, delimiter=",", names=True).dtype.names, tuple(lines[0].split(",")))
         rows = np.array([[float(field) for field in line.split(",")] for line in lines[1:]])
         return dict(zip(lines[0].split(","), rows.T))
 
@@ -57,7 +58,7 @@ class Written(PlaceTest):
 
     def test_says_how_it_was_made(self):
         self.place(**DISKS, placement="equilibrium", seed=3)
-        head = (self.folder / "placed.csv").read_text().splitlines()[:2]
+        head = (self.folder / "placed.csv").read_text().splitlines()[1:3]
         for word in ("# flatspeckle", "--seed 3", "--packing_fraction 0.4", "# equilibrium: 76",
                      "packing fraction 0.397", "min_gap 4e-04"):
             self.assertIn(word, "\n".join(head))

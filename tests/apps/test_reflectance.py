@@ -8,7 +8,7 @@ import numpy as np
 from program import DATA, ProgramTest
 from refusing import RefusingTest
 
-TISSUE = {"depth": 1000, "mean_free_path": 1 / 10.02, "albedo": 10 / 10.02, "g": 0.9, "medium_index": 1.37,
+TISSUE = {"depth": 1000, "mu_s": 10, "mu_a": 0.02, "g": 0.9, "medium_index": 1.37,
           "distances": [5, 10], "ring_width": 2}
 LAYERS = "thickness,mu_s,mu_a,g,diffusion\n2,10,0.02,0.9,0.5\n1000,5,0.01,0.8,1\n"
 
@@ -181,7 +181,7 @@ class Refused(RefusingTest):
         refuse("source_power", source_power="-1W")
         refuse("source_power", source_power="1mm")
         (self.folder / "tissue.csv").write_text("thickness,mu_s,mu_a,g,diffusion\n2,10,0.02,0.9,0\n1000,5,0.01,0.8,1\n")
-        layered = {"layers": "tissue.csv", "depth": None, "mean_free_path": None, "albedo": None, "g": None}
+        layered = {"layers": "tissue.csv", "depth": None, "mu_s": None, "mu_a": None, "g": None}
         refuse("flow_layers", **layered, flow_layers=2)
         refuse("flow_layers", **layered, flow_layers=0)
 

@@ -124,7 +124,8 @@ class SweepOf(SweepTest):
 
     def test_words(self):
         keys = {**GRID, "vary": ["method=light,path"], "amplitude": 0.001, "method": None}
-        self.call("sweep", **keys, out="sweep.h5")
+        told = self.call("sweep", **keys, out="sweep.h5").stderr
+        self.assertRegex(told, r"note: left out, .*: .*\benergy/emitted\b")
         with h5py.File(self.folder / "sweep.h5") as file:
             self.assertEqual(list(file["method_word"].asstr()), ["light", "path"])
             self.assertIn("energy/emitted", file.attrs["left_out"])  # only of light paths

@@ -14,8 +14,11 @@ from program import PROGRAM, ProgramTest, bits_of, datasets, flags
 WITHOUT_EFFECT = {
     "neglect_k_shift": "permits what these scenes do not do",
     "placement": "poisson is what points have without it",
+    "smallest_feature": "a bound that coarse nodes meet",
     "seed": "transport draws nothing and records it",
     "wave_tolerance": "few scatterers are solved directly",
+    "aperture tolerance": "all rays pass, which ends the search",
+    "aspheric_image integrator": "rays between surfaces are straight",
     "solve tolerance": "few scatterers are solved directly",
     "solve wavelength": "with wavelengths, that at which a density would be meant",
     "delays wavelength": "the slab and its paths scale with the mean free path alone",

@@ -26,6 +26,27 @@ TEST_CASE("jackknife: the error of a mean is the standard error of the mean") {
   CHECK(estimate.error[0] == doctest::Approx(std::sqrt(variance / 100)).epsilon(1e-10));
 }
 
+TEST_CASE("jackknife: the bias of a squared mean is the variance of the mean") {
+  GroupedSums sums(1), one(1);
+  RandomStream random(5, 1, 0);
+  double sum = 0, squares = 0;
+  for (int i = 0; i < 50; ++i) {
+    const double value = random.uniform();
+    const Complex entry = value;
+    sums.add(1, {&entry, 1});
+    sum += value;
+    squares += value * value;
+  }
+  const Estimator square = [](double samples, std::span<const Complex> total) {
+    return std::vector<Complex>{std::pow(total[0] / samples, 2)};
+  };
+  const double variance = (squares - sum * sum / 50) / 49;
+  CHECK(jackknife_bias(sums, square)[0].real() == doctest::Approx(variance / 50).epsilon(1e-9));
+  const Complex entry = 2;
+  one.add(1, {&entry, 1});
+  CHECK(jackknife_bias(one, square)[0] == 0.0);
+}
+
 TEST_CASE("jackknife: sums of entries agree with the general estimator") {
   constexpr std::size_t size = 20, first = 3, count = 12;
   for (const int batches : {1, 2, 40, 700}) {  // with 700, groups have unequal size

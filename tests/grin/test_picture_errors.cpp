@@ -93,6 +93,17 @@ TEST_CASE("pixels beside rare strong paths: undersampled, with errors that are u
   CHECK(strong_ones.resolved_pixels < 0.1 * strong_ones.all_pixels);
 }
 
+TEST_CASE("pixels of few weak paths beside pixels of many strong ones: undersampled") {
+  const auto rim = [](std::size_t i) {
+    return static_cast<int>(i) % grid.columns == 0 ? Expected{3, 0.02} : Expected{0, 2e4};
+  };
+  const Coverage found = coverage(rim, 20);
+  const double darker = 1.0 / grid.columns;
+  CHECK(found.undersampled > 0.95);
+  CHECK(found.resolved_pixels / found.all_pixels == doctest::Approx(1 - darker).epsilon(0.01));
+  CHECK(found.resolved > 0.93);
+}
+
 TEST_CASE("strong paths over all pixels: resolved from the pixels together") {
   // a single pixel has too few of them
   const auto even = [](std::size_t) { return Expected{100, 20}; };

@@ -159,6 +159,13 @@ TEST_CASE("render of long paths: short pilot run, batches of one sample") {
   CHECK(job.batches.samples_per_batch == 1);
 }
 
+TEST_CASE("render of counted paths of a thousand flights: batches of many samples") {
+  RenderScene scene = scene_in(Homogeneous{}, {unit_box(), fog(60, 0, 0)}, point, whole_face());
+  scene.map = BoxCells({Vec3(-1, -1, -1), Vec3(1, 1, 1)}, {40, 40, 40});
+  const RenderJob job = render_job(scene, {RenderMethod::forward}, 1);
+  CHECK(job.batches.samples_per_batch >= 32);
+}
+
 TEST_CASE("render: bad requests are rejected") {
   const RenderScene scene = scene_in(fisheye, {unit_box(), {}}, point, camera);
   const RenderScene dense = scene_in(Homogeneous{}, {unit_box(), fog(1e7, 0, 0.9)}, point, camera);

@@ -6,7 +6,7 @@ import unittest
 
 from package import PackageTest, fs
 
-PURPOSES = ["memory-effect", "validate", "near-field", "waveguide", "lens", "imaging"]
+PURPOSES = ["memory-effect", "validate", "near-field", "waveguide", "lens", "imaging", "matrix", "tissue"]
 
 
 def printed(*words):

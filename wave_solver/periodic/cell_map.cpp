@@ -13,13 +13,28 @@ namespace {
 
 using Amplitudes = std::vector<Complex>;  // of the light channels of the front, with unit flux
 
-std::vector<Amplitudes> mapped_lights(const ScatteringMatrix& found) {
+struct MappedLight {
+  Amplitudes wave;
+  double transmittance;
+};
+
+std::vector<MappedLight> mapped_lights(const ScatteringMatrix& found,
+                                       std::span<const std::int64_t> numbers) {
   const std::size_t n = found.channels.size();
+  const auto t = found.quarter(false, true);
   const auto normal = std::ranges::min_element(
       found.channels, {}, [](const CellChannel& channel) { return std::abs(channel.sine); });
-  Amplitudes one(n);
-  one[static_cast<std::size_t>(normal - found.channels.begin())] = 1;
-  return {one, open_channel(found.quarter(false, true), n).wave};
+  const auto a = static_cast<std::size_t>(normal - found.channels.begin());
+  MappedLight one{Amplitudes(n), 0};
+  one.wave[a] = 1;
+  for (std::size_t b = 0; b < n; ++b) one.transmittance += std::norm(t[b + n * a]);
+  std::vector<MappedLight> lights = {one};
+  const Eigenchannels all = eigenchannels(t, n);
+  for (const std::int64_t number : numbers) {
+    const auto m = static_cast<std::size_t>(number);
+    lights.push_back({all.waves[m], all.eigenvalues[m]});
+  }
+  return lights;
 }
 
 std::vector<PlaneWave> incident(const ScatteringMatrix& found, const Amplitudes& light) {
@@ -50,7 +65,8 @@ Amplitudes repeated(const Amplitudes& x, std::size_t n, const Copies& copies) {
 // Bases are large enough for points at the rims of all scatterers.
 std::string write_cell_map(ResultFile& file, const Placement& placement, double k,
                            const CellImages& images, const ScatteringMatrix& found,
-                           const SolveOptions& options, const MapGrid& grid) {
+                           std::span<const std::int64_t> numbers, const SolveOptions& options,
+                           const MapGrid& grid) {
   std::vector<Vec> rims;
   for (const auto& [centre, scatterer] : placement)
     if (scatterer.is_disk()) rims.push_back(centre + Vec{scatterer.radius, 0});
@@ -58,8 +74,10 @@ std::string write_cell_map(ResultFile& file, const Placement& placement, double 
   const std::size_t n = cell.unknowns();
   std::vector<std::vector<PlaneWave>> lights;
   Amplitudes rhs;
-  for (const Amplitudes& light : mapped_lights(found)) {
-    lights.push_back(incident(found, light));
+  std::vector<double> transmittance;
+  for (const MappedLight& light : mapped_lights(found, numbers)) {
+    transmittance.push_back(light.transmittance);
+    lights.push_back(incident(found, light.wave));
     const auto side = cell.right_hand_side(lights.back());
     rhs.insert(rhs.end(), side.begin(), side.end());
   }
@@ -74,7 +92,9 @@ std::string write_cell_map(ResultFile& file, const Placement& placement, double 
     x = repeated(solution.x, n, cell.near().copies());
   }
   file.bind("LIGHT", {"map_wave"});
-  ResultGroup(file, scattering_matrix_table).number("map_wave", lights.size());
+  const ResultGroup root(file, scattering_matrix_table);
+  root.number("map_wave", lights.size());
+  root.put("map_transmittance", transmittance);
   const TMatrixSystem all = cell.near().with_explicit_copies();
   return write_map(file, {&all, std::move(lights), x}, grid, options.tolerance);
 }

@@ -118,7 +118,8 @@ const DatasetTable scattering_matrix_table{
      {"transmission_eigenvalue", Data::real, "eigenchannel", "1",
       "eigenvalue of t^H t for light from the front"},
      {"map_wave", Data::numbers, "", "1",
-      "mapped light: 0 the channel closest to normal incidence, 1 the most open eigenchannel"},
+      "mapped light: 0 the channel closest to normal incidence, then map_eigenchannels"},
+     {"map_transmittance", Data::real, "map_wave", "1", "transmittance of the mapped light"},
      {"solve/residual", Data::real, "", "1", "relative residual of the unscaled equations"},
      {"invariants/power", Data::invariant, "", "1",
       "largest deviation from conservation of power and, without absorption, from unitarity"},
@@ -138,7 +139,7 @@ void write_scattering_matrix(ResultFile& file, const ScatteringMatrix& found) {
   root.put("absorptance", found.absorbed);
   root.number("eigenchannel", found.channels.size());
   root.put("transmission_eigenvalue",
-           open_channel(found.quarter(false, true), found.channels.size()).eigenvalues);
+           eigenchannels(found.quarter(false, true), found.channels.size()).eigenvalues);
   if (found.residual >= 0) root.put("solve/residual", found.residual);
   root.check("invariants/power", found.power);
   root.check("invariants/reciprocity", found.reciprocity);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "core/error.h"
@@ -133,27 +134,30 @@ void add_matrix(const MatrixSums& places, const ScatteringMatrix& found,
   sums[MatrixSums::reciprocity_error] += found.reciprocity.off;
   sums[MatrixSums::unit_cell_error] += found.unit_cell.off;
   sums[MatrixSums::unit_cell_limit] += found.unit_cell.limit;
-  const auto [eigenvalues, open] = open_channel(t, n);
+  const auto [eigenvalues, waves] = eigenchannels(t, n);
   sums[MatrixSums::largest] += eigenvalues.front();
   count_eigenvalues(eigenvalues, sums.subspan(places.eigenvalues(), places.bins));
   if (places.kept < n)
     count_eigenvalues(
-        open_channel(middle_part(t, n, places.first_kept, places.kept), places.kept).eigenvalues,
+        eigenchannels(middle_part(t, n, places.first_kept, places.kept), places.kept).eigenvalues,
         sums.subspan(places.filtered(), places.bins));
-  add_correlations(places, t, open, sums);
+  add_correlations(places, t, waves.front(), sums);
 }
 
 }  // namespace
 
-OpenChannel open_channel(std::vector<Complex> t, std::size_t n) {
+Eigenchannels eigenchannels(std::vector<Complex> t, std::size_t n) {
   const auto size = static_cast<lapack_int>(n);
   std::vector<double> singular(n), rest(n);
   std::vector<Complex> left(1), right(n * n);
   LAPACKE_zgesvd(LAPACK_COL_MAJOR, 'N', 'A', size, size, t.data(), size, singular.data(),
                  left.data(), 1, right.data(), size, rest.data());
-  OpenChannel found;
+  Eigenchannels found;
   for (const double value : singular) found.eigenvalues.push_back(value * value);
-  for (std::size_t a = 0; a < n; ++a) found.wave.push_back(std::conj(right[a * n]));
+  for (std::size_t m = 0; m < n; ++m) {
+    auto& wave = found.waves.emplace_back();
+    for (std::size_t a = 0; a < n; ++a) wave.push_back(std::conj(right[a * n + m]));
+  }
   return found;
 }
 
@@ -209,6 +213,12 @@ MatrixStatistics matrix_statistics(const MatrixJob& job, const GroupedSums& sums
     return samples < 2 ? Complex() : (squares - sum * sum / samples) / (samples - 1);
   };
   const auto estimate = [&](const Estimator& of) { return jackknife(sums, of); };
+  const auto estimate_of_variance = [&](const Estimator& of) {
+    Estimate found = estimate(of);
+    // without one of two samples no variance is left
+    if (sums.total_samples() < 3) found.error.assign(1, std::numeric_limits<double>::infinity());
+    return found;
+  };
   const auto means = [&](std::size_t first, std::size_t count) {
     return estimate(
         [=](double samples, Sums s) { return sample_mean(samples, s.subspan(first, count)); });
@@ -239,14 +249,14 @@ MatrixStatistics matrix_statistics(const MatrixJob& job, const GroupedSums& sums
   found.eigenvalues = means(places.eigenvalues(), places.bins);
   found.kept = places.kept;
   if (found.kept < n) found.filtered = means(places.filtered(), places.bins);
-  found.conductance_variance = estimate([=](double samples, Sums s) {
+  found.conductance_variance = estimate_of_variance([=](double samples, Sums s) {
     return Values{variance(samples, s[MatrixSums::g], s[MatrixSums::g_squared])};
   });
-  found.relative_variance = estimate([=](double samples, Sums s) {
+  found.relative_variance = estimate_of_variance([=](double samples, Sums s) {
     const Complex mean = s[MatrixSums::g] / samples;
     return Values{variance(samples, s[MatrixSums::g], s[MatrixSums::g_squared]) / (mean * mean)};
   });
-  found.channel_variance = estimate([=](double samples, Sums s) {
+  found.channel_variance = estimate_of_variance([=](double samples, Sums s) {
     Complex sum = 0;
     for (std::size_t a = 0; a < n; ++a) {
       const Complex mean = s[places.transmitted() + a] / samples;

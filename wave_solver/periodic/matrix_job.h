@@ -11,13 +11,13 @@
 
 namespace flatspeckle::wave {
 
-/// Transmission eigenvalues of a matrix t, in descending order, and the most open eigenchannel.
-struct OpenChannel {
+/// Transmission eigenchannels of a matrix t, the most open first.
+struct Eigenchannels {
   std::vector<double> eigenvalues;
-  std::vector<Complex> wave;  ///< amplitudes of the light channels, with the norm 1
+  std::vector<std::vector<Complex>> waves;  ///< amplitudes of the light channels, with the norm 1
 };
 /// t: n x n, column-major, with a column for each light channel.
-OpenChannel open_channel(std::vector<Complex> t, std::size_t n);
+Eigenchannels eigenchannels(std::vector<Complex> t, std::size_t n);
 
 /// Settings of an ensemble of scattering matrices.
 struct MatrixSettings {

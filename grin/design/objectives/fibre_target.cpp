@@ -1,5 +1,6 @@
 #include "grin/design/objectives/fibre_target.h"
 
+#include "core/run/interrupt.h"
 #include "grin/design/objectives/design_objective.h"
 #include "grin/design/objectives/even_points.h"
 
@@ -57,8 +58,11 @@ class FibreTarget : public DesignTarget {
   DesignTask task(const RayWalk& walk, bool held_out) const override {
     const int count = held_out ? count_ * 3 / 4 + 1 : count_;
     std::vector<DesignRay> rays;
-    for (int i = 0; i < count; ++i)
+    rays.reserve(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) {
+      stop_if_interrupted();
       rays.push_back(ray(even_share(i, count), std::fmod(golden_ratio * i + 0.3, 1)));
+    }
     std::vector<PathPerLengthMeasurement> measurements(rays.size(), PathPerLengthMeasurement{0});
     return {make_ray_system(std::move(rays), std::move(measurements), walk),
             std::make_unique<EqualObjective>()};

@@ -150,9 +150,10 @@ Numbers blurred(const Numbers& values, int pixels, std::size_t stride, std::size
   return blurred;
 }
 
-/// Returns the pixels of a PNG, TIFF or NPY file, or of a text file of numbers, one line per row.
+/// Returns the pixels of a picture (also one for display), or of a text file of numbers, one line
+/// per row.
 Frames pixels_of(const std::string& path) {
-  if (!is_text_frames(path)) return read_frames("pictures", path, {});
+  if (!is_text_frames(path)) return read_frames("pictures", path, {.allows_display = true});
   try {
     const auto rows = read_rows(path);
     Frames pixels{rows.size(), rows.empty() ? 0 : rows.front().size(), {}};
@@ -280,7 +281,8 @@ std::vector<ScreenPicture> ScreenTarget::shown_by(std::span<const double> measur
 
 void add_keys(Keys& keys, ScreenValues& values) {
   keys.add("pictures", values.pictures,
-           "Files of numbers, one per direction: a square picture, one line per row, from the top")
+           "Square pictures, one per direction: PNG, TIFF, NPY, or a file of numbers with one line "
+           "per row, from the top")
       .file();
   keys.add("view_directions", values.view_directions,
            "Directions of the parallel beams, one for each picture")

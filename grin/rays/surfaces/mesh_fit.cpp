@@ -20,6 +20,9 @@ namespace {
 
 constexpr double good_normals = 0.01, good_area = 0.05, good_volume = 0.01;
 constexpr double few_cells = 64, most_cells = 256;
+/// Distance from sharp edges, in spacings, up to which normals of plane faces deviate: beside edges
+/// of right angles.
+constexpr double edge_reach = 3;
 
 bool follows_shape(const MeshFit& fit) {
   return fit.normal_deviation <= good_normals && std::abs(fit.area_change) <= good_area;
@@ -80,10 +83,10 @@ MeshFit fit_of(const LevelSurface& surface, const CurvedMesh& mesh) {
   sample(mesh.mesh, [&](const Vec3& x, const Vec3& normal) {
     all += 1;
     enlarged += area_ratio(surface, x, normal);
-    if (creases && creases->unsigned_distance(x, 2 * reach) < 2 * reach) {
-      sharp += (creases->unsigned_distance(x, reach) < reach);
-      return;
-    }
+    const double far = edge_reach * reach,
+                 apart = creases ? creases->unsigned_distance(x, far) : far;
+    sharp += apart < far;
+    if (apart < 2 * reach) return;
     const Vec3 found = surface.normal(surface.projected(x));
     const double angle = std::atan2(found.cross(normal).norm(), found.dot(normal));
     square += angle * angle;
@@ -124,7 +127,8 @@ std::string note_on(const std::string& key, const LevelSurface& surface, const C
   std::string note = text.data();
   if (fit.sharp_share > 0) {
     std::snprintf(text.data(), text.size(),
-                  ", edges rounded (%.2g %% of the area is within one spacing of an edge)",
+                  ", edges rounded (%.2g %% of the area is within three spacings of an edge, where "
+                  "normals deviate)",
                   100 * fit.sharp_share);
     note += text.data();
   }

@@ -27,7 +27,7 @@ struct MeshFit {
   double volume_change;     ///< relative change of the volume
   double area_change;       ///< relative change of the area
   double normal_deviation;  ///< rms angle between the normals, except close to sharp edges, radians
-  double sharp_share;       ///< share of the area that is within one spacing of sharp edges
+  double sharp_share;       ///< share of the area that is within three spacings of sharp edges
 };
 
 MeshFit fit_of(const LevelSurface& surface, const CurvedMesh& mesh);

@@ -30,9 +30,9 @@ std::vector<double> sums_around(const std::vector<double>& values, const PixelGr
   return sums_along(sums_along(sums_along(values, 1, bins), bins, columns), bins * columns, rows);
 }
 
-/// Relative error above which an entry is undersampled: that of six contributions of one size. Their
-/// sum is skewed, and where paths of high weight are rare, an estimate that lacks them has too small
-/// an error. In a run of few groups their number shows this less reliably.
+/// Relative error above which an entry is undersampled: that of six contributions of one size.
+/// Their sum is skewed, and where paths of high weight are rare, an estimate that lacks them has
+/// too small an error. In a run of few groups their number shows this less reliably.
 constexpr double rough_error = 0.4;
 
 /// Error bound for contributions that may have been missed. Contributions of size c have a variance
@@ -65,13 +65,17 @@ void bound_errors(Estimate& picture, const PixelGrid& grid) {
   const auto undersampled_lit_around = sums_around(undersampled_lit, grid),
              lit_around = sums_around(lit, grid);
   for (std::size_t i = 0; i < size; ++i) {
-    const bool is_known = values[i] != 0 && undersampled_around[i] <= values_around[i] / 2 &&
+    const double bound =
+        values_around[i] > 0 ? unseen(variances_around[i], values_around[i]) : of_all;
+    const bool is_rough = picture.error[i] > rough_error * std::abs(values[i]);
+    // Its few paths are weaker than those around it, and one of these would exceed its error.
+    const bool misses_light = picture.rare[i] && picture.error[i] < bound;
+    const bool is_known = values[i] != 0 && !is_rough && !misses_light &&
+                          undersampled_around[i] <= values_around[i] / 2 &&
                           undersampled_lit_around[i] <= lit_around[i] / 2;
     const bool is_dark = values_around[i] == 0 && of_all > 0;
     picture.rare[i] = !is_known && !is_dark;
     if (is_known) continue;
-    const double bound =
-        values_around[i] > 0 ? unseen(variances_around[i], values_around[i]) : of_all;
     picture.error[i] = std::max(2 * picture.error[i], bound);
   }
 }

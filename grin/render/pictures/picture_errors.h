@@ -14,15 +14,17 @@ inline constexpr double few_of_values = 36;
 inline constexpr double few_of_pixels = 12;
 
 /// Recomputes the undersampled flags (Estimate::rare) of a picture [row][column][bin] from
-/// neighbourhoods, and replaces the errors of undersampled entries by upper bounds. Entries whose
-/// error exceeds 40 % are flagged first, whatever the number of groups. An entry is undersampled if
-/// more than half of the entries with light around it are flagged, or if flagged
-/// entries have more than half of the light there. The flag of the entry alone is not used: an
-/// entry that paths of high weight have missed by chance has a small error. Entries that no path
-/// has hit are also undersampled if there is light around them. The error of an undersampled entry
-/// is doubled, but is at least the bound for missed contributions that are as large as those around
-/// it. Entries without light around them are dark: their error is the bound for contributions as
-/// large as those of the whole picture.
+/// neighbourhoods, and replaces the errors of undersampled entries by upper bounds. An entry is
+/// undersampled in these cases:
+/// - Its error exceeds 40 %.
+/// - It is flagged, and one missed contribution as large as those around it would exceed its error.
+/// - Entries that are flagged or have errors above 40 % are more than half of those with light
+///   around it, or have more than half of the light there. Its own flag does not suffice, since an
+///   entry that paths of high weight have missed by chance has a small error.
+/// - No path has hit it, but there is light around it.
+/// The error of an undersampled entry is doubled, but is at least the bound for missed
+/// contributions that are as large as those around it. Entries without light around them are dark:
+/// their error is the bound for contributions as large as those of the whole picture.
 void bound_errors(Estimate& picture, const PixelGrid& grid);
 
 }  // namespace flatspeckle::grin

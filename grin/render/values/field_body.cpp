@@ -454,7 +454,8 @@ std::optional<GivenBody> given_body(const Keys& keys, const FieldBodyValues& val
 IndexRange check_field(const SceneField& field, const Surface& region, const std::string& name) {
   if (field.grid && !lies_in(region, *field.grid))
     throw InputError("grid: must cover all of the " + name +
-                     ": light needs a field everywhere in it");
+                     ": light needs a field everywhere in it; or give body_box = " +
+                     listed(field.grid->low) + ' ' + listed(field.grid->high));
   return index_range(field, region, name);
 }
 

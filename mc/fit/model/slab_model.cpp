@@ -31,18 +31,26 @@ SlabModel::SlabModel(std::vector<Curve> curves, const Media& media) : curves_(st
       throw InputError("velocity_x, velocity_z, shear: require method = mc");
     first_.push_back(size_);
     size_ += static_cast<Index>(curves_[i].entries.size());
-    const auto group =
+    auto group =
         std::ranges::find_if(groups_, [&](const Group& one) { return can_share(one, media, i); });
-    const bool flux = is_flux(curves_[i].observable);
-    if (group == groups_.end())
-      groups_.push_back({flux, !flux && needs_reversed(media[i].scene), curves_[i].delays, {i}});
-    else
-      group->curves.push_back(i);
+    if (group == groups_.end()) group = groups_.insert(group, empty_group(media, i));
+    group->curves.push_back(i);
+    if (group->distances) group->distances->add(curves_[i], first_.back());
   }
+}
+
+SlabModel::Group SlabModel::empty_group(const Media& media, std::size_t curve) const {
+  const bool flux = is_flux(curves_[curve].observable);
+  if (curves_[curve].distances) return {.distances = DistanceCurves()};
+  return {flux, !flux && needs_reversed(media[curve].scene), curves_[curve].delays};
 }
 
 bool SlabModel::can_share(const Group& group, const Media& media, std::size_t curve) const {
   const Scene &first = media[group.curves.front()].scene, &scene = media[curve].scene;
+  if (group.distances || curves_[curve].distances)
+    return group.distances && curves_[curve].distances &&
+           first.domain.depth == scene.domain.depth &&
+           curves_[group.curves.front()].moving() == curves_[curve].moving();
   const bool flux = is_flux(curves_[curve].observable);
   return group.delays == curves_[curve].delays && first.domain.depth == scene.domain.depth &&
          first.k == scene.k && first.faces == scene.faces && group.flux == flux &&
@@ -54,16 +62,30 @@ bool SlabModel::reversed() const {
   return std::ranges::any_of(groups_, &Group::reversed);
 }
 
+std::vector<int> SlabModel::resolution() const {
+  std::vector<int> all{resolution_.order, resolution_.modes};
+  for (const Group& group : groups_)
+    if (group.distances) all.push_back(group.distances->degree());
+  return all;
+}
+
 double SlabModel::refine(const Media& media, const VectorXd& errors, double share,
                          const std::function<void()>& solved) {
   constexpr int most = 30;
+  double of_distances = 0;
+  for (Group& group : groups_)
+    if (group.distances)
+      of_distances = std::max(of_distances, group.distances->refine(media[group.curves.front()],
+                                                                    errors, share, solved));
+  if (std::ranges::all_of(groups_, [](const Group& one) { return one.distances.has_value(); }))
+    return of_distances;
   VectorXd found = solution(media, resolution_);
   while (true) {
     solved();
     const Resolution next{Resolution::next(resolution_.order), Resolution::next(resolution_.modes)};
     const VectorXd finer = solution(media, next);
     const double change = (finer - found).cwiseQuotient(errors).cwiseAbs().maxCoeff();
-    if (change < share || next.order > most) return change;
+    if (change < share || next.order > most) return std::max(change, of_distances);
     resolution_ = next;
     found = finer;
   }
@@ -72,7 +94,10 @@ double SlabModel::refine(const Media& media, const VectorXd& errors, double shar
 VectorXd SlabModel::solution(const Media& media, const Resolution& at) const {
   VectorXd all(size_);
   for (const Group& group : groups_)
-    group.flux ? solve_flux(group, media, all) : solve_fields(group, media, at, all);
+    if (group.distances)
+      group.distances->solve(media[group.curves.front()], all);
+    else
+      group.flux ? solve_flux(group, media, all) : solve_fields(group, media, at, all);
   return all;
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "mc/fit/model/distance_curves.h"
 #include "mc/fit/task/curve_values.h"
 #include "mc/slab/refinement.h"
 
@@ -29,7 +31,8 @@ class SlabModel {
   double refine(const Media& media, const Eigen::VectorXd& errors, double share,
                 const std::function<void()>& solved);
 
-  const Resolution& resolution() const { return resolution_; }
+  /// Returns all numbers that refine() increases.
+  std::vector<int> resolution() const;
   bool reversed() const;
 
  private:
@@ -38,8 +41,11 @@ class SlabModel {
     bool flux = false, reversed = false;
     std::vector<double> delays;
     std::vector<std::size_t> curves;
+    std::optional<DistanceCurves> distances{};
   };
 
+  /// Returns a group for curves that are solved like this one.
+  Group empty_group(const Media& media, std::size_t curve) const;
   bool can_share(const Group& group, const Media& media, std::size_t curve) const;
   Eigen::VectorXd solution(const Media& media, const Resolution& at) const;
   void solve_fields(const Group& group, const Media& media, const Resolution& at,

@@ -11,6 +11,12 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+/// Whether the model's values are proportional to the parameter, so that any start leads to the
+/// same search.
+bool is_factor(const FreeParameter& one) {
+  return one.key == "detector_scale" || one.key == "beta";
+}
+
 }  // namespace
 
 std::vector<Curve> curves_of(const FitTask& task) {
@@ -44,7 +50,7 @@ std::vector<VectorXd> grid_of_starts(const FitTask& task) {
   const VectorXd lower = lower_coordinates(task.free), upper = upper_coordinates(task.free);
   std::vector<VectorXd> starts{middle(task)};
   for (std::size_t i = 0; i < task.free.size(); ++i) {
-    if (task.free[i].start) continue;
+    if (task.free[i].start || is_factor(task.free[i])) continue;
     const auto j = static_cast<Index>(i);
     std::vector<VectorXd> more;
     for (const VectorXd& start : starts)

@@ -58,6 +58,13 @@ struct FitTask {
         if (curve.moving()) return true;
     return false;
   }
+  /// Whether any values are those of detectors at distances from a beam.
+  bool at_distances() const {
+    for (const Measurement& one : measurements)
+      for (const Curve& curve : one.curves)
+        if (curve.distances) return true;
+    return false;
+  }
 };
 
 }  // namespace flatspeckle::mc

@@ -25,9 +25,17 @@ void add_motion_keys(Keys& keys, MovingSpec& spec) {
   keys.add("beta", spec.beta, "K^2 (squared speckle contrast) of static scatterers").positive_to(1);
 }
 
+void add_scale_key(Keys& keys, MovingSpec& spec) {
+  keys.add("detector_scale", spec.detector_scale,
+           "Measured reflectance divided by that of the medium, of a detector that is not "
+           "calibrated")
+      .positive();
+}
+
 void add_keys(Keys& keys, MovingSpec& spec) {
   add_keys(keys, static_cast<SceneSpec&>(spec));
   add_motion_keys(keys, spec);
+  add_scale_key(keys, spec);
 }
 
 namespace {
@@ -39,10 +47,11 @@ using Scale = FreeParameter::Scale;
 constexpr const char* form = "must be key=lower:upper, for example g=0.5:0.99";
 
 /// Keys of positive quantities that may range over decades. Their coordinate in a fit is the
-/// logarithm.
-const std::set<std::string> of_any_size = {"optical_depth",   "mean_free_path", "density",
-                                           "volume_fraction", "mass_fraction",  "radius",
-                                           "diameter",        "depth",          "diffusion"};
+/// logarithm if the lower bound is positive.
+const std::set<std::string> of_any_size = {
+    "optical_depth", "mean_free_path", "density",  "volume_fraction",
+    "mass_fraction", "radius",         "diameter", "depth",
+    "diffusion",     "mu_s",           "mu_a",     "detector_scale"};
 
 bool is_complex(const Key& key) {
   return key.name() == "index" || key.name() == "particle_index";
@@ -105,7 +114,7 @@ FreeParameter read_one(const std::string& text, const MovingSpec& scene) {
     throw InputError(free.key, *free.start,
                      "the start of a fit must lie within the bounds given by free = " + text);
   if (free.key == "g") free.scale = Scale::to_one;
-  if (of_any_size.contains(free.key)) free.scale = Scale::logarithmic;
+  if (of_any_size.contains(free.key) && free.lower > 0) free.scale = Scale::logarithmic;
   return free;
 }
 

@@ -14,6 +14,7 @@ namespace flatspeckle::mc {
 /// A scene and the motion of its scatterers during a measurement.
 struct MovingSpec : SceneSpec {
   double diffusion = 1, velocity_x = 0, velocity_z = 0, shear = 0, beta = 1;
+  double detector_scale = 1;
 
   Motion motion() const { return {diffusion, {velocity_x, velocity_z}, shear}; }
   /// Whether the scatterers only diffuse, which transport solutions can model.
@@ -22,6 +23,8 @@ struct MovingSpec : SceneSpec {
 
 /// Adds only the keys of the motion.
 void add_motion_keys(Keys& keys, MovingSpec& spec);
+/// Adds only the key of the scale of reflectances at distances.
+void add_scale_key(Keys& keys, MovingSpec& spec);
 /// Adds all keys of a MovingSpec. Keyed<MovingSpec> calls this function.
 void add_keys(Keys& keys, MovingSpec& spec);
 

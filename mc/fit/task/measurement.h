@@ -8,6 +8,7 @@
 
 #include "core/numbers/complex.h"
 #include "core/numbers/statistics.h"
+#include "mc/distance/distance_job.h"
 #include "mc/fit/task/free_parameter.h"
 
 namespace flatspeckle::mc {
@@ -61,9 +62,11 @@ Eigen::MatrixXcd sample_covariance(std::span<const Complex> fields, std::size_t 
 /// A measured quantity.
 enum class Observable {
   field_correlation,  ///< C_E of each tilt or shift, over all views (C19), or |g1| of each delay
-  intensity_correlation,  ///< C_I of each tilt or shift, or |g1|^2 of each delay
+  intensity_correlation,  ///< C_I of each tilt or shift, or |g1|^2 of each delay; at distances
+                          ///< g2 - 1 = beta g1^2
   intensity,              ///< variance of the field, [light][view]
-  reflectance,            ///< reflected fraction of the power of each illumination
+  reflectance,            ///< reflected fraction of the power of each illumination; at distances
+                          ///< this fraction per area
   transmittance,          ///< transmitted fraction of the power of each illumination
   squared_contrast,       ///< K^2 of each exposure
   field_covariance        ///< covariances of fields: the lower triangle of a matrix, packed()
@@ -86,6 +89,9 @@ struct Curve {
   /// true: absolute values of the correlations at the delays were measured; false: real parts.
   bool flows = true;
   bool fixed_count = false;  ///< whether all placements have the same number of scatterers
+  /// Set for values at distances from a beam: one detector for each value. `delays`, if any, are
+  /// then also one for each value.
+  std::optional<DistanceRequest> distances{};
 
   bool moving() const { return !delays.empty(); }
 };

@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "core/search/levenberg_marquardt.h"
+#include "core/search/profile.h"
 
 namespace flatspeckle::mc::test_levenberg_marquardt {
 
@@ -148,6 +149,36 @@ TEST_CASE("derivative check: a Jacobian wrong by 1 % is detected by differences"
   const auto at_bound = line.problem(VectorXd{{5, 3}}, VectorXd{{9, 5}});
   CHECK_FALSE(
       check_derivative(at_bound, levenberg_marquardt(at_bound, VectorXd{{6, 4}})).has_value());
+}
+
+TEST_CASE("profile of chi^2: two standard errors where it is quadratic") {
+  const Line line;
+  const auto problem = line.problem(VectorXd{{-10, -10}}, VectorXd{{10, 10}});
+  const auto fit = levenberg_marquardt(problem, VectorXd{{5, -3}}, most_iterations, precise);
+  const VectorXd error = information(problem, fit.jacobian).errors();
+  for (const Eigen::Index i : {0, 1})
+    for (const double side : {-1.0, 1.0})
+      CHECK(profile_end(problem, fit, i, side, 4)[i] ==
+            doctest::Approx(fit.parameters[i] + 2 * side * error[i]).epsilon(1e-9));
+}
+
+TEST_CASE("profile of chi^2: ends where it is not quadratic agree with the closed form") {
+  // chi^2 = (exp(a) - 1 + b)^2 + 100 b^2 has the least value 100/101 (exp(a) - 1)^2 for given a
+  const auto grown = [](const VectorXd& p) -> VectorXd {
+    return VectorXd{{std::exp(p[0]) - 1 + p[1], 10 * p[1]}};
+  };
+  const BoundedLeastSquares problem{grown,
+                                    [](const VectorXd& p, const VectorXd&) {
+                                      return MatrixXd{{std::exp(p[0]), 1}, {0, 10}};
+                                    },
+                                    VectorXd{{-3, -5}}, VectorXd{{8, 5}}};
+  const auto fit = levenberg_marquardt(problem, VectorXd{{1, 1}}, most_iterations, precise);
+  REQUIRE(fit.converged);
+  const auto end = [&](double side, double rise) { return profile_end(problem, fit, 0, side, rise); };
+  CHECK(end(1, 4)[0] == doctest::Approx(std::log(1 + 2 * std::sqrt(1.01))).epsilon(0.03));
+  CHECK(end(1, 4)[1] == doctest::Approx(-2 * std::sqrt(1.01) / 101).epsilon(0.1));
+  CHECK(end(-1, 0.64)[0] == doctest::Approx(std::log(1 - 0.8 * std::sqrt(1.01))).epsilon(0.1));
+  CHECK(end(-1, 4)[0] == -3);  // chi^2 never rises by 4
 }
 
 }  // namespace flatspeckle::mc::test_levenberg_marquardt

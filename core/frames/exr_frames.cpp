@@ -1,0 +1,156 @@
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+
+#include "core/frames/frame_formats.h"
+
+// Layout: "OpenEXR File Layout", openexr.com/en/latest/OpenEXRFileLayout.html. All numbers are
+// little endian.
+
+namespace flatspeckle {
+
+namespace {
+
+[[noreturn]] void refuse_exr(const std::string& reason) {
+  throw std::runtime_error(reason + ": " + accepted_pictures);
+}
+
+/// Reads numbers and texts of a file one after the other.
+class ExrReader {
+ public:
+  ExrReader(const std::string& bytes, std::size_t at) : bytes_(bytes), at_(at) {}
+
+  template <typename Number>
+  Number next() {
+    static_assert(std::endian::native == std::endian::little);
+    Number number;
+    std::memcpy(&number, skip(sizeof number), sizeof number);
+    return number;
+  }
+  std::string name() {
+    const std::size_t end = bytes_.find('\0', std::min(at_, bytes_.size()));
+    if (end == bytes_.npos) refuse_exr("is a damaged OpenEXR file");
+    const std::string text = bytes_.substr(at_, end - at_);
+    at_ = end + 1;
+    return text;
+  }
+  const char* skip(std::size_t count) {
+    if (at_ > bytes_.size() || count > bytes_.size() - at_) refuse_exr("is a damaged OpenEXR file");
+    at_ += count;
+    return bytes_.data() + at_ - count;
+  }
+  std::size_t at() const { return at_; }
+
+ private:
+  const std::string& bytes_;
+  std::size_t at_;
+};
+
+enum ExrType : std::int32_t { exr_uint, exr_half, exr_float };
+
+struct ExrChannel {
+  std::int32_t type;
+  double weight;  ///< of its values in the luminance
+};
+
+/// Content of the header that is used.
+struct ExrHeader {
+  std::vector<ExrChannel> channels;
+  std::int32_t left = 0, top = 0, right = -1, bottom = -1;
+  std::uint8_t compression = 0;
+};
+
+/// Weight of a channel in the luminance of primaries as in ITU-R BT.709.
+double weight_of(const std::string& channel) {
+  if (channel == "Y") return 1;
+  if (channel == "R") return 0.2126;
+  if (channel == "G") return 0.7152;
+  return channel == "B" ? 0.0722 : 0;
+}
+
+std::vector<ExrChannel> channels_of(ExrReader& reader) {
+  std::vector<ExrChannel> channels;
+  std::string names;
+  for (std::string name = reader.name(); !name.empty(); name = reader.name()) {
+    const auto type = reader.next<std::int32_t>();
+    reader.skip(4);
+    const auto every_x = reader.next<std::int32_t>(), every_y = reader.next<std::int32_t>();
+    if (type < exr_uint || type > exr_float || every_x != 1 || every_y != 1)
+      refuse_exr("is an OpenEXR with channels of several sizes");
+    channels.push_back({type, weight_of(name)});
+    if (name != "A") names += name;
+  }
+  if (names != "Y" && names != "BGR")
+    refuse_exr("is an OpenEXR without the channel Y alone, or R, G and B");
+  return channels;
+}
+
+ExrHeader header_of(ExrReader& reader) {
+  ExrHeader header;
+  for (std::string name = reader.name(); !name.empty(); name = reader.name()) {
+    reader.name();  // type
+    const auto size = reader.next<std::int32_t>();
+    const std::size_t begin = reader.at();
+    if (name == "channels") {
+      header.channels = channels_of(reader);
+    } else if (name == "compression") {
+      header.compression = reader.next<std::uint8_t>();
+    } else if (name == "dataWindow") {
+      for (std::int32_t* edge : {&header.left, &header.top, &header.right, &header.bottom})
+        *edge = reader.next<std::int32_t>();
+    }
+    if (size < 0 || reader.at() > begin + static_cast<std::size_t>(size))
+      refuse_exr("is a damaged OpenEXR file");
+    reader.skip(begin + static_cast<std::size_t>(size) - reader.at());
+  }
+  if (header.compression != 0) refuse_exr("is a compressed OpenEXR");
+  return header;
+}
+
+double half_value(std::uint16_t bits) {
+  constexpr int all_ones = 31;
+  const int exponent = bits >> 10 & all_ones, fraction = bits & 1023;
+  const double size = exponent == all_ones ? std::nan("")
+                      : exponent == 0      ? std::ldexp(fraction, -24)
+                                           : std::ldexp(1024 + fraction, exponent - 25);
+  return bits >> 15 != 0 ? -size : size;
+}
+
+double exr_value(ExrReader& reader, std::int32_t type) {
+  if (type == exr_half) return half_value(reader.next<std::uint16_t>());
+  if (type == exr_float) return static_cast<double>(reader.next<float>());
+  return reader.next<std::uint32_t>();
+}
+
+}  // namespace
+
+Frames read_exr(const std::string& bytes) {
+  constexpr std::uint32_t not_scan_lines = 0x1A00;  // tiles, deep data, several parts
+  constexpr std::int64_t most = std::int64_t{1} << 20;
+  ExrReader reader(bytes, 4);
+  if ((reader.next<std::uint32_t>() & not_scan_lines) != 0)
+    refuse_exr("is an OpenEXR of tiles, of deep data or of several parts");
+  const ExrHeader header = header_of(reader);
+  const std::int64_t columns = std::int64_t{header.right} - header.left + 1,
+                     rows = std::int64_t{header.bottom} - header.top + 1;
+  if (header.channels.empty() || columns < 1 || rows < 1 || columns > most || rows > most ||
+      static_cast<std::size_t>(columns * rows) > bytes.size())
+    refuse_exr("is a damaged OpenEXR file");
+  Frames frames{static_cast<std::size_t>(rows), static_cast<std::size_t>(columns), {}, 0};
+  frames.values.resize(static_cast<std::size_t>(rows * columns));
+  for (std::int64_t i = 0; i < rows; ++i) {
+    ExrReader line(bytes, reader.next<std::uint64_t>());
+    const std::int64_t row = std::int64_t{line.next<std::int32_t>()} - header.top;
+    line.skip(4);  // number of bytes
+    if (row < 0 || row >= rows) refuse_exr("is a damaged OpenEXR file");
+    for (const ExrChannel& channel : header.channels)
+      for (std::size_t column = 0; column < frames.columns; ++column)
+        frames.values[static_cast<std::size_t>(row) * frames.columns + column] +=
+            channel.weight * exr_value(line, channel.type);
+  }
+  return frames;
+}
+
+}  // namespace flatspeckle
