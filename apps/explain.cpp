@@ -250,10 +250,11 @@ void print_all(const std::string& path) {
     throw InputError("explain", path, "must be a result of flatspeckle");
   print_run(file);
   if (file.has_attribute("/", "complete") && !file.attribute<bool>("/", "complete")) {
-    std::cout << "The file only contains sums, since the run was interrupted. The same command with "
-                 "--resume\ncontinues it; with --samples "
-              << number_text(file.attribute<double>("/", "samples"))
-              << " as well, it writes the results of what is done.\n";
+    std::cout
+        << "The file only contains sums, since the run was interrupted. The same command with "
+           "--resume\ncontinues it; with --samples "
+        << number_text(file.attribute<double>("/", "samples"))
+        << " as well, it writes the results of what is done.\n";
     return;
   }
   print_medium(file);

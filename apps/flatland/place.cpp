@@ -187,7 +187,8 @@ std::string csv_text(const PlacementDraw& drawing, const Placement& placement,
   const bool disks = !drawing.radii.empty(), space = drawing.in_space();
   std::ostringstream text;
   // names come first, since NumPy takes them from the first line
-  text << "x,z" << (space ? ",y" : "") << (disks ? ",radius" : "") << "\n# flatspeckle " << version() << " (" << git_commit() << "): " << command_line << "\n# "
+  text << "x,z" << (space ? ",y" : "") << (disks ? ",radius" : "") << "\n# flatspeckle "
+       << version() << " (" << git_commit() << "): " << command_line << "\n# "
        << placement_word(drawing.kind) << ": " << drawing.count
        << (!disks  ? " points"
            : space ? " spheres"

@@ -72,9 +72,10 @@ void add_solve_keys(Keys& keys, SolveKeys& values) {
       .positive()
       .unit("length");
   add_period_phase_key(keys, values);
-  keys.add("map_eigenchannels", values.map_eigenchannels,
-           "Transmission eigenchannels whose fields are mapped, beside light at normal incidence: 0 "
-           "is the most open")
+  keys.add(
+          "map_eigenchannels", values.map_eigenchannels,
+          "Transmission eigenchannels whose fields are mapped, beside light at normal incidence: 0 "
+          "is the most open")
       .from(0, 1e6)
       .only_of("period with map");
   keys.group("Clusters");

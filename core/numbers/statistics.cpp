@@ -43,7 +43,8 @@ std::vector<OrthogonalControl> orthogonal(const GroupedSums& sums,
       control.deviations.push_back(
           sums.group_sums(group)[controls[i]].real() / sums.group_samples(group) - mean);
     const double whole = product(sums, control.deviations, control.deviations);
-    const double error = std::sqrt(whole / static_cast<double>(sums.groups()) / sums.total_samples());
+    const double error =
+        std::sqrt(whole / static_cast<double>(sums.groups()) / sums.total_samples());
     if (std::abs(mean) > outlier_errors(sums.groups()) * error) continue;
     for (const OrthogonalControl& other : found) {
       const double share = product(sums, control.deviations, other.deviations) /

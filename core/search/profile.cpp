@@ -28,8 +28,8 @@ double next_distance(const std::optional<Probe>& within, const std::optional<Pro
 
 }  // namespace
 
-VectorXd profile_end(const BoundedLeastSquares& problem, const LeastSquaresFit& fit,
-                     Eigen::Index i, double side, double rise) {
+VectorXd profile_end(const BoundedLeastSquares& problem, const LeastSquaresFit& fit, Eigen::Index i,
+                     double side, double rise) {
   constexpr double quadratic = 0.4, precision = 0.03, tolerance = 0.01;
   constexpr int most_probes = 10, most_iterations = 20;
   const double target = std::sqrt(rise), estimate = fit.parameters[i],

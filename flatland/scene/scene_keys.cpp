@@ -189,7 +189,8 @@ void add_profile_keys(Keys& keys, SceneSpec& spec) {
            "one of "
            "optical_depth, mean_free_path, density and mu_s (with mu_a, in place of albedo); and "
            "those of g, albedo, radius, index_re, "
-           "index_im, phase_shift, medium_index that differ between layers; also diffusion and flow, "
+           "index_im, phase_shift, medium_index that differ between layers; also diffusion and "
+           "flow, "
            "factors on the diffusion constant and the velocity")
       .file()
       .only_of("layered media, instead of depth and density");

@@ -174,7 +174,9 @@ TEST_CASE("profile of chi^2: ends where it is not quadratic agree with the close
                                     VectorXd{{-3, -5}}, VectorXd{{8, 5}}};
   const auto fit = levenberg_marquardt(problem, VectorXd{{1, 1}}, most_iterations, precise);
   REQUIRE(fit.converged);
-  const auto end = [&](double side, double rise) { return profile_end(problem, fit, 0, side, rise); };
+  const auto end = [&](double side, double rise) {
+    return profile_end(problem, fit, 0, side, rise);
+  };
   CHECK(end(1, 4)[0] == doctest::Approx(std::log(1 + 2 * std::sqrt(1.01))).epsilon(0.03));
   CHECK(end(1, 4)[1] == doctest::Approx(-2 * std::sqrt(1.01) / 101).epsilon(0.1));
   CHECK(end(-1, 0.64)[0] == doctest::Approx(std::log(1 - 0.8 * std::sqrt(1.01))).epsilon(0.1));
