@@ -9,6 +9,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 
+MOST_LIGHTS = 6
+
+
 @script.plot(dpi=150)
 def draw(result):
     result.require("map_transmittance", "solve with --period and --map writes it")
@@ -18,7 +21,7 @@ def draw(result):
     profiles = np.mean(np.abs(field[...]) ** 2, axis=-1).reshape(-1, lights, depths)  # [placement, light, depth]
     transmittance = transmittance.reshape(-1, lights).mean(axis=0)
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.8), layout="constrained")
-    for light in range(lights):
+    for light in range(min(lights, MOST_LIGHTS)):
         name = "eigenchannel" if light else "normal incidence"
         profile, look = profiles[:, light].mean(axis=0), style.line(light)
         axis.plot(z, profile, **look, label=fr"{name}, $\tau$ = {transmittance[light]:.2g}")
@@ -27,4 +30,6 @@ def draw(result):
             axis.fill_between(z, profile - error, profile + error, color=look["color"], alpha=0.3, linewidth=0)
     axis.set(xlabel=r"depth $z/\lambda$", ylabel=r"intensity $\langle|u|^2\rangle$", ylim=(0, None))
     axis.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncol=2, columnspacing=1)
+    if lights > MOST_LIGHTS:
+        axis.text(0.98, 0.98, f"{MOST_LIGHTS} of {lights} lights", transform=axis.transAxes, ha="right", va="top")
     return figure

@@ -72,4 +72,6 @@ def draw(result):
         draw_light(figure, axes[light], field[light], extent, disks)
         if lights > 1:
             axes[light, 0].set_title(title(result, light))
+    if lights < len(field):
+        axes[-1, 0].set_xlabel(f"{axes[-1, 0].get_xlabel()} ({lights} of {len(field)} lights)")
     return figure

@@ -231,11 +231,17 @@ class Stack {
                           column);
   }
 
+  /// Whether the results have a dataset or a group of this name.
+  bool has(const std::string& name) const {
+    const auto inside = sets_.lower_bound(name + '/');
+    return sets_.contains(name) || (inside != sets_.end() && inside->first.starts_with(name + '/'));
+  }
+
   /// Returns the name of the dataset of a swept axis, with the prefix swept_ if the results have a
-  /// dataset of the same name.
+  /// dataset or group of the same name.
   std::string name_of(const SweepAxis& axis) const {
     const std::string name = axis_name(axis);
-    const bool taken = sets_.contains(name) || has_row(stacked_table, name) || name == "point";
+    const bool taken = has(name) || has_row(stacked_table, name) || name == "point";
     return taken ? "swept_" + name : name;
   }
 
@@ -244,7 +250,7 @@ class Stack {
     const bool as_list = points.is_list || store_.finished() < points.count();
     std::vector<std::string> keys;
     if (as_list) {
-      const std::string name = sets_.contains("point") ? "swept_point" : "point";
+      const std::string name = has("point") ? "swept_point" : "point";
       ResultGroup(file_, sweep_axes_table).number(name, store_.finished());
       add_axis(name, store_.finished());
     }

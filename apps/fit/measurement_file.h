@@ -16,8 +16,7 @@ namespace flatspeckle::apps {
 /// tilt, delay or exposure, distance from a beam, and depth (default: the depth given to the fit).
 /// fit_keys: keys of the fit; medium, detectors: values of these keys. Throws InputError.
 mc::Measurement read_measurement(const std::string& path, const Keys& fit_keys,
-                                 const mc::MovingSpec& medium,
-                                 const mc::DetectorValues& detectors);
+                                 const mc::MovingSpec& medium, const mc::DetectorValues& detectors);
 
 /// Read a measurement from a table (CSV) and from a result file (HDF5).
 mc::Measurement measurement_of_table(const std::string& path, const Keys& fit_keys,

@@ -41,6 +41,32 @@ void check_layers(const Scene& scene) {
   }
 }
 
+/// Prints a note for layers that scatter so weakly that harmonics converge slowly in them.
+void note_thin_layers(const Scene& scene) {
+  constexpr double thin = 0.5;
+  const auto* layers = dynamic_cast<const Layers*>(scene.profile.get());
+  for (std::size_t i = 0; layers != nullptr && i < layers->materials().size(); ++i)
+    if (const double depth = layers->materials()[i].medium.mu_s * layers->thickness(i);
+        depth < thin)
+      std::fprintf(stderr,
+                   "note: layer %zu has a scattering depth (mu_s times thickness) of %.2g, below "
+                   "0.5: harmonics converge slowly there; give it a larger mu_s and g with the "
+                   "same mu_s (1 - g), or use render\n",
+                   i, depth);
+}
+
+/// Prints a note if the wavelength is not much shorter than the transport mean free path, as with a
+/// wavelength in another unit of length.
+void note_long_waves(const Scene& scene) {
+  constexpr double least = 10;
+  const double turning = scene.medium.mu_s * (1 - scene.medium.g);
+  if (scene.k < least * turning)
+    std::fprintf(stderr,
+                 "note: wavelength = %g is not much shorter than the transport mean free path, %g, "
+                 "as transport requires; both are in units of length_unit\n",
+                 scene.wavelength, 1 / turning);
+}
+
 void print_distances(const mc::DistanceRequest& request, const mc::DistanceEstimates& found) {
   std::printf("%10s  %-24s %-24s\n", "distance", "detected power", "reflectance per area");
   for (std::size_t d = 0; d < request.detectors.size(); ++d)
@@ -151,6 +177,7 @@ class ReflectanceExperiment : public Experiment {
       throw InputError("distances: required, such as distances = 10 20 30");
     request_ = mc::make_detectors(keys, detectors_, "distances", distances_);
     request_.gradient = keys.read(gradient_);
+    has_wavelength_ = keys.given(spec_.wavelength);
     request_.length_unit = keys.read(length_unit_);
     request_.dynamics = mc::make_dynamics(keys, dynamics_, spec_, length_unit(keys));
     const mc::Motion& motion = request_.dynamics.motion;
@@ -177,6 +204,13 @@ class ReflectanceExperiment : public Experiment {
           "note: numerical_aperture = %g converges slowly; it usually requires tolerance = "
           "%g\n",
           request_.numerical_aperture, enough);
+    if (scene_->faces && scene_->faces->outside > request_.numerical_aperture)
+      std::fprintf(stderr,
+                   "note: numerical_aperture = %g is below outside_index = %g: light at larger "
+                   "angles is not detected\n",
+                   request_.numerical_aperture, scene_->faces->outside);
+    note_thin_layers(*scene_);
+    if (has_wavelength_) note_long_waves(*scene_);
   }
 
   PlannedExperiment plan() const override {
@@ -220,7 +254,7 @@ class ReflectanceExperiment : public Experiment {
   std::vector<double> distances_;
   mc::DetectorValues detectors_;
   std::optional<double> length_unit_;
-  bool gradient_ = false;
+  bool gradient_ = false, has_wavelength_ = false;
   mc::InstrumentValues instrument_values_;
   std::optional<mc::Instrument> instrument_;
   std::optional<Scene> scene_;

@@ -199,6 +199,10 @@ class SolveExperiment : public OneShot {
           "near_sources", values_.spec.near_sources,
           "requires an index_field or dimension = 3 (covariance --method wave accepts near_sources "
           "without them)");
+    if (values_.spec.beam_waist && !has_own_places(values_.spec))
+      throw InputError(
+          "beam_waist", *values_.spec.beam_waist,
+          "requires dimension = 3 (covariance --method wave accepts beams without it)");
     sensors_ = sensors_of(keys, values_.spec);
     if (values_.cluster.empty())
       read_placement_and_work(keys);
@@ -439,8 +443,8 @@ class SolveExperiment : public OneShot {
          << " channels on each side, " << found.unknowns << " unknowns: " << found.method
          << (grid_ ? "; " : "") << map_method;
     if (prints)
-      std::printf("%s\nerrors of power %.1e, of reciprocity %.1e\n", plan.str().c_str(),
-                  found.power.off, found.reciprocity.off);
+      std::printf("%s\nerror of power %.1e, %s\n", plan.str().c_str(), found.power.off,
+                  error_of_reciprocity(found.reciprocity).c_str());
     return Made{plan.str(), 1};
   }
 

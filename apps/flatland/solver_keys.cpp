@@ -1,5 +1,6 @@
 #include "apps/flatland/solver_keys.h"
 
+#include <cstdio>
 #include <vector>
 
 #include "core/keys/chosen.h"
@@ -35,6 +36,13 @@ wave::SolveOptions solve_options(const Keys& keys, const SolverKeys& values) {
   wave::SolveOptions options{.tolerance = keys.read(values.tolerance), .sensors = {}};
   options.method = solver_method(keys.read(values.solver));
   return options;
+}
+
+std::string error_of_reciprocity(const Invariant& reciprocity) {
+  if (!(reciprocity.limit > 0)) return "reciprocity is not checked (period_phase)";
+  char text[40];
+  std::snprintf(text, sizeof text, "of reciprocity %.1e", reciprocity.off);
+  return text;
 }
 
 }  // namespace flatspeckle::apps

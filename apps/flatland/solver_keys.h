@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/keys/keys.h"
+#include "core/result/invariant.h"
 #include "wave_solver/solutions/equation_solver.h"
 
 namespace flatspeckle::apps {
@@ -21,5 +22,8 @@ void add_period_phase_key(Keys& keys, SolverKeys& values);
 wave::Method solver_method(const std::string& solver);
 /// Reads the keys of add_solver_keys().
 wave::SolveOptions solve_options(const Keys& keys, const SolverKeys& values);
+
+/// Returns the printed error of reciprocity of a periodic cell, or that it was not checked.
+std::string error_of_reciprocity(const Invariant& reciprocity);
 
 }  // namespace flatspeckle::apps

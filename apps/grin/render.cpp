@@ -281,6 +281,11 @@ class RenderExperiment : public Experiment {
     if (prints) write_counts(file, transport_counts(job, sums));
     if (const auto light = worst_light(checks))
       ResultGroup(file, grin::render_table).check("invariants/light", *light);
+    std::vector<Invariant> sidebands;
+    for (const grin::SensorResult& sensor : result)
+      if (sensor.sidebands) sidebands.push_back(sensor.sidebands->balance);
+    if (!sidebands.empty())
+      ResultGroup(file, grin::render_table).check("invariants/sidebands", sidebands);
     if (const auto energy = energy_result(job, sums)) {
       if (prints) print_energy(*energy);
       write_energy(file, *scene_, request_, *energy);

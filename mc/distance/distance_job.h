@@ -52,8 +52,8 @@ struct DistanceLayout {
 /// The degree of the harmonics is increased until two successive solutions agree.
 Refined distance_solution(const Scene& slab, const DistanceRequest& request, double tolerance);
 
-/// Returns the values of distance_solution() for harmonics up to one fixed degree: a smooth function
-/// of the medium.
+/// Returns the values of distance_solution() for harmonics up to one fixed degree: a smooth
+/// function of the medium.
 std::vector<Complex> distance_values(const Scene& slab, const DistanceRequest& request, int degree);
 
 /// Returns distance_solution() as a job (two_batches()).

@@ -92,6 +92,29 @@ Eigen::VectorXcd RadianceHarmonics::flow(const Eigen::VectorXcd& even) const {
   return flow;
 }
 
+Rows RadianceHarmonics::transport(Complex q, double decay) const {
+  const auto size = static_cast<Eigen::Index>(even_.size() + odd_.size());
+  const auto row = [&](Index at) {
+    return static_cast<Eigen::Index>(position(at) + ((at.l + at.m) % 2 == 0 ? 0 : even_.size()));
+  };
+  Rows matrix = Rows::Zero(size, size);
+  const auto couple = [&](Index a, Index b, Complex value) {
+    matrix(row(a), row(b)) = matrix(row(b), row(a)) = value;
+  };
+  for (int m = 0; m <= order_; ++m)
+    for (int l = m; l <= order_; ++l) {
+      if (l < order_) couple({l, m}, {l + 1, m}, -decay * coupling(l, m));
+      const Complex half = Complex(0, 1) * q * (m == 0 ? std::sqrt(0.5) : 0.5);
+      if (l < order_)
+        couple({l, m}, {l + 1, m + 1},
+               half * std::sqrt((l + m + 1.0) * (l + m + 2) / ((2.0 * l + 1) * (2 * l + 3))));
+      if (l > m + 1)
+        couple({l, m}, {l - 1, m + 1},
+               -half * std::sqrt((l - m) * (l - m - 1.0) / ((2.0 * l - 1) * (2 * l + 1))));
+    }
+  return matrix;
+}
+
 FaceConditions RadianceHarmonics::face(const Face& face, double sine_limit) const {
   const double ratio = face.to / face.from, critical = ratio < 1 ? std::sqrt(1 - ratio * ratio) : 0,
                limit = std::sqrt(std::max(0.0, 1 - sine_limit * sine_limit));

@@ -43,6 +43,9 @@ class RadianceHarmonics {
   static double coupling(int l, int m);
   /// Returns the coefficients of the odd functions in cos(theta) times a sum of even functions.
   Eigen::VectorXcd flow(const Eigen::VectorXcd& even) const;
+  /// Returns the matrix of i q sin(theta) cos(phi) - decay cos(theta) in the even functions,
+  /// followed by the odd ones.
+  Rows transport(Complex q, double decay) const;
 
   /// Returns the conditions at a face, seen from the medium. The radiance that leaves is a
   /// polynomial in cos(theta) > 0 times sin(theta)^m; that which enters is its reflection. The

@@ -33,7 +33,8 @@ std::vector<AxialMode> axial_modes(const LayerLosses& layer, int order) {
 
 LayerModes::LayerModes(const HarmonicRotation& rotation, const RadianceHarmonics& harmonics,
                        const std::vector<AxialMode>& axial, Complex q)
-    : decay(axial.size()),
+    : frequency(q),
+      decay(axial.size()),
       norm(axial.size()),
       even(harmonics.even().size(), axial.size()),
       odd(harmonics.odd().size(), axial.size()),

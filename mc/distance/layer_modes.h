@@ -41,6 +41,7 @@ struct LayerModes {
   LayerModes(const HarmonicRotation& rotation, const RadianceHarmonics& harmonics,
              const std::vector<AxialMode>& axial, Complex q);
 
+  Complex frequency;  ///< q
   Eigen::VectorXcd decay;
   /// Norms v^T (cos(theta) v). Modes of different decay are orthogonal in this product.
   Eigen::VectorXcd norm;

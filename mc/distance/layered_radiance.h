@@ -62,23 +62,14 @@ class LayeredRadiance {
   };
   class Solver;
 
-  /// Integrals over a layer of the adjoint radiance times the power of the beam, and times depth in
-  /// the layer times that power; one row per function.
-  struct Overlap {
-    Rows even, odd;
-  };
-
   Vector attenuation(std::size_t layer) const;
   Vector beam_source(std::size_t layer) const;
   Following following(std::size_t layer) const;
   Sources sources_of_beam(const std::vector<Following>& following) const;
   Sources sources_of_detector() const;
-  Overlap overlap(std::size_t layer, const Amplitudes& adjoint) const;
-  /// Returns the sum over l of factor[l] times the coefficient of Y_l0 in a column of an overlap.
-  Complex axial_sum(const Overlap& overlap, Eigen::Index column, const Vector& factor) const;
+  Complex power_from(std::size_t layer, const Amplitudes& adjoint) const;
   LossDerivatives derivatives(std::size_t layer, const Amplitudes& adjoint,
-                              const Amplitudes& radiance, const Following& following,
-                              const Overlap& overlap) const;
+                              const Amplitudes& radiance, const Following& following) const;
 
   const RadianceHarmonics& harmonics_;
   const std::vector<LayerLosses>& layers_;

@@ -92,6 +92,8 @@ class BadFit(RefusingTest):
         refused(["delay"], "distance,field_correlation,error\n5,0.5,0.1\n")
         refused(["delay must be positive"], decay.replace("0.1,0.5", "-0.1,0.5"))
         refused(["values at distances", "transport"], method="mc", seed=1)
+        for key in "dimension", "light_azimuths", "view_azimuths":
+            refused([key, "light at distances"], **{key: 3})
         refused(["free = detector_scale", "cannot be determined"], decay, free=("detector_scale=0.1:10",))
         refused(["detector_scale"], decay, detector_scale=2)
         refused(["albedo = 0.9", "follows from mu_s"], albedo=0.9)

@@ -1,5 +1,6 @@
 """The total field on a grid, streamed into the result file."""
 
+import os
 import resource
 import signal
 import subprocess
@@ -137,7 +138,7 @@ class Unfinished(ProgramTest):
         for number in signal.SIGINT, signal.SIGTERM:
             process = self.start("solve", **{**POINTS, "map_pixels": [4000, 4000]}, out="map.h5")
             self.wait_until_it_catches(process, number)
-            self.wait_until(process, lambda: any(".tmp" in name for name in self.listing()))
+            self.wait_until(process, lambda: any(".tmp" in name for name in os.listdir(self.folder)))
             process.send_signal(number)
             self.assertEqual(process.wait(timeout=60), 130)
             self.assertEqual(self.listing(), self.before)

@@ -122,6 +122,16 @@ class SweepOf(SweepTest):
         np.testing.assert_array_equal(swept["column_of_point"], [[-0.25, 0.25], [-0.5, 0.5]])
         np.testing.assert_array_equal(swept["row"], [0])
 
+    def test_placements(self):
+        """A swept key and a group of the results have the same name."""
+        for name, z in ("a.csv", 1), ("b.csv", 1.1):
+            self.write(name, f"x,z\n1,{z}\n2,3\n")
+        keys = {"of": "solve", "scatterer": "point", "phase_shift": 0.9, "light_angles": 0, "view_angles": [0.1, 0.2], "threads": 1}
+        self.call("sweep", **keys, vary="placement=a.csv,b.csv", out="both.h5")
+        both = datasets(self.folder / "both.h5")
+        self.assertEqual(list(both["swept_placement_word"]), [b"a.csv", b"b.csv"])
+        np.testing.assert_array_equal(both["placement/z"], [[1, 3], [1.1, 3]])
+
     def test_words(self):
         keys = {**GRID, "vary": ["method=light,path"], "amplitude": 0.001, "method": None}
         told = self.call("sweep", **keys, out="sweep.h5").stderr

@@ -57,6 +57,21 @@ class Tagged(RefusingTest):
             self.assertEqual(file["image_sideband"].shape[0], 4)
             self.assertTrue(0.9 < sum(shares) < 1 and np.all(np.diff(shares) < 0), shares)
 
+    def test_guided(self):
+        """Paths that are guided to a small sensor count the sound as those that are not, of two beams."""
+        def shares(**keys):
+            self.call("render", config=DATA / "scenes" / "tagged_slab.toml", sensor_radius=3, rings=1, out="x.h5", **keys)
+            with h5py.File(self.folder / "x.h5") as file:
+                self.assertLessEqual(file["invariants/sidebands"][()], 1e-9)
+                return file.attrs["plan"], file["mean_sideband"][()], file["mean_sideband_error"][()]
+        beam = [0, 0, 0, 0, 0, 1, 0.5]
+        plan, guided, error = shares(beam_light=[*beam, 1], samples=30000)
+        self.assertIn("paths guided to the sensors", plan)
+        plan, plain, plain_error = shares(beam_light=[*beam, 0.5, *beam, 0.5], samples=300000)
+        self.assertNotIn("guided", plan)
+        self.assertTrue(np.all(abs(guided - plain) < 4 * np.hypot(error, plain_error)), (guided, plain, error, plain_error))
+        self.assertLess(error[1] / guided[1], 0.1)
+
     def test_bad_input(self):
         wave = [5e-5, 4, 0, 0, 0, 0, 1, 0, 0, 0]
         good = {**STAGE, **SOUND, "transducer": wave}

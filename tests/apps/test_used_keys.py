@@ -10,6 +10,8 @@ import unittest
 from format_scenes import FILES, RUNS, cost
 from program import PROGRAM, ProgramTest, bits_of, datasets, flags
 
+RECOVERED = ("recover", "recover_sources", "recover_phases", "recover_reference", "recover_lucy")
+TAGGED = [f"tagged_{sensor}" for sensor in ("area", "directional", "polar", "radial", "camera")]
 # A key, or a subcommand or scene with its key.
 WITHOUT_EFFECT = {
     "neglect_k_shift": "permits what these scenes do not do",
@@ -28,6 +30,34 @@ WITHOUT_EFFECT = {
     "fit_paths model_share": "the least number of paths is enough",
     "fit_paths trust_paths": "the measurement's errors are much larger",
     "fit_plans g": "varied",
+    "mesh body_mesh_crease": "the mesh has right angles",
+    "mesh body_mesh_weld": "its vertices lie far apart",
+    "space_solve min_gap": "few spheres lie far apart",
+    "own_places min_gap": "the placement is given",
+    "optimise target_error": "the first points meet it",
+    "optimise starts": "a coarse search",
+    **{f"{scene} frame_axes": "columns with names" for scene in RECOVERED},
+    **{f"{scene} {key}": "the peaks found lie within" for scene in (*RECOVERED, "recover_points") for key in ("longest", "resolution")},
+    "recover_picture recovery": "auto takes phases too",
+    "spectra method": "auto takes paths too",
+    "shifts_exact index_field": "exact waves contain the mean field",
+    "space depth": "the mean free path is a fraction of it",
+    "space wavelength": "all directions are angles",
+    "sweep_of mu_a": "varied",
+    "singlet integrator": "rays between surfaces are straight",
+    **{f"{scene} {key}": "a bound that rays do not meet" for scene, key in (("ramp", "stop_box"), ("singlet", "stop_box"), ("singlet", "body_box"))},
+    "fit_paths seconds": "the search ends before",
+    "fit_distance method": "transport is the only model, mc is rejected",
+    **{f"{camera} {key}": why for camera in ("camera_across", "far_camera", "lens_image")
+       for key, why in (("view_azimuths", "the view is along the axis"), ("tolerance", "the fast sums reach less than these"))},
+    **{f"{scene} {key}": why for scene in TAGGED
+       for key, why in (("transducer_waves", "the transducer has no aperture"), ("length_unit", "recorded as an attribute"))},
+    "lens_image method": "auto takes paths too, and covariance is rejected",
+    "flux_faces wavelength": "the powers depend on the optical depth and the indices alone",
+    "flux_faces depth": "the same, since the optical depth is given",
+    "flux_faces tolerance": "the first solutions meet these",
+    "display target": "one iteration is made",
+    "display tolerance": "one iteration is made",
     "image resolution": "the points lie far apart",
     "reflectance wavelength": "layers have coefficients, and delays no unit",
 }

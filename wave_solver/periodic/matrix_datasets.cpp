@@ -101,7 +101,7 @@ void write_statistics(ResultFile& file, const MatrixJob& job, const MatrixStatis
     root.put("conjugation_theory", found.conjugation_theory);
   }
   root.check("invariants/power", found.power);
-  root.check("invariants/reciprocity", found.reciprocity);
+  if (found.reciprocity.limit > 0) root.check("invariants/reciprocity", found.reciprocity);
   if (found.unit_cell.limit > 0) root.check("invariants/unit_cell", found.unit_cell);
 }
 
@@ -142,7 +142,7 @@ void write_scattering_matrix(ResultFile& file, const ScatteringMatrix& found) {
            eigenchannels(found.quarter(false, true), found.channels.size()).eigenvalues);
   if (found.residual >= 0) root.put("solve/residual", found.residual);
   root.check("invariants/power", found.power);
-  root.check("invariants/reciprocity", found.reciprocity);
+  if (found.reciprocity.limit > 0) root.check("invariants/reciprocity", found.reciprocity);
   if (found.unit_cell.limit > 0) root.check("invariants/unit_cell", found.unit_cell);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <utility>
 
@@ -21,9 +22,11 @@ struct GuidedPath {
   int layer;
   double optical_path = 0;
   int scatterings = 0;
-  bool can_turn = true;  ///< whether it has stayed closer to the axis than the sides of the stage
-  double moved = 0;      ///< momentum transfer, weighted by the diffusion of the parts
+  bool can_turn =
+      true;          ///< without sound, until it is farther from the axis than a side of the stage
+  double moved = 0;  ///< momentum transfer, weighted by the diffusion of the parts
   MomentumTransfer transfer = {};
+  std::complex<double> modulation = 0;  ///< by the sound (TaggingSound)
   PathScore score = {};
   DistanceImportance::Value importance{1, Vec3::Zero()};
 };
@@ -80,7 +83,8 @@ class GuidedWalk {
     reach_ = layers_.distance_to_sides(start_);
     GuidedPath path{.x = {0, 0, start_[2]},
                     .direction = layers_.local(first.direction),
-                    .weight = first.strength / (end.position_density * end.choice * first.density)};
+                    .weight = first.strength / (end.position_density * end.choice * first.density),
+                    .can_turn = !film_.sound()};
     power_ = path.weight;
     const bool goes_up = path.direction[2] > 0;
     const auto& all = layers_.layers();
@@ -111,8 +115,14 @@ class GuidedWalk {
     return path.scatterings > 0 ? Termination::scattered : Termination::unscattered;
   }
 
+  /// Returns where a path is in the coordinates of the stage.
+  Vec3 place_of(const GuidedPath& path) const {
+    return layers_.global(path.x + Vec3(start_[0], start_[1], 0));
+  }
   void move(GuidedPath& path, double length) {
     const LevelLayer& in = layer(path.layer);
+    if (const TaggingSound* const sound = film_.sound(); sound && in.part == sound->part)
+      path.modulation += sound->flown(place_of(path), layers_.global(path.direction), length);
     path.x += length * path.direction;
     path.optical_path += (1 + in.excess) * length;
     path.score.flew(length);
@@ -215,6 +225,9 @@ class GuidedWalk {
       path.moved += film_.decay().diffusion[static_cast<std::size_t>(in.part)] *
                     (direction - path.direction).squaredNorm() / 2;
     }
+    if (const TaggingSound* const sound = film_.sound(); sound && in.part == sound->part)
+      path.modulation +=
+          sound->turned(place_of(path), layers_.global(path.direction), layers_.global(direction));
     path.direction = direction;
     return true;
   }
@@ -261,7 +274,7 @@ class GuidedWalk {
     move(path, std::max(0.0, length));
     reweigh(path, weight * std::exp(-in.medium.mu_a * length));
     energy_.add(termination, path.weight);
-    if (of_beam_ && path.scatterings == 0) return;
+    if (of_beam_ && path.scatterings == 0 && !film_.sound()) return;
     if (path.can_turn)
       for (const PathGuide::Disk& disk : guide_.disks()) {
         if (disk.is_last == is_last) hit(disk, path);
@@ -286,7 +299,7 @@ class GuidedWalk {
     }
   }
   void hit_unturned(const GuidedPath& path) {
-    const Vec3 x = layers_.global(path.x + Vec3(start_[0], start_[1], 0));
+    const Vec3 x = place_of(path);
     for (const SensorEnd& sensor : transport_.sensors)
       sensor.hit(space_, x, layers_.global(path.direction),
                  [&](const EndHit& hit) { add(hit.direction.pixel, path, hit.value); });
@@ -296,6 +309,7 @@ class GuidedWalk {
     if (!(value > 0)) return;
     deposit(film_, counts_, pixel, value, path.optical_path, path.transfer);
     film_.add_hit(pixel, value);
+    if (film_.sound()) film_.add_sidebands(pixel, value, path.modulation);
     if (film_.has_derivatives()) path.score.add_to(film_, pixel, value, transport_.stage.medium);
   }
 

@@ -17,13 +17,13 @@ namespace flatspeckle::grin {
 /// Layers, phase functions and a light along their normal are symmetric about the axis through the
 /// start of a path. A path that stays closer to the axis than the sides of the stage can therefore
 /// be turned about the axis, and the mean over all turns replaces its contribution. Longer paths
-/// contribute as they are.
+/// contribute as they are, and all paths if sound tags them.
 class PathGuide {
  public:
-  /// Returns nullopt unless the stage is of level layers, at least a transport mean free path thick,
-  /// the index is constant in each of them, there is one light, a beam or fibre along their normal,
-  /// all sensors are disks on the first or last plane, and at most this share of the paths would
-  /// reach some sensor.
+  /// Returns nullopt unless the stage is of level layers, at least a transport mean free path
+  /// thick, the index is constant in each of them, there is one light, a beam or fibre along their
+  /// normal, all sensors are disks on the first or last plane, and at most this share of the paths
+  /// would reach some sensor.
   static std::optional<PathGuide> of(const RenderScene& scene, double most_share = 0.02);
 
   /// A sensor in coordinates of the layers.

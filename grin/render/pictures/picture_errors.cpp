@@ -45,6 +45,12 @@ double unseen(double variance, double sum) {
 
 }  // namespace
 
+double few_of_pixels(std::size_t groups) {
+  constexpr double few = 12, events = 3, many = 216;  // groups without reduction by jackknife()
+  const double all = static_cast<double>(groups);
+  return std::max(few, std::min(events, all / 5) * many / all);
+}
+
 void bound_errors(Estimate& picture, const PixelGrid& grid) {
   const std::size_t size = picture.value.size();
   const std::vector<double> values = real_parts(picture.value);
@@ -68,15 +74,19 @@ void bound_errors(Estimate& picture, const PixelGrid& grid) {
     const double bound =
         values_around[i] > 0 ? unseen(variances_around[i], values_around[i]) : of_all;
     const bool is_rough = picture.error[i] > rough_error * std::abs(values[i]);
+    const double mean_variance = variances_around[i] / std::max(lit_around[i], 1.0);
+    const bool misses_events =
+        undersampled_lit_around[i] > lit_around[i] / 8 && 4 * variances[i] < mean_variance;
     // Its few paths are weaker than those around it, and one of these would exceed its error.
     const bool misses_light = picture.rare[i] && picture.error[i] < bound;
-    const bool is_known = values[i] != 0 && !is_rough && !misses_light &&
+    const bool is_known = values[i] != 0 && !is_rough && !misses_light && !misses_events &&
                           undersampled_around[i] <= values_around[i] / 2 &&
                           undersampled_lit_around[i] <= lit_around[i] / 2;
     const bool is_dark = values_around[i] == 0 && of_all > 0;
     picture.rare[i] = !is_known && !is_dark;
     if (is_known) continue;
     picture.error[i] = std::max(2 * picture.error[i], bound);
+    if (misses_events) picture.error[i] = std::max(picture.error[i], std::sqrt(mean_variance));
   }
 }
 

@@ -9,9 +9,11 @@ namespace flatspeckle::grin {
 /// contribute to it. With path weights as unequal as in a graded fibre, values from fewer groups
 /// deviate by more than two errors too often.
 inline constexpr double few_of_values = 36;
-/// The corresponding number for pixels of pictures, whose neighbours are considered as well
-/// (bound_errors).
-inline constexpr double few_of_pixels = 12;
+/// Returns the corresponding number for pixels of pictures, whose neighbours are considered as well
+/// (bound_errors): 12. jackknife() reduces it in proportion if there are few groups; for those it
+/// is raised, so that pixels in whose paths one or two events differ from all others are
+/// undersampled.
+double few_of_pixels(std::size_t groups);
 
 /// Recomputes the undersampled flags (Estimate::rare) of a picture [row][column][bin] from
 /// neighbourhoods, and replaces the errors of undersampled entries by upper bounds. An entry is
@@ -21,9 +23,13 @@ inline constexpr double few_of_pixels = 12;
 /// - Entries that are flagged or have errors above 40 % are more than half of those with light
 ///   around it, or have more than half of the light there. Its own flag does not suffice, since an
 ///   entry that paths of high weight have missed by chance has a small error.
+/// - Entries that are flagged are more than an eighth of those with light around it, and its error
+/// is
+///   less than half of the RMS error there: the rare events of its neighbours may have missed it.
 /// - No path has hit it, but there is light around it.
 /// The error of an undersampled entry is doubled, but is at least the bound for missed
-/// contributions that are as large as those around it. Entries without light around them are dark:
+/// contributions that are as large as those around it and, after missed events, the RMS error
+/// there. Entries without light around them are dark:
 /// their error is the bound for contributions as large as those of the whole picture.
 void bound_errors(Estimate& picture, const PixelGrid& grid);
 

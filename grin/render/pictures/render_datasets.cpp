@@ -416,7 +416,10 @@ const DatasetTable render_table{
           "contributions left out because they were not finite"},
          {"invariants/light", Data::invariant, "", "1",
           "relative difference between the mean of a sensor and that of the light paths that hit "
-          "it, or, for path tracing, that of bidirectional tracing; largest over the sensors"}},
+          "it, or, for path tracing, that of bidirectional tracing; largest over the sensors"},
+         {"invariants/sidebands", Data::invariant, "", "1",
+          "for each sensor: how far the sum of mean_sideband is above 1, or below 1 - "
+          "mean_modulation / 32"}},
     .attributes = {
         {"", "length_unit", "float64", "metres in a unit of length, if given"},
         {"", "mesh_volume", "float64",

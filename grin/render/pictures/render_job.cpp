@@ -97,8 +97,8 @@ Estimate steady_picture(const RenderJob& job, const GroupedSums& sums) {
         [=](double samples, std::span<const Complex> all) {
           return sample_mean(samples, all.subspan(first, pixels));
         },
-        job.few_of_pictures);
-  return jackknife(sums, EntryRange{job.first_of_steady(), pixels}, job.few_of_pictures);
+        job.few_of_pictures(sums));
+  return jackknife(sums, EntryRange{job.first_of_steady(), pixels}, job.few_of_pictures(sums));
 }
 
 /// Makes the estimator of the means of `count` sums of each pixel, beginning with sum `first`.
@@ -145,13 +145,11 @@ Tracer tracer_of(const Tracers& tracers, const RenderScene& scene, const RenderR
   return request.method ? tracers.make(*request.method) : best_tracer(tracers);
 }
 
-/// Returns the number of groups below which an error counts as undersampled; it is smaller if all
-/// sensors have enough pixels for the neighbourhoods of bound_errors().
-double few_of(const std::vector<SensorEnd>& sensors) {
+/// Whether all sensors have enough pixels for the neighbourhoods of bound_errors().
+bool have_neighbours(const std::vector<SensorEnd>& sensors) {
   constexpr int many = 25;  // size of a neighbourhood in bound_errors()
-  const bool have_neighbours = std::ranges::all_of(
+  return std::ranges::all_of(
       sensors, [](const SensorEnd& sensor) { return sensor.pixels().count() >= many; });
-  return have_neighbours ? few_of_pixels : few_of_values;
 }
 
 /// Relative error of a picture; infinite if it is dark, since its error is then not known.
@@ -420,7 +418,8 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   job.plan = described(scene, request, tracer.method) + tracers.plan().describe() +
              described_steps(scene, tracers.plan()) + described_sensors(scene) +
              described_map(scene) + (tracers.walks() ? "" : "; rays of beams alone") +
-             (tracer.is_guided ? "; paths guided to the sensors and turned about the light" : "") +
+             (tracer.is_guided ? "; paths guided to the sensors" : "") +
+             (tracer.is_guided && !scene.bins.sound ? " and turned about the light" : "") +
              (tracer.is_aimed ? "; lights aimed at the sensors" : "");
   job.pictures = static_cast<std::size_t>(pixels) * scene.bins.sums();
   const bool tallies_power = walks_light(tracer.method) && pixels > 0;
@@ -443,7 +442,7 @@ RenderJob render_job(const RenderScene& scene, const RenderRequest& request, std
   RenderBatch batch{job, tracer, {}, map, pixel_shares(scene.sensors), paths, tallies_power, seed};
   if (tracer.method == RenderMethod::path) batch.other = tracers.make(RenderMethod::bidirectional);
   job.batches.run = batch;
-  job.few_of_pictures = few_of(tracer.transport->sensors);
+  job.pixels_have_neighbours = have_neighbours(tracer.transport->sensors);
   job.batches.relative_error = [layout = job, kinds = scene.sensors, cells = scene.map,
                                 target = request.target](const GroupedSums& sums) {
     const std::vector<LightCheck> checks = light_checks(layout, sums);
@@ -485,7 +484,7 @@ Estimate RenderJob::estimate_of(const LightCheck& check, const GroupedSums& stea
 RenderedPicture rendered_picture(const RenderJob& job, const GroupedSums& sums) {
   const TimeBins& bins = job.bins;
   const auto estimate = [&](const Estimator& theta) {
-    return job.estimate(sums, theta, job.few_of_pictures);
+    return job.estimate(sums, theta, job.few_of_pictures(sums));
   };
   RenderedPicture picture{.bins = estimate(some_sums(job, bins.count > 1 ? 1 : 0, bins.count)),
                           .steady = steady_picture(job, sums)};

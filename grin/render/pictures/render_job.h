@@ -50,7 +50,10 @@ struct RenderJob {
                        const Estimator& theta) const;
   /// Index of the first pixel in steady_sums().
   std::size_t first_steady() const { return 2 * sensors; }
-  double few_of_pictures = few_of_values;
+  bool pixels_have_neighbours = false;  ///< those which bound_errors() considers
+  double few_of_pictures(const GroupedSums& sums) const {
+    return pixels_have_neighbours ? few_of_pixels(sums.groups()) : few_of_values;
+  }
 };
 
 /// Returns those sums from which means and powers of sensors are estimated: those of LightCheck,

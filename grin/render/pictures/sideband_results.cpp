@@ -1,5 +1,6 @@
 #include "grin/render/pictures/sideband_results.h"
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,13 @@ std::vector<Complex> shares_of(std::span<const Complex> pixel, const TimeBins& b
   for (int n = first; n < first + count; ++n)
     shares.push_back(light == 0.0 ? 0 : pixel[static_cast<std::size_t>(n)] / light);
   return shares;
+}
+
+Invariant balance_of(const SidebandResult& result, bool is_lit) {
+  double kept = is_lit ? 0 : 1;
+  for (const Complex& share : result.mean.value) kept += share.real();
+  const double most_missing = result.modulation.value[0].real() / (2 * sidebands * sidebands);
+  return {std::max({0.0, kept - 1, 1 - kept - most_missing}), 1e-9};
 }
 
 }  // namespace
@@ -45,6 +53,12 @@ SidebandResult sideband_result(const SensorPixels& pixels, std::size_t first_pix
     }
     return list;
   });
+  const auto own = sums.total();
+  const bool is_lit =
+      std::any_of(own.begin() + static_cast<std::ptrdiff_t>(first_pixel * stride),
+                  own.begin() + static_cast<std::ptrdiff_t>((first_pixel + count) * stride),
+                  [](const Complex& sum) { return sum != 0.0; });
+  found.balance = balance_of(found, is_lit);
   return found;
 }
 

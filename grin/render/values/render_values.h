@@ -9,6 +9,7 @@
 #include "grin/render/pictures/render_job.h"
 #include "grin/render/stage/stage.h"
 #include "grin/render/values/field_body.h"
+#include "grin/render/values/map_values.h"
 #include "grin/render/values/tagging.h"
 
 namespace flatspeckle::grin {
@@ -46,8 +47,7 @@ struct RenderValues {
   std::vector<double> delays{}, diffusion{};
   TaggingValues tagging{};
   std::vector<std::string> gradient_by{};
-  std::vector<double> map_box{}, map_cylinder{};
-  std::vector<std::int64_t> map_cells{};
+  MapValues map{};
   std::optional<double> length_unit = {}, step = {}, max_length = {};
   bool random_phase = false;
 };

@@ -122,9 +122,11 @@ AngularGrid::AngularGrid(const std::vector<Focus>& foci, int order, double fine,
     if (edge.index > own_) break;
     const bool root = *next == ends[i + 1];
     const int nodes = ends[i + 1] == right_angle ? last_nodes : order;
-    const double base = root && edge.of_layer ? edge.index : indices.largest;
-    panels_.push_back({base, angle_in(base, indices.largest, ends[i]),
-                       angle_in(base, indices.largest, ends[i + 1]), root, size,
+    // Rounding would move this right angle by 1e-8, where the cosine is as small.
+    const bool grazes = root && edge.of_layer;
+    const double base = grazes ? edge.index : indices.largest,
+                 to = grazes ? right_angle : angle_in(base, indices.largest, ends[i + 1]);
+    panels_.push_back({base, angle_in(base, indices.largest, ends[i]), to, root, size,
                        root ? gauss_jacobi(nodes) : gauss_legendre(nodes)});
     size += nodes;
   }
