@@ -22,7 +22,8 @@ def draw(result):
     transmittance = transmittance.reshape(-1, lights).mean(axis=0)
     figure, axis = plt.subplots(figsize=(style.COLUMN, 2.8), layout="constrained")
     for light in range(min(lights, MOST_LIGHTS)):
-        name = "eigenchannel" if light else "normal incidence"
+        eigenchannels = result.file["map_wave"].attrs.get("eigenchannels", light)
+        name = "normal incidence" if light == 0 else "eigenchannel" if light <= eigenchannels else "own light"
         profile, look = profiles[:, light].mean(axis=0), style.line(light)
         axis.plot(z, profile, **look, label=fr"{name}, $\tau$ = {transmittance[light]:.2g}")
         if len(profiles) > 1:

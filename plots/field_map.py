@@ -52,7 +52,8 @@ def draw_light(figure, axes, field, extent, disks):
 
 def title(result, light):
     if result.has("map_wave"):
-        name = "eigenchannel" if light else "channel closest to normal incidence"
+        eigenchannels = result.file["map_wave"].attrs.get("eigenchannels", light)
+        name = "channel closest to normal incidence" if light == 0 else "eigenchannel" if light <= eigenchannels else "own light"
         return f"{name}, transmittance {result.values('map_transmittance')[light]:.2g}"
     return f"illumination at {style.angle(result.values('light_angle')[light])}"
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Result of `flatspeckle fit`: data and fitted curves, residuals in standard errors, and error ellipses (1 and 2
-standard errors) for pairs of parameters."""
+standard errors) for pairs of parameters. Values that belong to no curve, such as transmittances, are drawn over their
+number; a value beside curves is printed."""
 
 from lib import script, style
 
@@ -14,16 +15,22 @@ NAMES = {"field_correlation": r"$C_E$", "intensity_correlation": r"$C_I$", "inte
 MOST_PAIRS = 6  # those of the most correlated errors
 
 
+ROW = "number of the value"  # label of the abscissa of values that belong to no curve
+
+
 def abscissas(result, observable):
-    """Returns the abscissa of every datum and its label: a tilt or angle, a time, a distance from a beam, or, for
-    covariances of fields, the index of the value."""
+    """Returns the abscissa of every datum and its label: a tilt or angle, a time, a distance from a beam, the index of
+    the value for covariances of fields, or the number of a value that belongs to no curve."""
     angle = result.values("datum_angle")
     time, distance = (result.values(name) if result.has(name) else 0 * angle for name in ("datum_time", "datum_distance"))
     curve = result.values("datum_curve")
     moves = np.isin(curve, curve[time > 0])  # curves over times may begin at 0
-    kinds = [observable == "field_covariance", moves, distance > 0]
-    return (np.select(kinds, [np.arange(len(angle)), time, distance], angle),
-            np.select(kinds, ["index of the value", "delay or exposure", "distance"], "tilt or angle (rad)"))
+    numbers, lengths = np.unique(curve, return_counts=True)
+    alone = np.isin(curve, numbers[lengths == 1])
+    rows = alone & (alone.all() or alone.sum() > 2)
+    kinds = [rows, observable == "field_covariance", moves, distance > 0]
+    return (np.select(kinds, [np.cumsum(alone), np.arange(len(angle)), time, distance], angle),
+            np.select(kinds, [ROW, "index of the value", "delay or exposure", "distance"], "tilt or angle (rad)"))
 
 
 def name_of(result, observable, row):
@@ -35,11 +42,26 @@ def name_of(result, observable, row):
             "intensity_correlation": "$g_2 - 1$"}[observable] + (f" at {distance:g}" if observable != "reflectance" else "")
 
 
+def draw_values(axis, pulls, result, at, rows, observable):
+    """Draws values that belong to no curve, one colour for each observable, and the model as a bar beside each."""
+    (value, error), model, pull = result.measured("measured"), result.values("model"), result.values("pull")
+    for number, name in enumerate(dict.fromkeys(observable[rows])):
+        some = rows[observable[rows] == name]
+        symbols = {**style.look(number), "linestyle": "none"}
+        axis.errorbar(at[some], value[some], error[some], **symbols, label=NAMES[name])
+        axis.hlines(model[some], at[some] - 0.3, at[some] + 0.3, colors=symbols["color"], linewidth=0.8)
+        pulls.plot(at[some], pull[some], **symbols)
+    axis.legend(title="bars: model", fontsize=7, title_fontsize=7)
+    pulls.locator_params(axis="x", integer=True)
+
+
 def draw_data(columns, result, at, label):
     """columns: for each label of an abscissa, the axes of the data and of the residuals."""
     observable, curve = np.array(result.texts("datum_observable")), result.values("datum_curve")
     (value, error), pull, single = result.measured("measured"), result.values("pull"), []
-    for number in np.unique(curve):
+    if ROW in columns:
+        draw_values(*columns[ROW], result, at, np.flatnonzero(label == ROW), observable)
+    for number in np.unique(curve[label != ROW]):
         rows = np.flatnonzero(curve == number)
         axis, pulls = columns[label[rows[0]]]
         symbols = {**style.look(int(number)), "linestyle": "none"}

@@ -36,7 +36,7 @@ def draw(result, arguments):
     right, up, values, row, errors, where = slice_of(result, arguments.quantity, arguments.normal)
     across, upwards = (result.values(f"map/{name}") for name in (right, up))
     figure, (plane, line) = plt.subplots(1, 2, figsize=(style.PAGE, 2.6))
-    norm = pictures.tone([values], arguments.tone, arguments.decades)
+    norm = pictures.tone([values], arguments)
     image = plane.imshow(values, origin="lower", extent=(*pictures.edges(across), *pictures.edges(upwards)),
                          cmap="inferno", norm=norm, interpolation="nearest", aspect="auto")
     plane.set(xlabel=f"{right} ({length})", ylabel=f"{up} ({length})")

@@ -11,7 +11,11 @@ BAR = (1, 2, 5, 10, 20, 50, 100, 200, 500)  # lengths of the scale bar, in pixel
 
 
 def read_picture(path):
-    """Returns a grey picture from an NPY file or one that matplotlib reads, such as PNG."""
+    """Returns a grey picture from an NPY file, a CSV file of numbers without names, or one that matplotlib reads, such
+    as PNG."""
+    if path.endswith(".csv"):
+        lines = [line.rstrip(", \t\r\n") for line in open(path, encoding="utf-8")]
+        return np.loadtxt([line for line in lines if line], delimiter=",", ndmin=2)
     picture = np.load(path) if path.endswith(".npy") else plt.imread(path)
     return picture if picture.ndim == 2 else picture[..., :3].mean(axis=-1)
 
@@ -28,7 +32,7 @@ def show(axis, picture, title, bar, size, width):
 
 
 @script.plot(needs={"agreement": "run recover with frames that are pictures"}, dpi=150)
-@script.option("--truth", metavar="PICTURE", help="NPY or PNG file of the true picture")
+@script.option("--truth", metavar="PICTURE", help="NPY, PNG or CSV file of the true picture")
 @script.option("--truth_width", type=float, metavar="PIXELS",
                help="width of the true picture in pixels of the camera (default: its own number of pixels)")
 def draw(result, arguments):

@@ -31,13 +31,13 @@ def panel(figure, axis, result, picture, label, extend, **look):
 
 
 def draw_image(figure, axis, result, norm):
-    bar = panel(figure, axis, result, result.values("image"), pictures.quantity(result), "max",
-                cmap="inferno", norm=norm)
+    bar = panel(figure, axis, result, result.values("image"), pictures.quantity(result),
+                "both" if norm.vmin > 0 else "max", cmap="inferno", norm=norm)
     if not isinstance(norm, LogNorm):
-        ticks = MaxNLocator(4).tick_values(0, norm.vmax)[:-1]
+        ticks = [tick for tick in MaxNLocator(4).tick_values(norm.vmin, norm.vmax) if norm.vmin <= tick < norm.vmax]
         if isinstance(norm, PowerNorm):  # ticks that would overlap on a square-root scale are omitted
-            ticks = [0.0]
-            for tick in MaxNLocator(8).tick_values(0, norm.vmax):
+            ticks = [norm.vmin]
+            for tick in MaxNLocator(8).tick_values(norm.vmin, norm.vmax):
                 if tick <= norm.vmax and norm(tick) - norm(ticks[-1]) > 0.12:
                     ticks.append(tick)
         bar.set_ticks(ticks)
@@ -86,7 +86,7 @@ def draw(results, arguments):
     errors = LogNorm(least, MOST, clip=True)
     quantities = [pictures.quantity(result) for result in results]  # all results with the same quantity share a scale
     norms = {name: pictures.tone([result.values("image") for result, own in zip(results, quantities)
-                                  if own == name], arguments.tone, arguments.decades)
+                                  if own == name], arguments)
              for name in set(quantities)}
     for (left, right), result, label, quantity in zip(axes, results, names, quantities):
         draw_image(figure, left, result, norms[quantity])

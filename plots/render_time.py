@@ -89,6 +89,6 @@ def draw(result, arguments):
     figure = plt.figure(figsize=(style.PAGE, height + 1.9))
     film, curve = figure.subfigures(2, 1, height_ratios=[height, 1.9])
     draw_film(film, film.subplots(1, len(parts), sharey=True, squeeze=False)[0], result, parts,
-              pictures.tone(frames, arguments.tone, arguments.decades))
+              pictures.tone(frames, arguments))
     draw_pulse(curve.subplots(), result, parts)
     return figure

@@ -1,6 +1,7 @@
 #include "apps/flatland/picture_image.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -223,6 +224,7 @@ void print_pictures_summary(const mc::PictureScene& scene, const mc::PictureTask
 struct PictureFields {
   mc::FieldDraw draw;
   std::string how;
+  std::uint64_t paths = 0;  ///< light paths of each medium; 0 without paths
 };
 
 PictureFields picture_fields_of(const PictureRun& run) {
@@ -236,7 +238,35 @@ PictureFields picture_fields_of(const PictureRun& run) {
                          ? static_cast<std::uint64_t>(*run.paths_per_field)
                          : mc::paths_for_pictures(run.scene, task.seed, task.threads);
   return {mc::picture_fields(run.scene, task, paths),
-          "mc: fields of " + std::to_string(paths) + " light paths"};
+          "mc: fields of " + std::to_string(paths) + " light paths", paths};
+}
+
+/// Prints what the frames need. Their time is estimated from the difference between fields of few
+/// paths and of three times as many.
+void print_frames_plan(const PictureRun& run, std::uint64_t paths) {
+  const mc::PictureTask& task = run.task;
+  if (paths == 0) return;
+  const std::uint64_t media = task.repeats * task.average,
+                      few = std::max<std::uint64_t>(paths / 100, 16);
+  std::vector<Complex> field(task.exposure.count() * run.scene.scene.request.channels.size());
+  const auto seconds_for = [&](std::uint64_t some) {
+    const auto start = std::chrono::steady_clock::now();
+    mc::picture_fields(run.scene, task, some)(0, field, {});
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  seconds_for(few);  // brings memory and tables into use
+  const double least = seconds_for(few), rise = (seconds_for(3 * few) - least) / 2,
+               each = least +
+                      std::max(rise, 0.0) * static_cast<double>(paths) / static_cast<double>(few),
+               rounds = std::ceil(static_cast<double>(task.repeats) / task.threads) *
+                        static_cast<double>(task.average);
+  std::printf(
+      "%zu points, %zu pixels, %llu light paths each of %llu media: fields in about %.2g s "
+      "(%.2g s a medium and thread), before phase retrieval\n",
+      run.scene.object.place.size(), run.scene.scene.request.views.size(),
+      static_cast<unsigned long long>(paths), static_cast<unsigned long long>(media), rounds * each,
+      each);
+  std::fflush(stdout);
 }
 
 /// Subtracts the mean over all n realizations from each field. The differences are multiplied by
@@ -318,6 +348,7 @@ Made make_pictures(ResultFile& file, const PictureRun& run, bool prints) {
   const double grain = result.speckle.grain();
   result.truth = mc::true_picture(scene, task.lags, mc::point_width_of(grain));
   const PictureFields fields = picture_fields_of(run);
+  if (prints) print_frames_plan(run, fields.paths);
   result.pictures = mc::simulated_pictures(scene, task, fields.draw, result.truth, grain);
   if (task.draws > 0)
     result.prediction = mc::predicted_pictures(scene, task, result.speckle, result.truth);

@@ -248,7 +248,7 @@ Make sources_of(const Keys& keys, const RecoverKeys& values, const Frames& read)
 }
 
 void print_points(const std::vector<mc::RecoveredPicture>& all) {
-  std::printf("%-8s %-9s %-8s %-10s %s\n", "frame", "contrast", "grain", "explained",
+  std::printf("%-8s %-9s %-8s %-10s %s\n", "frame", "contrast", "peak", "explained",
               "points (x, y in pixels; rotated by 180 degrees or not)");
   for (std::size_t i = 0; i < all.size(); ++i) {
     const auto& [statistics, retrieved, points] = all[i];
@@ -261,7 +261,7 @@ void print_points(const std::vector<mc::RecoveredPicture>& all) {
 }
 
 void print_pictures(const std::vector<mc::RecoveredPicture>& all) {
-  std::printf("%-8s %-9s %-8s %-10s %-9s %s\n", "frame", "contrast", "grain", "noise", "residual",
+  std::printf("%-8s %-9s %-8s %-10s %-9s %s\n", "frame", "contrast", "peak", "noise", "residual",
               "agreement of starts");
   for (std::size_t i = 0; i < all.size(); ++i)
     std::printf("%-8zu %-9.3f %-8.2f %-10.2g %-9.3f %.3f\n", i, all[i].statistics.contrast,

@@ -11,6 +11,7 @@
 #include "apps/command/experiment.h"
 #include "apps/flatland/map_settings.h"
 #include "apps/flatland/own_places.h"
+#include "apps/flatland/solve_keys.h"
 #include "apps/flatland/solve_places.h"
 #include "apps/flatland/solver_keys.h"
 #include "apps/flatland/space_solve.h"
@@ -37,58 +38,6 @@
 namespace flatspeckle::apps {
 
 namespace {
-
-/// Values of the keys of the subcommand `solve`.
-struct SolveKeys : SolverKeys {
-  SceneSpec spec;
-  MapSettings map;
-  SpectrumSettings spectrum;
-  std::string cluster;
-  std::optional<double> t_matrix_gap, period;
-  std::vector<std::int64_t> map_eigenchannels = {0};
-};
-
-void add_solve_keys(Keys& keys, SolveKeys& values) {
-  add_scatterer_keys(keys, values.spec);
-  add_bulk_keys(keys, values.spec);
-  add_medium_keys(keys, values.spec);
-  add_profile_keys(keys, values.spec);
-  add_index_keys(keys, values.spec);
-  add_faces_keys(keys, values.spec);
-  keys.remove("placement");
-  keys.add("placement", values.spec.placement,
-           "CSV file with columns x, z [, radius [, index_re, index_im]], in space also y; or "
-           "poisson, hard_disk or equilibrium, to draw one; with cluster: CSV file with columns x, "
-           "z [, angle]");
-  add_view_keys(keys, values.spec);
-  add_space_solve_keys(keys, values.spec);
-  add_map_keys(keys, values.map);
-  add_spectrum_keys(keys, values.spectrum);
-  add_solver_keys(keys, values);
-  keys.group("Periodic cell");
-  keys.add("period", values.period,
-           "The placement repeats along x with this period; the result is the scattering matrix "
-           "between its channels")
-      .positive()
-      .unit("length");
-  add_period_phase_key(keys, values);
-  keys.add(
-          "map_eigenchannels", values.map_eigenchannels,
-          "Transmission eigenchannels whose fields are mapped, beside light at normal incidence: 0 "
-          "is the most open")
-      .from(0, 1e6)
-      .only_of("period with map");
-  keys.group("Clusters");
-  keys.add("t_matrix_gap", values.t_matrix_gap,
-           "Also write the T-matrix of the whole placement, for sources at least this far from the "
-           "circle around it")
-      .positive()
-      .unit("length");
-  keys.add("cluster", values.cluster,
-           "Result file with a T-matrix: a copy of its cluster is placed at each position of "
-           "placement")
-      .file();
-}
 
 std::string plan_of(const wave::WaveSolution& solution, const std::string& map) {
   std::ostringstream plan;
@@ -258,13 +207,11 @@ class SolveExperiment : public OneShot {
     refuse(values_.spectrum.wavelengths, "; use sweep --of solve --vary wavelength=...");
   }
 
-  void read_eigenchannels(const Keys& keys) {
+  void read_map_lights(const Keys& keys) {
     const double k = 2 * std::numbers::pi / values_.spec.wavelength;
     const auto channels = wave::channels_of(k, {*values_.period, values_.period_phase}).size();
-    for (const std::int64_t number : keys.read(values_.map_eigenchannels))
-      if (static_cast<std::size_t>(number) >= channels)
-        throw InputError("map_eigenchannels", number,
-                         "must be less than the number of channels, " + std::to_string(channels));
+    lights_ = wave::cell_lights(keys.read(values_.map_eigenchannels), keys.read(values_.map_lights),
+                                channels);
   }
 
   void read_periodic(const Keys& keys) {
@@ -272,7 +219,7 @@ class SolveExperiment : public OneShot {
     refuse_keys_of_one_light(keys);
     keys.read(values_.period_phase);
     grid_ = map_grid(keys, values_.map, keys.read(spec.wavelength));
-    if (grid_) read_eigenchannels(keys);
+    if (grid_) read_map_lights(keys);
     if (has_own_places(spec)) {
       placement_ = placement_of_file(keys, spec);
       return;
@@ -436,8 +383,8 @@ class SolveExperiment : public OneShot {
     write_scene(file);
     std::string map_method;
     if (grid_)
-      map_method = wave::write_cell_map(file, placement, k, images, found,
-                                        values_.map_eigenchannels, options, *grid_);
+      map_method =
+          wave::write_cell_map(file, placement, k, images, found, lights_, options, *grid_);
     std::ostringstream plan;
     plan << placement_.size() << " scatterers a period, " << found.channels.size()
          << " channels on each side, " << found.unknowns << " unknowns: " << found.method
@@ -486,6 +433,7 @@ class SolveExperiment : public OneShot {
   Sensors sensors_;
   std::optional<WavelengthList> wavelengths_;
   std::optional<wave::MapGrid> grid_;
+  wave::CellLights lights_;
   std::optional<Scene> scene_;
   Placement placement_;
   std::optional<wave::KeptCluster> cluster_;

@@ -89,9 +89,10 @@ void print_summary(const DesignScene& scene, const DesignState& state, const Des
   const auto print = [&](const char* what, const std::optional<double>& rms,
                          const std::optional<double>& half) {
     if (rms && half && of_pictures)
-      std::printf("%s: pictures differ by %.3g %% of their largest value (RMS), with half the ray "
-                  "step by %.3g %%\n",
-                  what, 100 * *rms, 100 * *half);
+      std::printf(
+          "%s: pictures differ by %.3g %% of their largest value (RMS), with half the ray "
+          "step by %.3g %%\n",
+          what, 100 * *rms, 100 * *half);
     else if (rms && half)
       std::printf("%s miss their targets by %.3g (RMS), with half the ray step by %.3g\n", what,
                   *rms, *half);
@@ -113,17 +114,27 @@ void print_summary(const DesignScene& scene, const DesignState& state, const Des
                 check.start_held_out, times);
 }
 
-/// Prints what the objective is usually judged by: dB of pictures, the exponent of a guide.
+/// Prints a factor times each value with this format, separated by commas.
+void print_list(const char* format, const std::vector<double>& values, double factor = 1) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::fputs(i == 0 ? " " : ", ", stdout);
+    std::printf(format, factor * values[i]);
+  }
+}
+
+/// Prints what the objective is usually judged by: dB and light of pictures, the exponent of a
+/// guide.
 void print_figures(const DesignScene& scene, const Designer& designer, const DesignState& state,
                    const DesignCheck& check) {
   if (const auto* screens =
           dynamic_cast<const grin::design::ScreenTarget*>(scene.design_target.get());
       screens && check.measurements) {
-    const auto psnr = picture_psnr(*screens, *check.measurements);
-    std::printf("pictures of held-out rays:");
-    for (std::size_t i = 0; i < psnr.size(); ++i)
-      std::printf("%s %.2f dB", i == 0 ? "" : ",", psnr[i]);
-    std::puts(" (peak signal-to-noise ratio)");
+    const auto [psnr_db, on_screen] = picture_quality(*screens, *check.measurements);
+    std::fputs("pictures of held-out rays:", stdout);
+    print_list("%.2f dB", psnr_db);
+    std::fputs(" (peak signal-to-noise ratio)\nlight of held-out rays on the screens:", stdout);
+    print_list("%.2f %%", on_screen, 100);
+    std::puts("");
   }
   const grin::design::FieldForm form = designer.form(state);
   if (const auto* guide = std::get_if<grin::design::GuideForm>(&form);

@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
+#include <string_view>
+#include <zlib.h>
 
 #include "core/frames/frame_formats.h"
 
@@ -49,6 +52,10 @@ class ExrReader {
 };
 
 enum ExrType : std::int32_t { exr_uint, exr_half, exr_float };
+enum ExrCompression : std::uint8_t { exr_none, exr_rle, exr_zips, exr_zip };
+/// Bound of the ratio by which a block is compressed (that of zlib), so that the sizes that damaged
+/// files state need no memory.
+constexpr std::size_t exr_most_ratio = 1040;
 
 struct ExrChannel {
   std::int32_t type;
@@ -59,15 +66,15 @@ struct ExrChannel {
 struct ExrHeader {
   std::vector<ExrChannel> channels;
   std::int32_t left = 0, top = 0, right = -1, bottom = -1;
-  std::uint8_t compression = 0;
+  std::uint8_t compression = exr_none;
 };
 
-/// Weight of a channel in the luminance of primaries as in ITU-R BT.709.
+/// Weight of a channel in the luminance.
 double weight_of(const std::string& channel) {
   if (channel == "Y") return 1;
-  if (channel == "R") return 0.2126;
-  if (channel == "G") return 0.7152;
-  return channel == "B" ? 0.0722 : 0;
+  if (channel == "R") return luminance_weights[0];
+  if (channel == "G") return luminance_weights[1];
+  return channel == "B" ? luminance_weights[2] : 0;
 }
 
 std::vector<ExrChannel> channels_of(ExrReader& reader) {
@@ -105,8 +112,15 @@ ExrHeader header_of(ExrReader& reader) {
       refuse_exr("is a damaged OpenEXR file");
     reader.skip(begin + static_cast<std::size_t>(size) - reader.at());
   }
-  if (header.compression != 0) refuse_exr("is a compressed OpenEXR");
+  if (header.compression > exr_zip) refuse_exr("is an OpenEXR of another compression");
   return header;
+}
+
+/// Returns the number of bytes of a line of pixels.
+std::size_t line_size(const ExrHeader& header) {
+  std::size_t pixel = 0;
+  for (const ExrChannel& channel : header.channels) pixel += channel.type == exr_half ? 2 : 4;
+  return pixel * static_cast<std::size_t>(std::int64_t{header.right} - header.left + 1);
 }
 
 double half_value(std::uint16_t bits) {
@@ -116,6 +130,51 @@ double half_value(std::uint16_t bits) {
                       : exponent == 0      ? std::ldexp(fraction, -24)
                                            : std::ldexp(1024 + fraction, exponent - 25);
   return bits >> 15 != 0 ? -size : size;
+}
+
+std::string inflated(std::string_view packed, std::size_t size) {
+  std::string bytes(size, '\0');
+  uLongf found = size;
+  if (uncompress(reinterpret_cast<Bytef*>(bytes.data()), &found,
+                 reinterpret_cast<const Bytef*>(packed.data()), packed.size()) != Z_OK ||
+      found != size)
+    refuse_exr("is a damaged OpenEXR file");
+  return bytes;
+}
+
+/// Expands run lengths: a count n from 0 repeats the next byte n + 1 times, a count below 0
+/// precedes -n bytes.
+std::string run_lengths_expanded(std::string_view packed, std::size_t size) {
+  std::string bytes;
+  for (std::size_t at = 0; at < packed.size() && bytes.size() <= size;) {
+    const int count = static_cast<signed char>(packed[at++]);
+    const auto taken = static_cast<std::size_t>(count < 0 ? -count : 1);
+    if (taken > packed.size() - at) break;
+    if (count < 0)
+      bytes += packed.substr(at, taken);
+    else
+      bytes.append(static_cast<std::size_t>(count) + 1, packed[at]);
+    at += taken;
+  }
+  if (bytes.size() != size) refuse_exr("is a damaged OpenEXR file");
+  return bytes;
+}
+
+/// Returns the content of a block of lines. Before compression, the bytes of even numbers are
+/// placed before the others, and each byte is replaced by its difference to the one before. Blocks
+/// that this does not shorten are stored as they are.
+std::string exr_block(std::string_view packed, std::uint8_t compression, std::size_t size) {
+  if (packed.size() == size) return std::string(packed);
+  if (compression == exr_none || size / exr_most_ratio > packed.size())
+    refuse_exr("is a damaged OpenEXR file");
+  std::string bytes =
+      compression == exr_rle ? run_lengths_expanded(packed, size) : inflated(packed, size);
+  for (std::size_t i = 1; i < size; ++i)
+    bytes[i] = static_cast<char>(bytes[i - 1] + bytes[i] - 128);
+  std::string block(size, '\0');
+  for (std::size_t i = 0; i < size; ++i)
+    block[i] = bytes[i / 2 + (i % 2 == 0 ? 0 : (size + 1) / 2)];
+  return block;
 }
 
 double exr_value(ExrReader& reader, std::int32_t type) {
@@ -136,19 +195,24 @@ Frames read_exr(const std::string& bytes) {
   const std::int64_t columns = std::int64_t{header.right} - header.left + 1,
                      rows = std::int64_t{header.bottom} - header.top + 1;
   if (header.channels.empty() || columns < 1 || rows < 1 || columns > most || rows > most ||
-      static_cast<std::size_t>(columns * rows) > bytes.size())
+      static_cast<std::size_t>(columns * rows) / exr_most_ratio > bytes.size())
     refuse_exr("is a damaged OpenEXR file");
   Frames frames{static_cast<std::size_t>(rows), static_cast<std::size_t>(columns), {}, 0};
-  frames.values.resize(static_cast<std::size_t>(rows * columns));
-  for (std::int64_t i = 0; i < rows; ++i) {
-    ExrReader line(bytes, reader.next<std::uint64_t>());
-    const std::int64_t row = std::int64_t{line.next<std::int32_t>()} - header.top;
-    line.skip(4);  // number of bytes
-    if (row < 0 || row >= rows) refuse_exr("is a damaged OpenEXR file");
-    for (const ExrChannel& channel : header.channels)
-      for (std::size_t column = 0; column < frames.columns; ++column)
-        frames.values[static_cast<std::size_t>(row) * frames.columns + column] +=
-            channel.weight * exr_value(line, channel.type);
+  const std::int64_t most_lines = header.compression == exr_zip ? 16 : 1;
+  for (std::int64_t first = 0; first < rows; first += most_lines) {
+    const std::int64_t lines = std::min(most_lines, rows - first);
+    ExrReader chunk(bytes, reader.next<std::uint64_t>());
+    if (chunk.next<std::int32_t>() != header.top + first) refuse_exr("is a damaged OpenEXR file");
+    const auto packed_size = static_cast<std::size_t>(chunk.next<std::int32_t>());
+    const std::string block = exr_block({chunk.skip(packed_size), packed_size}, header.compression,
+                                        static_cast<std::size_t>(lines) * line_size(header));
+    ExrReader values(block, 0);
+    frames.values.resize(static_cast<std::size_t>((first + lines) * columns));
+    double* line = &frames.values[static_cast<std::size_t>(first * columns)];
+    for (std::int64_t i = 0; i < lines; ++i, line += columns)
+      for (const ExrChannel& channel : header.channels)
+        for (std::int64_t column = 0; column < columns; ++column)
+          line[column] += channel.weight * exr_value(values, channel.type);
   }
   return frames;
 }

@@ -12,7 +12,12 @@ namespace flatspeckle {
 
 /// Formats that are read, as a request for one of them.
 constexpr const char* accepted_pictures =
-    "give a grey PNG, TIFF, NPY, PFM, HDF5 or an uncompressed EXR";
+    "give a grey PNG, TIFF, NPY, PFM or HDF5, a Radiance HDR, or an EXR (uncompressed, ZIP, ZIPS "
+    "or "
+    "RLE)";
+
+/// Weights of red, green and blue in the luminance of primaries as in ITU-R BT.709.
+constexpr double luminance_weights[] = {0.2126, 0.7152, 0.0722};
 
 /// Returns the grey values of pixels with several channels: grey or red, green and blue, and with
 /// an even number of channels also the opacity. Throws if the colours differ or a pixel is not
@@ -26,5 +31,6 @@ Frames read_tiff(const std::filesystem::path& path);
 Frames read_npy(const std::string& bytes);
 Frames read_pfm(const std::string& bytes);
 Frames read_exr(const std::string& bytes);
+Frames read_hdr(const std::string& bytes);
 
 }  // namespace flatspeckle

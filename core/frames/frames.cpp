@@ -26,7 +26,7 @@ std::string signature(const std::filesystem::path& path) {
   return bytes;
 }
 
-enum class Format { png, tiff, npy, pfm, exr, hdf5, other, text };
+enum class Format { png, tiff, npy, pfm, exr, hdr, hdf5, other, text };
 
 Format format_of(const std::filesystem::path& path) {
   const std::string bytes = signature(path);
@@ -40,8 +40,8 @@ Format format_of(const std::filesystem::path& path) {
     if (begins(pfm)) return Format::pfm;
   if (begins("\x76\x2f\x31\x01")) return Format::exr;
   if (begins("\x89HDF")) return Format::hdf5;
-  for (const char* other : {"#?RADIAN", "#?RGBE", "\xff\xd8\xff"})  // the last is JPEG
-    if (begins(other)) return Format::other;
+  if (begins("#?RADIAN") || begins("#?RGBE")) return Format::hdr;
+  if (begins("\xff\xd8\xff")) return Format::other;  // JPEG
   return Format::text;
 }
 
@@ -135,6 +135,8 @@ Frames read(const std::string& key, const std::filesystem::path& path, const Fra
       return read_pfm(file_bytes(path));
     case Format::exr:
       return read_exr(file_bytes(path));
+    case Format::hdr:
+      return read_hdr(file_bytes(path));
     case Format::other:
       throw std::runtime_error(std::string("is in a format that is not read: ") +
                                accepted_pictures);

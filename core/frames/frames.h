@@ -58,9 +58,9 @@ auto naming_frames(const std::string& path, const F& f) {
   }
 }
 
-/// Reads frames from PNG (8 or 16 bit), TIFF (one or several pages), NPY, PFM, uncompressed
-/// OpenEXR, HDF5 or CSV. Colour channels must be equal, except in OpenEXR, of which the luminance
-/// is read.
+/// Reads frames from PNG (8 or 16 bit), TIFF (one or several pages), NPY, PFM, OpenEXR, Radiance
+/// HDR, HDF5 or CSV. Colour channels must be equal, except in OpenEXR and HDR, of which the
+/// luminance is read.
 /// The content of the file tells its format. Throws InputError, which names the key and the file,
 /// for files that are damaged, that have colours, or that can be read in several ways.
 Frames read_frames(const std::string& key, const std::filesystem::path& path,

@@ -177,7 +177,7 @@ std::string Key::Range::text(bool whole) const {
 
 std::string Key::range() const {
   const bool angle = unit_ == "rad" && range_.high < infinity;
-  return range_.text(is_whole()) + (angle ? " radians" : "");
+  return range_.text(is_whole()) + (angle ? " radians; degrees are written as in 40deg" : "");
 }
 
 std::vector<std::string> Key::value() const {

@@ -166,6 +166,7 @@ double KeyUnit::convert(double number, const Unit& unit) const {
 std::string KeyUnit::accepted() const {
   if (alternatives_.empty()) return "must be a number";
   if (text_ == "rad") return "must be a number such as 0.1, pi/2 or 30deg";
+  if (text_ == "K") return "must be a temperature in kelvin, such as 295.15 (22 degrees Celsius)";
   const std::string example = with_length(text_.substr(0, text_.find(" or ")), "mm");
   return std::string("must be a number such as 0.1 or ") + (example.starts_with("1/") ? "" : "1 ") +
          example;

@@ -371,6 +371,7 @@ Progress::Figures BatchPool::figures() const {
         std::to_string(ended_) + " of " + std::to_string(list_.count) + ' ' + options_.run_name;
   figures.samples = first_samples_ + new_samples_;
   figures.rate = new_samples_ / clock_.seconds();
+  figures.cpu_s = cpu_s_;
   figures.seconds_left = seconds_left();
   return figures;
 }

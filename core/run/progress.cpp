@@ -74,6 +74,7 @@ void Progress::finish(double wall_s, const Figures& figures) {
   if (label_.empty()) return;
   show(figures);
   std::fprintf(stderr, " in %.3g s", wall_s);
+  if (figures.cpu_s > 0) std::fprintf(stderr, " (%.3g s of processor time)", figures.cpu_s);
   if (std::isfinite(figures.error)) std::fprintf(stderr, ", error %.3g %%", 100 * figures.error);
   std::fputs("\n", stderr);
 }

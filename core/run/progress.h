@@ -18,6 +18,7 @@ class Progress {
     /// one part.
     std::string done;
     double samples = 0, rate = 0;
+    double cpu_s = 0;  ///< processor time of all threads, in seconds; 0 if unknown
     /// Relative error of the result so far; infinite if unknown.
     double error = std::numeric_limits<double>::infinity();
     double seconds_left = std::numeric_limits<double>::infinity();

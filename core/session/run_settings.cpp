@@ -29,7 +29,7 @@ void add_run_keys(Keys& keys, RunSettings& run) {
   keys.add("samples", run.samples, "Stop after this number of light paths or placements")
       .positive()
       .effort();
-  keys.add("seconds", run.seconds, "Stop after this number of seconds")
+  keys.add("seconds", run.seconds, "Stop after this number of seconds of wall time")
       .positive()
       .unit("s")
       .effort();

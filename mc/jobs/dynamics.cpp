@@ -85,13 +85,16 @@ std::optional<double> diffusion_constant(const Keys& keys, const DynamicsValues&
     const std::string value = number_text(*values.temperature);
     if (text) throw InputError("diffusion, temperature: give only one of them");
     require_unit("temperature", value);
-    const double viscosity = keys.required(values.viscosity);
+    if (!keys.read(values.viscosity))
+      throw InputError("temperature", value,
+                       "requires viscosity, such as viscosity = \"0.954 mPa s\", that of water at "
+                       "295.15 K (22 degrees Celsius)");
     std::optional<double> radius = spec.diameter ? *spec.diameter / 2 : spec.radius;
     if (values.particle_radius) radius = keys.read(values.particle_radius);
     if (!radius)
       throw InputError("temperature", value,
                        "requires particle_radius for scatterers without a radius");
-    return stokes_einstein(*values.temperature, viscosity, *radius * *metres);
+    return stokes_einstein(*values.temperature, *values.viscosity, *radius * *metres);
   }
   if (!text || is_plain(*text)) return std::nullopt;
   const auto diffusion = written_number(*text, diffusion_unit);

@@ -94,28 +94,34 @@ def extent(result):
     return left, right, bottom, top
 
 
-def tone(pictures, kind, decades):
-    """Returns a colour norm for all pictures. If kind or decades is None, it is chosen from the pixel values."""
+def tone(pictures, arguments):
+    """Returns a colour norm for all pictures, by the options of tone_options(). Those that are None are chosen from
+    the pixel values."""
+    kind, decades = arguments.tone, arguments.decades
     values = np.concatenate([np.ravel(picture) for picture in pictures])
     lit = values[values > 0]
     if len(lit) == 0:
         raise Unusable("all pixels are dark")
-    high = np.quantile(lit, BRIGHTEST)
+    low, high = arguments.range or (None, np.quantile(lit, BRIGHTEST))
     kind = kind or ("log" if np.median(lit) < DARK * high else "root")
+    if low is not None and not (0 <= low < high and (low > 0 or kind != "log")):
+        raise Unusable(f"--range {low:g} {high:g}: must rise from 0 (above 0 for --tone log)")
     if kind == "log":
         span = np.log10(high / np.quantile(lit, FAINTEST))
-        return LogNorm(high * 10.0**-(decades or np.clip(span, 1, MOST_DECADES)), high, clip=True)
-    return Normalize(0, high, clip=True) if kind == "linear" else PowerNorm(0.5, 0, high, clip=True)
+        return LogNorm(low or high * 10.0**-(decades or np.clip(span, 1, MOST_DECADES)), high, clip=True)
+    return Normalize(low or 0, high, clip=True) if kind == "linear" else PowerNorm(0.5, low or 0, high, clip=True)
 
 
 def tone_options(default=None):
-    """Returns a decorator that adds the options --tone and --decades to a plot."""
+    """Returns a decorator that adds the options --tone, --decades and --range to a plot."""
     words = default or "root, or log if most of the picture is dark"
     tone = script.option("--tone", choices=TONES, default=default,
                          help=f"scale from brightness to colour (default: {words})")
     decades = script.option("--decades", type=float,
                              help="range of --tone log in powers of ten (default: that of the lit pixels)")
-    return lambda draw: tone(decades(draw))
+    limits = script.option("--range", type=float, nargs=2, metavar=("LOW", "HIGH"),
+                           help="values at the ends of the colour scale (default: chosen from the pixels)")
+    return lambda draw: tone(decades(limits(draw)))
 
 
 def height_over_width(result):

@@ -13,6 +13,8 @@ FOG = {"mu_s": 0.4, "mu_a": 0.1}
 AREA = {"sensor": "area", "sensor_at": [0, 0, 4], "sensor_size": [1, 0.8], "pixels": [4, 3]}
 CAMERA = {"sensor_at": [0.2, 0, 3.9], "sensor_direction": [0, 0, -1], "field_of_view": 1,
           "pixels": [6, 4]}
+NAMES = ["luneburg", "fisheye", "grin_fibre", "waveguide", "glass_ball", "luneburg_pulse", "slab"]
+METHODS = ["path", "light", "bidirectional"]
 FIBRE = {"field": "parabolic", "index": 1.5, "alpha": 0.5}
 
 

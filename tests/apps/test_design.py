@@ -109,6 +109,9 @@ class Design(RefusingTest):
         said, found = self.design("nine.h5", **picture, tolerance=0, iterations=4)
         self.assertIn("ended after 4 steps by the rule: iterations", said)
         self.assertRegex(said, r"pictures of held-out rays: \d+\.\d+ dB")
+        share = found["picture/on_screen"]
+        self.assertIn(f"light of held-out rays on the screens: {100 * share[0]:.2f} %", said)
+        np.testing.assert_allclose(share, found["picture/shown"].sum(axis=(1, 2)))
         self.assertEqual(attributes(self.folder / "nine.h5")["ended_by"], "iterations")
         _, finer = self.design("more.h5", **picture | {"nodes": [17]}, tolerance=0, iterations=8)
         self.assertLess(finer["rms/seen"], found["rms/seen"])

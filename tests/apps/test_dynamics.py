@@ -159,7 +159,7 @@ CASES = [
     ({**SECONDS, "diffusion": "1e-12 m^2/s", "length_unit": None}, ["diffusion = 1e-12 m^2/s", "length_unit"]),
     ({**SECONDS, **WATER, "diffusion": 1, "particle_radius": 1}, ["diffusion, temperature", "only one"]),
     ({**SECONDS, **WATER}, ["temperature = 293", "particle_radius"]),
-    ({**SECONDS, "temperature": 293, "particle_radius": 1}, ["viscosity is not given"]),
+    ({**SECONDS, "temperature": 293, "particle_radius": 1}, ["requires viscosity"]),
     ({"delays": [1], "viscosity": 1e-3}, ["viscosity = 0.001", "delays"]),
     ({"delays": [1], "particle_radius": 1}, ["particle_radius = 1", "delays"]),
     ({"delays": [1, 2, 3, 4, 5], "exposures": ["4us"]}, ["exposures = 4us", "diffusion in m^2/s"]),

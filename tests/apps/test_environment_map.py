@@ -1,13 +1,16 @@
 """Light from a picture of all directions: its directions, and powers by every method."""
 
+import itertools
 import struct
 import unittest
+import zlib
 
 import numpy as np
 
 from renders import BOX, RenderTest
 
 ROWS, COLUMNS = 8, 16
+COMPRESSIONS = ["none", "rle", "zips", "zip"]
 
 
 def directions():
@@ -31,21 +34,65 @@ def write_pfm(path, values):
         file.write(values[::-1].astype("<f4").tobytes())
 
 
-def write_exr(path, channels):
-    """Writes an OpenEXR file of uncompressed scan lines with these channels {name: values}, in the order of names."""
+def runs(data, least=3, most=127):
+    """Yields whether the next bytes are equal, and these bytes, at most 127."""
+    pending = b""
+    for _, group in itertools.groupby(data):
+        same = bytes(group)
+        if pending and (len(same) >= least or len(pending) > most - least):
+            yield False, pending
+            pending = b""
+        if len(same) >= least:
+            yield from ((True, same[i:i + most]) for i in range(0, len(same), most))
+        else:
+            pending += same
+    if pending:
+        yield False, pending
+
+
+def exr_block(block, compression):
+    """Returns a block of lines as OpenEXR compresses it: even bytes first, differences of bytes, ZIP or run lengths."""
+    if compression == "none":
+        return block
+    parted = np.frombuffer(block[::2] + block[1::2], np.uint8).astype(int)
+    coded = bytes([parted[0], *((np.diff(parted) + 128) % 256)])
+    packed = zlib.compress(coded) if "zip" in compression else b"".join(
+        bytes([len(part) - 1, part[0]]) if same else bytes([256 - len(part)]) + part for same, part in runs(coded))
+    return packed if len(packed) < len(block) else block
+
+
+def write_hdr(path, colours, is_packed, variables=""):
+    """Writes a Radiance HDR of these [row, column, colour], flat or with run lengths. Returns its luminance."""
+    rows, columns, _ = colours.shape
+    exponent = np.frexp(colours.max(axis=2))[1]
+    mantissas = np.floor(colours * 256 / 2.0**exponent[:, :, None])
+    pixels = np.concatenate([mantissas, exponent[:, :, None] + 128], axis=2).astype(np.uint8)
+    data = pixels.tobytes()
+    if is_packed:
+        data = b"".join(bytes([2, 2, columns // 256, columns % 256]) + b"".join(
+            bytes([128 + len(part), part[0]]) if same else bytes([len(part)]) + part
+            for channel in row.T for same, part in runs(channel.tobytes())) for row in pixels)
+    path.write_bytes(f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n{variables}\n-Y {rows} +X {columns}\n".encode() + data)
+    return mantissas @ [0.2126, 0.7152, 0.0722] * 2.0**(exponent - 8)
+
+
+def write_exr(path, channels, compression="none"):
+    """Writes an OpenEXR file of scan lines with these channels {name: values}, in the order of names."""
     rows, columns = next(iter(channels.values())).shape
     window = struct.pack("<4i", 0, 0, columns - 1, rows - 1)
     listed = b"".join(name.encode() + struct.pack("<Biiii", 0, 1 if values.dtype.itemsize == 2 else 2, 0, 1, 1)
                       for name, values in sorted(channels.items())) + b"\0"
     header = struct.pack("<2i", 20000630, 2)
-    for name, kind, value in (("channels", "chlist", listed), ("compression", "compression", b"\0"),
+    for name, kind, value in (("channels", "chlist", listed), ("compression", "compression", bytes([COMPRESSIONS.index(compression)])),
                               ("dataWindow", "box2i", window), ("displayWindow", "box2i", window)):
         header += f"{name}\0{kind}\0".encode() + struct.pack("<i", len(value)) + value
     header += b"\0"
     lines = [b"".join(values[row].tobytes() for _, values in sorted(channels.items())) for row in range(rows)]
-    places = len(header) + 8 * rows + (8 + len(lines[0])) * np.arange(rows)
+    step = 16 if compression == "zip" else 1
+    blocks = [exr_block(b"".join(lines[row:row + step]), compression) for row in range(0, rows, step)]
+    places = len(header) + 8 * len(blocks) + np.cumsum([0, *(8 + len(block) for block in blocks[:-1])])
     path.write_bytes(header + places.astype("<u8").tobytes() +
-                     b"".join(struct.pack("<2i", row, len(line)) + line for row, line in enumerate(lines)))
+                     b"".join(struct.pack("<2i", step * i, len(block)) + block for i, block in enumerate(blocks)))
 
 
 class EnvironmentMap(RenderTest):
@@ -63,17 +110,49 @@ class EnvironmentMap(RenderTest):
                                 method="path", samples=400)
             np.testing.assert_allclose(found["image"], 2 * self.values[row, column], rtol=1e-12)
 
+    def seen(self, name):
+        """Returns the value of one pixel of a picture in an empty stage: row 3, column 8 of those of sky()."""
+        return self.render(**BOX, environment_map=name, environment_centre=[1, 0, 0],
+                           environment_up=[0, 0, 1], sensor="camera", sensor_at=[0.1, 0, 2],
+                           sensor_direction=[np.cos(0.2), -np.sin(0.2), 0.2], sensor_up=[0, 0, 1],
+                           field_of_view=0.02, pixels=[1, 1], method="path", samples=400)["image"]
+
     def test_turned_and_in_other_formats(self):
         write_pfm(self.folder / "sky.pfm", self.values)
         write_exr(self.folder / "y.exr", {"Y": self.values.astype("<f4")})
         write_exr(self.folder / "rgb.exr", {"B": 3 * self.values.astype("<f2"), "G": self.values.astype("<f4"),
                                             "R": 2 * self.values.astype("<f2")})
         for name, factor in (("sky.pfm", 1), ("y.exr", 1), ("rgb.exr", 0.7152 + 2 * 0.2126 + 3 * 0.0722)):
-            found = self.render(**BOX, environment_map=name, environment_centre=[1, 0, 0],
-                                environment_up=[0, 0, 1], sensor="camera", sensor_at=[0.1, 0, 2],
-                                sensor_direction=[np.cos(0.2), -np.sin(0.2), 0.2], sensor_up=[0, 0, 1],
-                                field_of_view=0.02, pixels=[1, 1], method="path", samples=400)
-            np.testing.assert_allclose(found["image"], factor * self.values[3, 8], rtol=1e-3 if factor > 1 else 1e-6)
+            np.testing.assert_allclose(self.seen(name), factor * self.values[3, 8], rtol=1e-3 if factor > 1 else 1e-6)
+
+    def test_compressed(self):
+        """OpenEXR with each compression, in blocks of 16 lines and a rest, and Radiance HDR agree with the pixels."""
+        values = np.kron(self.values, np.ones((3, 8)))
+        write_exr(self.folder / "none.exr", {"Y": values.astype("<f2")})
+        for compression in COMPRESSIONS[1:]:
+            path = self.folder / f"{compression}.exr"
+            write_exr(path, {"Y": values.astype("<f2")}, compression)
+            self.assertLess(path.stat().st_size, 0.8 * (self.folder / "none.exr").stat().st_size)
+            np.testing.assert_array_equal(self.seen(path.name), self.seen("none.exr"))
+        colours = values[:, :, None] * [2, 1, 3]
+        for is_packed, variables in ((False, ""), (True, ""), (True, "EXPOSURE=2\nEXPOSURE=0.25\n")):
+            luminance = write_hdr(self.folder / "sky.hdr", colours, is_packed, variables)
+            np.testing.assert_allclose(self.seen("sky.hdr"), luminance[10, 68] * (2 if variables else 1), rtol=1e-9)
+
+    def test_cut_off(self):
+        """Files that end early are refused in one line."""
+        values = np.kron(self.values, np.ones((1, 8)))
+        write_hdr(self.folder / "sky.hdr", values[:, :, None] * [2, 1, 3], True)
+        for compression in COMPRESSIONS:
+            write_exr(self.folder / f"{compression}.exr", {"Y": values.astype("<f2")}, compression)
+        for path in [*self.folder.glob("*.exr"), self.folder / "sky.hdr"]:
+            data = path.read_bytes()
+            for size in (12, 30, len(data) // 2, len(data) - 1):
+                path.write_bytes(data[:size])
+                done = self.call("render", status=2, **BOX, environment_map=path.name, sensor="polar",
+                                 sensor_direction=[0, 0, 1], rings=2, samples=100, out="bad.h5")
+                self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+                self.assertIn(path.name, done.stderr)
 
     def test_powers_by_every_method(self):
         """The irradiance of an area in scattering fog: rays of an own sum are the reference where nothing

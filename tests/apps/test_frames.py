@@ -133,7 +133,7 @@ class Refused(RefusingTest):
         self.check(["transparent"], "clear.png")
         for name, start in (("sky.hdr", b"#?RADIANCE\n"), ("sky.jpg", b"\xff\xd8\xff\xe0"), ("sky.exr", b"v/1\1\2\0\0\0")):
             (self.folder / name).write_bytes(start)
-            self.check(["give a grey PNG, TIFF, NPY, PFM, HDF5 or an uncompressed EXR"], name)
+            self.check(["give a grey PNG, TIFF, NPY, PFM or HDF5, a Radiance HDR, or an EXR (uncompressed, ZIP, ZIPS or RLE)"], name)
         (self.folder / "cut.tif").write_bytes((self.folder / "frame.tif").read_bytes()[:2000])
         self.check(["TIFF"], "cut.tif")
         (self.folder / "cut.npy").write_bytes((self.folder / "frame.npy").read_bytes()[:2000])

@@ -54,6 +54,28 @@ class OnePlacement(ProgramTest):
             np.testing.assert_allclose(power[1:], found["transmission_eigenvalue"][[0, 7, 12]], atol=1e-5)
             np.testing.assert_allclose(power, found["map_transmittance"], atol=1e-5)
 
+    def test_own_lights_are_mapped(self):
+        """The eigenchannel that is read back from its amplitudes has the same map; a sum of lights has the sum of their maps."""
+        keys = {"map": [-2, 2, -1, 5], "map_pixels": [12, 20]}
+        found = self.solve(**keys, map_eigenchannels=[3])
+        waves, normal = found["map_light"], int(np.argmax(abs(found["map_light"][0])))
+        rows = [(0, c, a.real, a.imag) for c, a in enumerate(waves[1])]
+        rows += [(1, c, 2 * a.real + (c == normal), 2 * a.imag) for c, a in enumerate(waves[1])]
+        self.write("lights.csv", "light,channel,re,im\n" + "".join(",".join(map(repr, map(float, row))) + "\n" for row in rows))
+        own = self.solve(**keys, map_eigenchannels=[3], map_lights="lights.csv")
+        field = own["total_field"]
+        np.testing.assert_allclose(field[2], field[1], atol=1e-10)
+        np.testing.assert_allclose(field[3], 2 * field[1] + field[0], atol=1e-10)
+        t = own["scattering_matrix"][0, :, 1, :].T
+        for light, amplitudes in enumerate(own["map_light"]):
+            power = (abs(t @ amplitudes) ** 2).sum() / (abs(amplitudes) ** 2).sum()
+            self.assertAlmostEqual(power, own["map_transmittance"][light], 9)
+        for text, words in (("light,channel,re,im\n0,40,1,0\n", "must be less than the number of channels"),
+                            ("light,channel,re,im\n1,4,1,0\n", "light 0 has no power"), ("light,channel,re,im\n0.5,4,1,0\n", "column light")):
+            self.write("lights.csv", text)
+            told = self.call("solve", **CELL, period=9.3, **keys, map_lights="lights.csv", out="no.h5", status=2).stderr
+            self.assertIn(words, told)
+
     def test_refused(self):
         self.write("two.csv", "x,z\n0,0\n9,0.1\n")
         two = {"placement": "two.csv", "scatterer": "soft", "radius": 0.2}

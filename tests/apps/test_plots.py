@@ -228,6 +228,12 @@ class Plots(ProgramTest):
                         self.assertEqual((status, heard.count("\n")), (2, 1), heard)
                         self.assertIn(str(file), heard)
 
+    def test_range_of_the_colour_scale(self):
+        for low, high, tone, expected in ((0.1, 2, "root", 0), (0, 2, "linear", 0), (0, 2, "log", 2), (2, 1, "root", 2)):
+            status, _, heard = run_script("render", self.make("picture"), "--range", low, high, "--tone", tone,
+                                          "--out", self.folder / "range", drawn="never")
+            self.assertEqual((status, heard.count("\n")), (expected, 1 if expected else 0), heard)
+
     def test_several_sweeps_stand_in_one_panel(self):
         status, _, heard = run_script("memory_effect", self.make("grid"), self.make("curve"), "--select", "g=0",
                                       "--out", self.folder / "both", drawn=DRAWN)

@@ -182,7 +182,7 @@ class Refused(RenderTest):
         self.refuse("pixels = 4", "columns rows", pixels=[4])
         self.refuse("field_of_view", "is a key of", field_of_view=1)
         self.refuse("field_of_view is not given", **{**camera, "field_of_view": None})
-        self.refuse("field_of_view = 4", **{**camera, "field_of_view": 4})
+        self.refuse("field_of_view = 4", "40deg", **{**camera, "field_of_view": 4})
         self.refuse("sensor_at", "inside the stage", **{**camera, "sensor_at": [0, 0, 5]})
         self.refuse("sensor_up", "must not be parallel", **camera, sensor_up=[0, 0, 1])
         self.refuse("focus_distance", "is a key of", **camera, focus_distance=1)

@@ -137,6 +137,11 @@ class Slips(RefusingTest):
         trace = {"field": "grid", "grid": "grid.h5", "origin": [0, 0, -2], "ray_count": 1, "max_length": 3}
         self.assert_refused(["grid.h5", "grid_values = index"], "trace", **trace)
         self.note("trace", **trace, grid_values="excess")
+        with h5py.File(self.folder / "other.h5", "w") as file:
+            file["index"] = np.full((4, 4, 4), 1.33)
+        other = {**trace, "grid": "other.h5"}
+        self.assert_refused(["other.h5", "no dataset excess", "grid_values = index"], "trace", **other)
+        self.assert_refused(["other.h5", "no attribute origin", "spacing"], "trace", **other, grid_values="index")
         with h5py.File(self.folder / "grid.h5", "a") as file:
             file["excess"][0, 0, 0] = 0.33
         self.assertNotIn("n - 1", self.note("trace", **trace))

@@ -1,9 +1,13 @@
 #include "wave_solver/periodic/cell_map.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
-#include <vector>
 
+#include "core/error.h"
+#include "core/keys/csv.h"
+#include "core/keys/number_text.h"
 #include "core/result/result_group.h"
 #include "wave_solver/periodic/matrix_job.h"
 
@@ -18,22 +22,31 @@ struct MappedLight {
   double transmittance;
 };
 
-std::vector<MappedLight> mapped_lights(const ScatteringMatrix& found,
-                                       std::span<const std::int64_t> numbers) {
+std::vector<MappedLight> mapped_lights(const ScatteringMatrix& found, const CellLights& asked) {
   const std::size_t n = found.channels.size();
   const auto t = found.quarter(false, true);
   const auto normal = std::ranges::min_element(
       found.channels, {}, [](const CellChannel& channel) { return std::abs(channel.sine); });
   const auto a = static_cast<std::size_t>(normal - found.channels.begin());
-  MappedLight one{Amplitudes(n), 0};
-  one.wave[a] = 1;
-  for (std::size_t b = 0; b < n; ++b) one.transmittance += std::norm(t[b + n * a]);
-  std::vector<MappedLight> lights = {one};
+  const auto transmittance = [&](const Amplitudes& wave) {
+    double transmitted = 0, power = 0;
+    for (std::size_t b = 0; b < n; ++b) {
+      Complex sum = 0;
+      for (std::size_t c = 0; c < n; ++c) sum += t[b + n * c] * wave[c];
+      transmitted += std::norm(sum);
+      power += std::norm(wave[b]);
+    }
+    return transmitted / power;
+  };
+  Amplitudes one(n);
+  one[a] = 1;
+  std::vector<MappedLight> lights = {{one, transmittance(one)}};
   const Eigenchannels all = eigenchannels(t, n);
-  for (const std::int64_t number : numbers) {
+  for (const std::int64_t number : asked.eigenchannels) {
     const auto m = static_cast<std::size_t>(number);
     lights.push_back({all.waves[m], all.eigenvalues[m]});
   }
+  for (const Amplitudes& wave : asked.own) lights.push_back({wave, transmittance(wave)});
   return lights;
 }
 
@@ -62,10 +75,43 @@ Amplitudes repeated(const Amplitudes& x, std::size_t n, const Copies& copies) {
 
 }  // namespace
 
+CellLights cell_lights(std::vector<std::int64_t> eigenchannels, const std::string& file,
+                       std::size_t channels) {
+  const auto require = [](const char* key, std::int64_t number, std::size_t count) {
+    if (!(number >= 0 && number < static_cast<std::int64_t>(count)))
+      throw InputError(key, number,
+                       "must be less than the number of channels, " + std::to_string(count));
+  };
+  for (const std::int64_t number : eigenchannels) require("map_eigenchannels", number, channels);
+  CellLights lights{std::move(eigenchannels), {}};
+  if (file.empty()) return lights;
+  const std::string columns[] = {"light", "channel", "re", "im"};
+  const Table table = read_key_table("map_lights", file, {std::begin(columns), std::end(columns)});
+  const auto light = table.column(columns[0]), channel = table.column(columns[1]),
+             re = table.column(columns[2]), im = table.column(columns[3]);
+  constexpr double most = 1000;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    if (!(light[row] >= 0 && light[row] < most && light[row] == std::floor(light[row])))
+      throw InputError("map_lights", file,
+                       "column light: " + number_text(light[row]) + " must be 0, 1, ... 999");
+    if (channel[row] != std::floor(channel[row]) || std::abs(channel[row]) > 1e9)
+      throw InputError("map_lights", file,
+                       "column channel: " + number_text(channel[row]) + " must be an integer");
+    require("map_lights, column channel", static_cast<std::int64_t>(channel[row]), channels);
+    const auto number = static_cast<std::size_t>(light[row]);
+    if (lights.own.size() <= number) lights.own.resize(number + 1, Amplitudes(channels));
+    lights.own[number][static_cast<std::size_t>(channel[row])] = {re[row], im[row]};
+  }
+  for (std::size_t i = 0; i < lights.own.size(); ++i)
+    if (std::ranges::all_of(lights.own[i], [](Complex a) { return a == 0.0; }))
+      throw InputError("map_lights", file, "light " + std::to_string(i) + " has no power");
+  return lights;
+}
+
 // Bases are large enough for points at the rims of all scatterers.
 std::string write_cell_map(ResultFile& file, const Placement& placement, double k,
                            const CellImages& images, const ScatteringMatrix& found,
-                           std::span<const std::int64_t> numbers, const SolveOptions& options,
+                           const CellLights& asked, const SolveOptions& options,
                            const MapGrid& grid) {
   std::vector<Vec> rims;
   for (const auto& [centre, scatterer] : placement)
@@ -73,9 +119,10 @@ std::string write_cell_map(ResultFile& file, const Placement& placement, double 
   const PeriodicCell cell(placement, k, images, options.tolerance, rims);
   const std::size_t n = cell.unknowns();
   std::vector<std::vector<PlaneWave>> lights;
-  Amplitudes rhs;
+  Amplitudes rhs, amplitudes;
   std::vector<double> transmittance;
-  for (const MappedLight& light : mapped_lights(found, numbers)) {
+  for (const MappedLight& light : mapped_lights(found, asked)) {
+    amplitudes.insert(amplitudes.end(), light.wave.begin(), light.wave.end());
     transmittance.push_back(light.transmittance);
     lights.push_back(incident(found, light.wave));
     const auto side = cell.right_hand_side(lights.back());
@@ -94,6 +141,9 @@ std::string write_cell_map(ResultFile& file, const Placement& placement, double 
   file.bind("LIGHT", {"map_wave"});
   const ResultGroup root(file, scattering_matrix_table);
   root.number("map_wave", lights.size());
+  root.attribute("map_wave", "eigenchannels",
+                 static_cast<std::int64_t>(asked.eigenchannels.size()));
+  root.put("map_light", amplitudes);
   root.put("map_transmittance", transmittance);
   const TMatrixSystem all = cell.near().with_explicit_copies();
   return write_map(file, {&all, std::move(lights), x}, grid, options.tolerance);

@@ -118,7 +118,11 @@ const DatasetTable scattering_matrix_table{
      {"transmission_eigenvalue", Data::real, "eigenchannel", "1",
       "eigenvalue of t^H t for light from the front"},
      {"map_wave", Data::numbers, "", "1",
-      "mapped light: 0 the channel closest to normal incidence, then map_eigenchannels"},
+      "mapped light: 0 the channel closest to normal incidence, then map_eigenchannels, then those "
+      "of map_lights"},
+     {"map_light", Data::complex, "map_wave light_sine", "1",
+      "amplitudes with unit flux of the mapped light in the channels at the front, phase origin at "
+      "r = 0"},
      {"map_transmittance", Data::real, "map_wave", "1", "transmittance of the mapped light"},
      {"solve/residual", Data::real, "", "1", "relative residual of the unscaled equations"},
      {"invariants/power", Data::invariant, "", "1",
@@ -126,7 +130,8 @@ const DatasetTable scattering_matrix_table{
      {"invariants/reciprocity", Data::invariant, "", "1",
       "largest deviation from reciprocity, for phases 0 and pi"},
      {"invariants/unit_cell", Data::invariant, "", "1",
-      "largest change of scattering_matrix if the unit cell begins at another x"}}};
+      "largest change of scattering_matrix if the unit cell begins at another x"}},
+    {{"map_wave", "eigenchannels", "int64", "number of mapped eigenchannels"}}};
 
 void write_scattering_matrix(ResultFile& file, const ScatteringMatrix& found) {
   const ResultGroup root(file, scattering_matrix_table);

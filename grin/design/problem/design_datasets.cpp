@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/result/result_group.h"
 #include "grin/trace/ray_tracing.h"
@@ -81,7 +82,9 @@ const DatasetTable design_table{
           "fraction of the light of held-out rays on each pixel"},
          {"picture/psnr_db", Data::real, "picture/view", "1",
           "20 log10 of the largest value of picture/asked divided by the root mean square "
-          "difference between picture/shown and picture/asked"}},
+          "difference between picture/shown and picture/asked"},
+         {"picture/on_screen", Data::real, "picture/view", "1",
+          "share of the light of held-out rays that falls on the screen: sum of picture/shown"}},
     .attributes = {
         {"ball_spline", "origin", "float64s",
          "three numbers: position of the first coefficient's knot"},
@@ -299,19 +302,24 @@ void write_pictures(const ResultGroup& root, const ScreenTarget& design_target,
   root.number("picture/column", pixels);
   root.put("picture/asked", asked_all);
   root.put("picture/shown", shown_all);
-  root.put("picture/psnr_db", picture_psnr(design_target, measurements));
+  const PictureQuality quality = picture_quality(design_target, measurements);
+  root.put("picture/psnr_db", quality.psnr_db);
+  root.put("picture/on_screen", quality.on_screen);
   root.attribute("picture/asked", "width", pictures.front().width);
 }
 
 }  // namespace
 
-std::vector<double> picture_psnr(const ScreenTarget& design_target,
-                                 const std::vector<double>& measurements) {
-  std::vector<double> psnr;
+PictureQuality picture_quality(const ScreenTarget& design_target,
+                               const std::vector<double>& measurements) {
+  PictureQuality quality;
   const auto pictures = design_target.shown_by(measurements, true);
-  for (std::size_t v = 0; v < pictures.size(); ++v)
-    psnr.push_back(psnr_of(pictures[v], shown(design_target.views()[v].picture)));
-  return psnr;
+  for (std::size_t v = 0; v < pictures.size(); ++v) {
+    const std::vector<double>& light = pictures[v].values;
+    quality.psnr_db.push_back(psnr_of(pictures[v], shown(design_target.views()[v].picture)));
+    quality.on_screen.push_back(std::accumulate(light.begin(), light.end(), 0.0));
+  }
+  return quality;
 }
 
 void write_design(ResultFile& file, const DesignScene& scene, const Designer& designer,

@@ -8,9 +8,13 @@ namespace flatspeckle::grin::design {
 
 extern const DatasetTable design_table;
 
-/// Returns the peak signal-to-noise ratio, in dB, of each picture that held-out rays form.
-std::vector<double> picture_psnr(const ScreenTarget& design_target,
-                                 const std::vector<double>& measurements);
+/// How well held-out rays form the pictures, one value for each picture.
+struct PictureQuality {
+  std::vector<double> psnr_db;    ///< peak signal-to-noise ratio
+  std::vector<double> on_screen;  ///< share of the beam's light that falls on the screen
+};
+PictureQuality picture_quality(const ScreenTarget& design_target,
+                               const std::vector<double>& measurements);
 
 /// Writes the designed field in the form that `trace` and `render` read. Also writes the history of
 /// the search, the checks and the data of the plots.

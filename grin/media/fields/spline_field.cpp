@@ -7,6 +7,8 @@
 #include "core/frames/frames.h"
 #include "core/keys/table_text.h"
 #include "core/numbers/wide/every_width.h"
+#include "core/result/guarded_read.h"
+#include "core/result/result_reader.h"
 #include "grin/media/index/cubic_splines.h"
 #include "grin/media/index/field_file.h"
 #include "grin/media/index/sample_grid.h"
@@ -297,7 +299,12 @@ GridSamples read_excess(const Keys& keys, const GridValues& values, const std::s
     check(samples.where, samples.values.size(), 2);
     check_range(samples);
   } else {
-    samples = read_samples(path, is_index ? "index" : "excess");
+    const std::string dataset = is_index ? "index" : "excess";
+    if (!guarded_read(path, [&] { return ResultReader(path).has(dataset); }))
+      throw InputError(path + ": has no dataset " + dataset +
+                       ": requires excess[x, y, z] = n - 1, or index[x, y, z] = n with "
+                       "grid_values = index");
+    samples = read_samples(path, dataset);
   }
   constexpr double least_index = 0.9;
   if (const double least = std::ranges::min(samples.values);

@@ -19,6 +19,10 @@ class GridDataset {
   FieldGrid grid() const {
     const std::vector<std::size_t> shape = file_.shape(name_);
     if (shape.size() != 3) throw InputError("axes of " + name_, shape.size(), "must be 3: x, y, z");
+    for (const char* attribute : {"origin", "spacing"})
+      if (!file_.has_attribute(name_, attribute))
+        throw InputError(name_ + " has no attribute " + attribute +
+                         ": requires origin and spacing, three numbers each");
     FieldGrid grid{vector("origin"), vector("spacing"), {}};
     for (int a = 0; a < 3; ++a) grid.nodes[a] = static_cast<int>(shape[a]);
     return grid;

@@ -137,7 +137,8 @@ void add_keys(Keys& keys, FaceLightValues& values) {
       .positive();
   keys.add("environment_map", values.environment_map,
            "Picture of L/n^2 of the light that enters from each direction (PNG, TIFF, NPY, PFM, "
-           "EXR or HDF5), multiplied by `environment`: rows are polar angles from environment_up, "
+           "EXR, HDR or HDF5), multiplied by `environment`: rows are polar angles from "
+           "environment_up, "
            "columns azimuths, to the right as seen from inside")
       .file();
   add_direction(keys, "environment_centre", values.environment_centre,
