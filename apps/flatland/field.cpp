@@ -283,10 +283,12 @@ class FieldExperiment : public OneShot {
       std::fputs(
           "note: no light path has reached the views: all fields are 0; increase paths_per_field\n",
           stderr);
-    return Made{"mc: " + mc::make_plan(*scene_, settings_.reversed).describe() + "; " +
-                    drawn.plan.describe(),
-                static_cast<double>(demand_.fields),
-                is_dark ? ExitStatus::error_not_reached : ExitStatus::done};
+    return Made{
+        "mc: " +
+            mc::plan_of_fields(*scene_, settings_.reversed, demand_.image.has_value()).describe() +
+            "; " + drawn.plan.describe(),
+        static_cast<double>(demand_.fields),
+        is_dark ? ExitStatus::error_not_reached : ExitStatus::done};
   }
 
   FieldKeys values_;

@@ -48,6 +48,7 @@ class FieldDrawing {
                    const std::function<void(const DrawingPlan&)>& planned) {
     drawn_.changes = demand.changes;
     drawn_.image = demand.image;
+    plan_ = plan_of_fields(scene_, settings_.reversed, demand.image.has_value());
     const bool camera = scene_.request.camera.has_value();
     if (camera) blas_single_thread();  // must come before threads request memory from BLAS
     const Scene surveyed = camera && !demand.image ? on_coarse_camera(scene_) : scene_;

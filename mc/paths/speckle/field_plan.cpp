@@ -171,6 +171,12 @@ PathSurvey read_survey(const GroupedSums& sums) {
   return survey;
 }
 
+Plan plan_of_fields(const Scene& scene, ReversedPaths reversed, bool is_image) {
+  Plan plan = make_plan(scene, reversed);
+  plan.weighted = plan.weighted || (is_image && scene.medium.mu_s > 0);
+  return plan;
+}
+
 DrawingPlan make_field_plan(const Scene& scene, const PathSurvey& survey,
                             const FieldDemand& demand) {
   constexpr double accepted_excess = 0.01, fewest_paths = 100, most_paths = 1e15;

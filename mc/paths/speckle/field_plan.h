@@ -72,6 +72,11 @@ struct DrawingPlan {
   std::string describe() const;
 };
 
+/// Returns the plan of the paths of fields. is_image: whether a lens forms an image of them.
+/// Walkers of equal weight in a wide lossless box light few of its resolution cells strongly, so
+/// that its paths are weighted.
+Plan plan_of_fields(const Scene& scene, ReversedPaths reversed, bool is_image);
+
 /// Plans the drawing of the requested fields, by the cheaper method if the method is automatic.
 DrawingPlan make_field_plan(const Scene& scene, const PathSurvey& survey,
                             const FieldDemand& demand);
