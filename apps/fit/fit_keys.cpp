@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "apps/fit/measurement_file.h"
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "mc/fit/medium_fit.h"
+#include "mc/fit/task/fit_data.h"
 
 namespace flatspeckle::apps {
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/flatland/own_places.h"
+#include "apps/flatland/space_solve.h"
 #include "core/error.h"
 #include "core/keys/csv.h"
 #include "core/keys/number_text.h"

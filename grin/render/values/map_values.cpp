@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "core/keys/number_text.h"
+#include "grin/media/geometry/vector_values.h"
 
 namespace flatspeckle::grin {
 

@@ -39,8 +39,8 @@ class SlabModel {
   /// Curves whose values follow from the same solution.
   struct Group {
     bool flux = false, reversed = false;
-    std::vector<double> delays;
-    std::vector<std::size_t> curves;
+    std::vector<double> delays{};
+    std::vector<std::size_t> curves{};
     std::optional<DistanceCurves> distances{};
   };
 
